@@ -1,0 +1,57 @@
+"""Exact, proved derivations of rigid-body rotation, and the kernels and notes printed from them.
+
+    import rigidsym as rs
+
+    motion = rs.derive(rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi")))
+    motion.angular_velocity_body        # SymPy matrix, (3, 1)
+    motion.kernels().load()             # a NumPy module
+    motion.note().latex()               # a LaTeX document
+
+Names are loaded on first use, so that `rigidsym --help` imports neither SymPy nor NumPy.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "derive": "rigidsym.api",
+    "Motion": "rigidsym.api",
+    "EulerAngles": "rigidsym.models.catalogue",
+    "EULER_SEQUENCES": "rigidsym.models.catalogue",
+    "RotationModel": "rigidsym.models.rotation",
+    "Citation": "rigidsym.models.rotation",
+    "Derivation": "rigidsym.derive.derivation",
+    "RigidsymError": "rigidsym.errors",
+    "NotARotation": "rigidsym.errors",
+}
+
+__all__ = [
+    "EULER_SEQUENCES",
+    "Citation",
+    "Derivation",
+    "EulerAngles",
+    "Motion",
+    "NotARotation",
+    "RigidsymError",
+    "RotationModel",
+    "derive",
+]
+
+if TYPE_CHECKING:
+    from rigidsym.api import Motion, derive
+    from rigidsym.derive.derivation import Derivation
+    from rigidsym.errors import NotARotation, RigidsymError
+    from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
+    from rigidsym.models.rotation import Citation, RotationModel
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'rigidsym' has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *_HOMES])

@@ -1,0 +1,1 @@
+"""Exact arithmetic: polynomial rings with relations and a time derivative."""

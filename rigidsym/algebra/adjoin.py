@@ -1,0 +1,173 @@
+"""Which generators a set of expressions asks for, closed under d/dt.
+
+Nothing here knows a rotation: quaternions, rotation vectors, masses and potentials come in as
+expressions, and leave as the generators of a ring.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from functools import lru_cache
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from rigidsym.algebra.angles import Combination, combination, common_fractions
+from rigidsym.errors import AlgebraError
+
+TIME = sp.Symbol("t")  # the time symbol of sympy.physics.vector.dynamicsymbols
+_MOST_GENERATORS = 300  # a derivative that keeps bringing new functions must end somewhere
+
+
+class Kind(IntEnum):
+    """Kinds of generator, in the order of the monomials: what comes first is eliminated first."""
+
+    INVERSE = 0  # 1/d, with i·d = 1
+    RADICAL = 1  # r^(1/k), with g^k = r; also the imaginary unit
+    SINE = 2  # with s² + c² = 1
+    COSINE = 3
+    OPAQUE = 4  # any other function: its relations are not known
+    TIME_FUNCTION = 5  # a coordinate or one of its derivatives
+    CONSTANT = 6
+
+
+@lru_cache(maxsize=1024)
+def rate_of(expression: sp.Expr) -> sp.Expr:
+    """d/dt of a generator's expression; the same few come up in every derivation."""
+    return sp.diff(expression, TIME)
+
+
+def as_sine_cosine(expression: sp.Expr) -> tuple[sp.Expr, sp.Expr] | None:
+    """Numerator and denominator of tan, cot, sec and csc; None for anything else."""
+    for function, numerator, denominator in (
+        (sp.tan, sp.sin, sp.cos),
+        (sp.cot, sp.cos, sp.sin),
+        (sp.sec, None, sp.cos),
+        (sp.csc, None, sp.sin),
+    ):
+        if isinstance(expression, function):
+            argument = expression.args[0]
+            return numerator(argument) if numerator else sp.Integer(1), denominator(argument)
+    return None
+
+
+class Request:
+    """Generators found so far: `kinds` in order of discovery, and the angles among them."""
+
+    def __init__(self, order: int) -> None:
+        self.order = order
+        self.has_fractions = False  # whether whole numbers do not suffice as coefficients
+        self.kinds: dict[sp.Expr, Kind] = {}
+        self._angles: list[Combination] = []
+        self._atoms: set[sp.Expr] = set()  # what sines and cosines are taken of
+        self._underived: list[sp.Expr] = []
+
+    def generators(self) -> list[tuple[sp.Expr, Kind]]:
+        """All generators in the order of their kinds, sines and cosines over common fractions."""
+        found = list(self.kinds.items())
+        for atom, fraction in self.fractions.items():
+            found.append((sp.sin(fraction * atom), Kind.SINE))
+            found.append((sp.cos(fraction * atom), Kind.COSINE))
+        return sorted(found, key=lambda pair: pair[1])
+
+    @property
+    def fractions(self) -> Combination:
+        """{atom: fraction}: sines and cosines are generators at fraction·atom."""
+        return common_fractions(self._angles)
+
+    def close(self) -> None:
+        """Take the time derivatives of all that was found, until nothing new appears."""
+        while self._underived:
+            expression = self._underived.pop(0)
+            if not is_highest(expression, self.order):
+                self.collect(rate_of(expression))
+
+    def collect(self, expression: sp.Expr) -> None:
+        """Note what one expression asks for; raises AlgebraError for what no ring can hold."""
+        quotient = as_sine_cosine(expression)
+        if quotient is not None:
+            self.collect(quotient[0])
+            self.collect(1 / quotient[1])
+        elif expression.is_Add or expression.is_Mul:
+            for part in expression.args:
+                self.collect(part)
+        elif expression.is_Pow and expression.exp.is_Rational:
+            self._collect_power(expression.base, expression.exp)
+        elif isinstance(expression, sp.sin | sp.cos):
+            self._collect_angle(expression.args[0])
+        elif expression.is_Rational:
+            self.has_fractions = self.has_fractions or not expression.is_Integer
+        else:
+            self._add(expression, _kind(expression))
+
+    def _collect_power(self, base: sp.Expr, exponent: sp.Rational) -> None:
+        self.collect(base)
+        roots = [base] if exponent.q == 1 else roots_of(base, exponent.q)
+        for root in roots:
+            if exponent.q != 1:
+                self._add(root, Kind.RADICAL)
+            if exponent.p < 0:
+                self._add(1 / root, Kind.INVERSE)
+
+    def _collect_angle(self, argument: sp.Expr) -> None:
+        terms = combination(argument)
+        for atom in terms:
+            if atom is sp.S.One:
+                raise AlgebraError(f"sin or cos of the number {argument} is not in the ring")
+        if sp.pi in terms:
+            self.collect(sp.sin(terms[sp.pi] * sp.pi))
+            self.collect(sp.cos(terms[sp.pi] * sp.pi))
+        self._angles.append(terms)
+        for atom in terms:
+            if atom is not sp.pi and atom not in self._atoms:
+                self._atoms.add(atom)
+                self._underived.append(atom)
+
+    def _add(self, expression: sp.Expr, kind: Kind) -> None:
+        if expression in self.kinds:
+            return
+        if len(self.kinds) >= _MOST_GENERATORS:
+            raise AlgebraError(
+                f"more than {_MOST_GENERATORS} generators, the last {expression}: "
+                "its derivatives keep bringing new functions"
+            )
+        self.kinds[expression] = kind
+        self._underived.append(expression)
+
+
+def roots_of(base: sp.Expr, degree: int) -> list[sp.Expr]:
+    """The root generators of base^(1/degree): one for each prime factor of a whole number."""
+    if base.is_Integer:
+        return [sp.Integer(prime) ** sp.Rational(1, degree) for prime in sp.factorint(base)]
+    return [base ** sp.Rational(1, degree)]
+
+
+def is_highest(expression: sp.Expr, order: int) -> bool:
+    """Whether this is a coordinate's highest derivative, which the ring cannot derive again."""
+    return isinstance(expression, sp.Derivative) and expression.derivative_count >= order
+
+
+def is_time_function(expression: sp.Expr) -> bool:
+    """f(t) or a derivative of it by t, for an undefined function f."""
+    if isinstance(expression, sp.Derivative):
+        return set(expression.variables) == {TIME} and is_time_function(expression.expr)
+    return isinstance(expression, AppliedUndef) and expression.args == (TIME,)
+
+
+def _kind(expression: sp.Expr) -> Kind:
+    if expression is sp.I:
+        return Kind.RADICAL
+    if is_time_function(expression):
+        return Kind.TIME_FUNCTION
+    if expression == TIME:
+        raise AlgebraError("the time t stands by itself; the ring holds functions of t only")
+    if expression.is_Symbol or isinstance(expression, sp.NumberSymbol):
+        return Kind.CONSTANT
+    if expression.is_Float:
+        raise AlgebraError(
+            f"{expression} is a floating-point number; exact work needs a fraction such as "
+            f"{sp.nsimplify(expression, rational=True)}"
+        )
+    if isinstance(expression, sp.Function | sp.Pow) and not expression.has(sp.zoo, sp.nan, sp.oo):
+        return Kind.OPAQUE
+    raise AlgebraError(f"{expression} ({type(expression).__name__}) is not in the ring")

@@ -1,0 +1,233 @@
+"""Between SymPy expressions and a ring: the ring is built from the expressions it has to hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cached_property, lru_cache
+
+import sympy as sp
+from sympy.polys.rings import PolyElement
+
+from rigidsym.algebra.adjoin import Kind, Request, as_sine_cosine, is_highest, rate_of, roots_of
+from rigidsym.algebra.angles import Combination, combination
+from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.ring import Generator, Ring
+from rigidsym.errors import AlgebraError
+
+Pair = tuple[PolyElement, PolyElement]  # cosine and sine of one angle
+
+
+def codec_for(
+    expressions: Iterable[sp.Expr], *, constraints: Iterable[sp.Expr] = (), order: int = 2
+) -> Codec:
+    """The ring that holds `expressions`, in which each constraint vanishes for all time.
+
+    `order` is the highest time derivative of a coordinate that the ring can hold. Expressions
+    that ask for the same generators share one ring, with all that it remembers.
+    Raises AlgebraError for an expression that no ring of this kind can hold.
+    """
+    held_to = tuple(sp.sympify(constraint) for constraint in constraints)
+    request = Request(order)
+    for expression in (*expressions, *held_to):
+        request.collect(sp.sympify(expression))
+    request.close()
+    return _shared(
+        tuple(request.generators()),
+        tuple(request.fractions.items()),
+        held_to,
+        order,
+        request.has_fractions,
+    )
+
+
+@lru_cache(maxsize=32)
+def _shared(
+    found: tuple[tuple[sp.Expr, Kind], ...],
+    fractions: tuple[tuple[sp.Expr, sp.Rational], ...],
+    constraints: tuple[sp.Expr, ...],
+    order: int,
+    has_fractions: bool,
+) -> Codec:
+    generators = [Generator(expression=e, opaque=kind is Kind.OPAQUE) for e, kind in found]
+    codec = Codec(Ring(generators, has_fractions=has_fractions), dict(fractions))
+    codec.settle(found, constraints, order)
+    return codec
+
+
+class Codec:
+    """A ring, with the way in (`encode`) and out (`decode`). Made by `codec_for`."""
+
+    def __init__(self, ring: Ring, fractions: Combination) -> None:
+        self.ring = ring
+        self._fractions = fractions
+        self._known: dict[sp.Expr, Quotient] = {}
+        self._pairs: dict[sp.Expr, Pair] = {}
+
+    def settle(
+        self,
+        found: Sequence[tuple[sp.Expr, Kind]],
+        constraints: Sequence[sp.Expr],
+        order: int,
+    ) -> None:
+        """Give the ring its relations and derivatives, now that expressions can be read."""
+        relations = [r for e, kind in found if (r := self._relation(e, kind)) is not None]
+        self._set_relations(relations)
+        self.ring.set_derivatives(
+            {
+                place: self.encode(rate_of(e))
+                for place, (e, _) in enumerate(found)
+                if not is_highest(e, order)
+            }
+        )
+        if constraints:
+            encoded = [self.encode(constraint) for constraint in constraints]
+            self._set_relations([*relations, *self._with_derivatives(encoded)])
+
+    def _set_relations(self, relations: Iterable[PolyElement]) -> None:
+        self.ring.set_relations(relations)
+        self._known.clear()  # what was read before is not in the new normal form
+        self._pairs.clear()
+
+    def _with_derivatives(self, constraints: Iterable[PolyElement]) -> list[PolyElement]:
+        """The constraints and their time derivatives, as far as the ring can derive them."""
+        result: list[PolyElement] = []
+        for constraint in constraints:
+            while constraint:
+                result.append(constraint)
+                if not self.ring.can_derive(constraint):
+                    break
+                constraint = self.ring.dt(constraint)
+        return result
+
+    def _relation(self, expression: sp.Expr, kind: Kind) -> PolyElement | None:
+        """What vanishes for one generator, by its kind; for a sine, of the pair."""
+        ring = self.ring
+        gen = ring.generator(ring.index[expression])
+        if kind is Kind.INVERSE:
+            return gen * self.encode(1 / expression) - 1
+        if expression is sp.I:
+            return gen**2 + 1
+        if kind is Kind.RADICAL:
+            return gen**expression.exp.q - self.encode(expression.base)
+        if kind is Kind.SINE:
+            cosine = ring.generator(ring.index[sp.cos(expression.args[0])])
+            return gen**2 + cosine**2 - 1
+        return None
+
+    @cached_property
+    def angle_pairs(self) -> tuple[tuple[int, int], ...]:
+        """Places of (sine, cosine) of each angle among the generators."""
+        index = self.ring.index
+        return tuple(
+            (index[sp.sin(fraction * atom)], index[sp.cos(fraction * atom)])
+            for atom, fraction in self._fractions.items()
+        )
+
+    def encode(self, expression: sp.Expr) -> PolyElement:
+        """Normal form of a polynomial expression; raises AlgebraError for a true quotient."""
+        value = self.encode_quotient(expression)
+        if value.denominator != self.ring.one:
+            raise AlgebraError(f"{expression} is a quotient, and its inverse is not in the ring")
+        return value.numerator
+
+    def encode_quotient(self, expression: sp.Expr) -> Quotient:
+        """An expression as a quotient of two normal forms.
+
+        Raises AlgebraError for an expression with a part that the ring was not built for.
+        """
+        known = self._known.get(expression)
+        if known is None:
+            known = self._known[expression] = self._walk(sp.sympify(expression))
+        return known
+
+    def _walk(self, expression: sp.Expr) -> Quotient:
+        ring = self.ring
+        place = ring.index.get(expression)
+        if place is not None:
+            return Quotient.whole(ring, ring.reduce(ring.generator(place)))
+        if expression.is_Rational:
+            return self._number(int(expression.p), int(expression.q))
+        if expression.is_Add:
+            return Quotient.sum(ring, [self.encode_quotient(part) for part in expression.args])
+        if expression.is_Mul:
+            return Quotient.product(ring, [self.encode_quotient(part) for part in expression.args])
+        if expression.is_Pow and expression.exp.is_Rational:
+            return self._power(expression.base, expression.exp)
+        if isinstance(expression, sp.sin | sp.cos):
+            cosine, sine = self._cosine_sine(expression.args[0])
+            return Quotient.whole(ring, sine if isinstance(expression, sp.sin) else cosine)
+        parts = as_sine_cosine(expression)
+        if parts is not None:
+            return self.encode_quotient(parts[0]) * self.encode_quotient(parts[1]).inverse()
+        raise AlgebraError(f"{expression} is not in the ring of {self._names()}")
+
+    def _number(self, numerator: int, denominator: int) -> Quotient:
+        polynomials = self.ring.polynomials
+        if polynomials.domain.is_Field:
+            return Quotient.whole(
+                self.ring, polynomials(polynomials.domain(numerator, denominator))
+            )
+        return Quotient(self.ring, polynomials(numerator), polynomials(denominator))
+
+    def _power(self, base: sp.Expr, exponent: sp.Rational) -> Quotient:
+        whole = int(exponent.p)
+        if exponent.q == 1:
+            return self._whole_power(base, whole)
+        counts = sp.factorint(base).values() if base.is_Integer else [1]
+        roots = zip(roots_of(base, exponent.q), counts, strict=True)
+        factors = [self._whole_power(root, count * whole) for root, count in roots]
+        return Quotient.product(self.ring, factors)
+
+    def _whole_power(self, base: sp.Expr, exponent: int) -> Quotient:
+        if exponent < 0 and 1 / base in self.ring.index:
+            return self.encode_quotient(1 / base) ** -exponent
+        return self.encode_quotient(base) ** exponent
+
+    def _cosine_sine(self, argument: sp.Expr) -> Pair:
+        """Cosine and sine of a rational combination of angles, by addition."""
+        known = self._pairs.get(argument)
+        if known is not None:
+            return known
+        ring = self.ring
+        pair = ring.one, ring.zero
+        for atom, coefficient in combination(argument).items():
+            pair = self._added(pair, self._multiple(atom, coefficient))
+        self._pairs[argument] = pair
+        return pair
+
+    def _multiple(self, atom: sp.Expr, coefficient: sp.Rational) -> Pair:
+        if atom is sp.pi:
+            return self.encode(sp.cos(coefficient * atom)), self.encode(sp.sin(coefficient * atom))
+        fraction = self._fractions.get(atom)
+        times = coefficient / fraction if fraction else sp.nan
+        if not times.is_Integer:
+            raise AlgebraError(f"sin and cos of {coefficient * atom} are not in the ring")
+        index, ring = self.ring.index, self.ring
+        cosine = ring.generator(index[sp.cos(fraction * atom)])
+        sine = ring.generator(index[sp.sin(fraction * atom)])
+        single = cosine, sine if times > 0 else -sine
+        pair = ring.one, ring.zero
+        for _ in range(abs(int(times))):
+            pair = self._added(pair, single)
+        return pair
+
+    def _added(self, first: Pair, second: Pair) -> Pair:
+        (c, s), (cosine, sine) = first, second
+        reduce = self.ring.reduce
+        return reduce(c * cosine - s * sine), reduce(s * cosine + c * sine)
+
+    def decode(self, element: PolyElement) -> sp.Expr:
+        """The polynomial as a SymPy expression, term by term as it is held."""
+        expressions = [gen.expression for gen in self.ring.generators]
+        return sp.Add(
+            *(
+                sp.Mul(
+                    sp.Rational(int(coefficient.numerator), int(coefficient.denominator)),
+                    *(expressions[k] ** power for k, power in enumerate(monomial) if power),
+                )
+                for monomial, coefficient in element.items()
+            )
+        )
+
+    def _names(self) -> str:
+        return ", ".join(str(gen.expression) for gen in self.ring.generators)

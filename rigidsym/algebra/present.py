@@ -1,0 +1,115 @@
+"""From normal form to textbook form, each choice proved equal before it is returned.
+
+The shortest of the equivalent polynomials is sought, common factors are taken out, quotients of
+sine and cosine become tan and cot. What was chosen is then read back into the ring, and its
+difference from the value must reduce to zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import sympy as sp
+from sympy.polys.rings import PolyElement
+
+from rigidsym.algebra.codec import Codec
+from rigidsym.algebra.factor import Product, collect
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.ring import Monomial
+from rigidsym.algebra.shorten import shortest
+from rigidsym.errors import AlgebraError
+
+
+@lru_cache(maxsize=32)
+def presenter_for(codec: Codec) -> Presenter:
+    """The presenter of one ring, shared like the ring itself."""
+    return Presenter(codec)
+
+
+class Presenter:
+    """Textbook forms of the elements of one ring; remembers what it has presented."""
+
+    def __init__(self, codec: Codec) -> None:
+        self.codec = codec
+        self.ring = codec.ring
+        self._expressions = [gen.expression for gen in self.ring.generators]
+        self._weights = [int(sp.count_ops(expression)) for expression in self._expressions]
+        self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
+
+    def matrix(
+        self, matrix: RingMatrix, denominator: PolyElement | None = None
+    ) -> sp.ImmutableMatrix:
+        """The matrix, or the matrix divided by `denominator`, entry by entry."""
+        below = self.ring.one if denominator is None else denominator
+        return sp.ImmutableMatrix(
+            [[self.quotient(Quotient(self.ring, e, below)) for e in row] for row in matrix.rows]
+        )
+
+    def element(self, element: PolyElement) -> sp.Expr:
+        """The textbook form of one element."""
+        return self.quotient(Quotient.whole(self.ring, element))
+
+    def quotient(self, value: Quotient) -> sp.Expr:
+        """The textbook form of a quotient."""
+        key = value.numerator, value.denominator
+        known = self._known.get(key)
+        if known is None:
+            known = self._known[key] = self._prove(self._form(value), value)
+        return known
+
+    def _prove(self, expression: sp.Expr, value: Quotient) -> sp.Expr:
+        if not self.codec.encode_quotient(expression).equals(value):
+            raise AlgebraError(f"the form {expression} differs from its normal form")
+        return expression
+
+    def _form(self, value: Quotient) -> sp.Expr:
+        above = shortest(self.ring, value.numerator)
+        below = shortest(self.ring, value.denominator)
+        if len(below) > 1:
+            _, above, below = above.cofactors(below)
+        if len(below) > 1:
+            return self._terms(above) / self._terms(below)
+        ((divisor, scale),) = below.items()
+        return self._terms({_divide(m, divisor): c for m, c in above.items()}, _fraction(scale))
+
+    def _terms(self, terms: Mapping[Monomial, Any], scale: Fraction = Fraction(1)) -> sp.Expr:
+        fractions = {monomial: _fraction(c) / scale for monomial, c in terms.items()}
+        return self._sum(collect(fractions, self._weights))
+
+    def _sum(self, products: Sequence[Product]) -> sp.Expr:
+        return sp.Add(*(self._product(product) for product in products))
+
+    def _product(self, product: Product) -> sp.Expr:
+        powers = list(product.powers)
+        number = product.coefficient
+        factors = [sp.Rational(number.numerator, number.denominator), *self._ratios(powers)]
+        factors += [self._expressions[k] ** power for k, power in enumerate(powers) if power]
+        if product.bracket:
+            factors.append(self._sum(product.bracket))
+        return sp.Mul(*factors)
+
+    def _ratios(self, powers: list[int]) -> list[sp.Expr]:
+        """tan and cot for sines over cosines and the reverse, taken out of `powers`."""
+        found = []
+        for sine, cosine in self.codec.angle_pairs:
+            if powers[sine] * powers[cosine] < 0:
+                times = min(abs(powers[sine]), abs(powers[cosine]))
+                above = sine if powers[sine] > 0 else cosine
+                function = sp.tan if above == sine else sp.cot
+                found.append(function(self._expressions[sine].args[0]) ** times)
+                powers[above] -= times
+                powers[cosine if above == sine else sine] += times
+        return found
+
+
+def _divide(monomial: Monomial, divisor: Monomial) -> Monomial:
+    return tuple(a - b for a, b in zip(monomial, divisor, strict=True))
+
+
+def _fraction(coefficient: Any) -> Fraction:
+    """A coefficient of Z or Q, whichever number type SymPy holds it in."""
+    return Fraction(int(coefficient.numerator), int(coefficient.denominator))

@@ -1,0 +1,181 @@
+"""Polynomials in generators modulo relations, with d/dt as a derivation.
+
+A generator stands for a SymPy expression: cos θ, sin θ, θ̇, a mass, √(v·v), 1/(1 + ρ·ρ).
+The relations between the generators (c² + s² = 1, w² + x² + y² + z² = 1, n·i = 1, ...) become a
+Gröbner basis, and an element is held in its normal form. An element of the ideal always reduces
+to zero, so that a zero is a proof. Where `complete` is true the relations are all there are, and
+anything else is not zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from operator import add, sub
+from typing import Any
+
+import sympy as sp
+from sympy.polys.groebnertools import groebner
+from sympy.polys.orderings import grevlex
+from sympy.polys.rings import PolyElement, PolyRing
+
+from rigidsym.errors import AlgebraError
+
+Monomial = tuple[int, ...]
+Terms = dict[Monomial, Any]  # coefficients in Z or Q
+Rule = tuple[Monomial, list[tuple[int, int]], Terms]  # leading monomial, its powers, the rest
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Generator:
+    """One indeterminate of the ring and the SymPy expression it stands for."""
+
+    expression: sp.Expr
+    opaque: bool = False  # a function whose relations the ring does not know
+
+
+class Ring:
+    """K[generators] modulo relations; elements are `PolyElement`s in normal form.
+
+    K is Z where that suffices, since whole numbers are fast, and Q otherwise. `relations` are
+    polynomials that vanish; `derivatives` holds d/dt of the generators that have one in this
+    ring (the highest derivatives of the coordinates have none).
+    """
+
+    def __init__(self, generators: Sequence[Generator], *, has_fractions: bool = True) -> None:
+        self.generators = tuple(generators)
+        names = [f"g{index}" for index in range(len(self.generators))]
+        self.polynomials = PolyRing(names, sp.QQ if has_fractions else sp.ZZ, grevlex)
+        self.index = {gen.expression: place for place, gen in enumerate(self.generators)}
+        self.relations: tuple[PolyElement, ...] = ()
+        self.derivatives: dict[int, PolyElement] = {}
+        self._rules: list[Rule] = []
+        self._normal_forms: dict[Monomial, Terms | None] = {}
+        self._monomial_rates: dict[Monomial, PolyElement] = {}
+
+    @property
+    def complete(self) -> bool:
+        """Whether every relation between the generators is known, so that non-zero is decided."""
+        return not any(gen.opaque for gen in self.generators)
+
+    @property
+    def zero(self) -> PolyElement:
+        return self.polynomials.zero
+
+    @property
+    def one(self) -> PolyElement:
+        return self.polynomials.one
+
+    def generator(self, place: int) -> PolyElement:
+        return self.polynomials.gens[place]
+
+    def set_relations(self, relations: Iterable[PolyElement]) -> None:
+        """Take the relations and their Gröbner basis; normal forms from now on obey them."""
+        self.relations = tuple(relation for relation in relations if relation)
+        basis = groebner(list(self.relations), self.polynomials) if self.relations else []
+        if any(element.is_ground for element in basis):
+            raise AlgebraError("the relations contradict one another: they imply 1 = 0")
+        self._rules = [_rewriting_rule(element) for element in basis]
+        self._normal_forms = {}
+        self._monomial_rates = {}
+
+    def set_derivatives(self, derivatives: Mapping[int, PolyElement]) -> None:
+        self.derivatives = dict(derivatives)
+        self._monomial_rates = {}
+
+    def reduce(self, element: PolyElement) -> PolyElement:
+        """The normal form of a polynomial: zero exactly for members of the ideal."""
+        if all(self._normal_form(monomial) is None for monomial in element):
+            return element
+        return self._settled(element)
+
+    def dot(self, pairs: Iterable[tuple[PolyElement, PolyElement]]) -> PolyElement:
+        """The sum of the products, in normal form."""
+        times = self.polynomials.monomial_mul
+        total: Terms = {}
+        for first, second in pairs:
+            for monomial, coefficient in first.items():
+                for other, factor in second.items():
+                    product = times(monomial, other)
+                    total[product] = total.get(product, 0) + coefficient * factor
+        return self._settled(total)
+
+    def _settled(self, terms: Terms) -> PolyElement:
+        result: Terms = {}
+        for monomial, coefficient in terms.items():
+            form = self._normal_form(monomial)
+            if form is None:
+                result[monomial] = result.get(monomial, 0) + coefficient
+            else:
+                _add(result, coefficient, form)
+        return self.polynomials.from_dict({m: c for m, c in result.items() if c})
+
+    def _normal_form(self, monomial: Monomial) -> Terms | None:
+        """Normal form of one monomial, remembered, since reduction is linear in the monomials.
+
+        None where the monomial is its own normal form.
+        """
+        if monomial not in self._normal_forms:
+            self._normal_forms[monomial] = self._rewrite(monomial)
+        return self._normal_forms[monomial]
+
+    def _rewrite(self, monomial: Monomial) -> Terms | None:
+        for leading, needed, tail in self._rules:
+            if all(monomial[place] >= power for place, power in needed):
+                rest = tuple(map(sub, monomial, leading))
+                result: Terms = {}
+                for term, coefficient in tail.items():
+                    product = tuple(map(add, rest, term))
+                    form = self._normal_form(product)
+                    _add(result, coefficient, {product: 1} if form is None else form)
+                return {m: c for m, c in result.items() if c}
+        return None
+
+    def is_zero(self, element: PolyElement) -> bool:
+        return not self.reduce(element)
+
+    def can_derive(self, element: PolyElement) -> bool:
+        """Whether every generator in the element has a time derivative in this ring."""
+        used = (place for monomial in element for place, power in enumerate(monomial) if power)
+        return all(place in self.derivatives for place in used)
+
+    def dt(self, element: PolyElement) -> PolyElement:
+        """Time derivative: the sum over the generators of ∂/∂g · dg/dt, in normal form.
+
+        Raises AlgebraError where a generator has no derivative in this ring.
+        """
+        result: Terms = {}
+        for monomial, coefficient in element.items():
+            if monomial not in self._monomial_rates:
+                self._monomial_rates[monomial] = self._monomial_rate(monomial)
+            _add(result, coefficient, self._monomial_rates[monomial])
+        return self.polynomials.from_dict({m: c for m, c in result.items() if c})
+
+    def _monomial_rate(self, monomial: Monomial) -> PolyElement:
+        """d/dt of one monomial, by the product rule; `dt` remembers it."""
+        total = self.zero
+        for place, power in enumerate(monomial):
+            if power and place not in self.derivatives:
+                raise AlgebraError(
+                    f"the ring was built without the time derivative of "
+                    f"{self.generators[place].expression}; build it with a higher order"
+                )
+            if power:
+                rest = (*monomial[:place], power - 1, *monomial[place + 1 :])
+                total += self.derivatives[place].mul_term((rest, power))
+        return self.reduce(total)
+
+
+def _rewriting_rule(element: PolyElement) -> Rule:
+    """A basis element read as: leading monomial -> minus the rest."""
+    leading = element.leading_expv()
+    lead = element[leading]
+    needed = [(place, power) for place, power in enumerate(leading) if power]
+    tail = {m: element.ring.domain.exquo(-c, lead) for m, c in element.items() if m != leading}
+    return leading, needed, tail
+
+
+def _add(total: Terms, coefficient: Any, terms: Terms) -> None:
+    """Add a multiple of some terms to a total, in place."""
+    for monomial, factor in terms.items():
+        total[monomial] = total.get(monomial, 0) + coefficient * factor

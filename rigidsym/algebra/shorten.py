@@ -1,0 +1,58 @@
+"""The shortest of the polynomials that are equal modulo the relations.
+
+A normal form is for deciding. For reading, 1 − c² is better written s², and w² + x² + y² + z²
+better written 1: from the normal form, a walk over neighbours that differ by a multiple of one
+relation, never to a longer one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sympy.polys.rings import PolyElement
+
+from rigidsym.algebra.ring import Monomial, Ring
+
+_MOST_STEPS = 60
+
+
+def shortest(ring: Ring, element: PolyElement) -> PolyElement:
+    """A shortest polynomial found that equals `element` in the ring."""
+    best = current = element
+    seen = {current}
+    for _ in range(_MOST_STEPS):
+        fresh = [other for other in _neighbours(ring, current) if other not in seen]
+        if not fresh:
+            break
+        candidate = min(fresh, key=_length)
+        if _length(candidate) > _length(current):
+            break
+        seen.add(candidate)
+        current = candidate
+        if _length(current) < _length(best):
+            best = current
+    return best
+
+
+def _length(element: PolyElement) -> tuple[int, int]:
+    """Terms first, then the degrees: what a reader counts."""
+    return len(element), sum(sum(monomial) for monomial in element)
+
+
+def _neighbours(ring: Ring, element: PolyElement) -> Iterator[PolyElement]:
+    """Each polynomial in which one term was replaced by means of one relation."""
+    for relation in ring.relations:
+        for part, factor in relation.items():
+            if not any(part):
+                continue
+            for monomial, coefficient in element.items():
+                rest = _divided(monomial, part)
+                if rest is not None and not coefficient % factor:
+                    yield element - relation.mul_term((rest, coefficient // factor))
+
+
+def _divided(monomial: Monomial, part: Monomial) -> Monomial | None:
+    """monomial / part, or None where it does not divide."""
+    if any(need > have for have, need in zip(monomial, part, strict=True)):
+        return None
+    return tuple(have - need for have, need in zip(monomial, part, strict=True))

@@ -1,0 +1,72 @@
+"""The inputs of a derivation: coordinates, rates, accelerations, a given angular velocity."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import sympy as sp
+from sympy.printing.pretty.pretty_symbology import pretty_symbol
+
+from rigidsym.derive.derivation import Argument, Markup
+from rigidsym.models.rotation import RotationModel
+from rigidsym.models.so3 import TIME
+
+_DOTS = (  # order of the derivative: suffix of the name, LaTeX accent, combining character
+    ("", "{}", ""),
+    ("_dot", r"\dot{{{}}}", "\u0307"),
+    ("_ddot", r"\ddot{{{}}}", "\u0308"),
+)
+_SPACE = tuple(sp.Symbol(f"Omega_{k}") for k in (1, 2, 3))
+_BODY = tuple(sp.Symbol(f"Omega_body_{k}") for k in (1, 2, 3))
+
+
+def arguments_of(model: RotationModel) -> tuple[Argument, ...]:
+    """The arguments of a model's quantities, in the order of a kernel's signature."""
+    return (
+        _coordinates(model, 0, "q", "coordinates"),
+        _coordinates(model, 1, "q_dot", "their time derivatives"),
+        _coordinates(model, 2, "q_ddot", "their second time derivatives"),
+        _angular_velocity("space", _SPACE, r"\Omega_{}", "Ω{}"),
+        _angular_velocity("body", _BODY, r"\Omega'_{}", "Ω′{}"),
+    )
+
+
+def _coordinates(model: RotationModel, order: int, name: str, about: str) -> Argument:
+    suffix, accent, combining = _DOTS[order]
+    plain = [coordinate.func.__name__ for coordinate in model.coordinates]
+    return Argument(
+        name=name,
+        symbols=tuple(_derivative(coordinate, order) for coordinate in model.coordinates),
+        names=tuple(label + suffix for label in plain),
+        notation=tuple(_marked(label, accent, combining) for label in plain),
+        units=tuple(_per_second(unit, order) for unit in model.coordinate_units),
+        about=about,
+    )
+
+
+@lru_cache(maxsize=1024)
+def _derivative(coordinate: sp.Expr, order: int) -> sp.Expr:
+    return sp.diff(coordinate, TIME, order)
+
+
+@lru_cache(maxsize=1024)
+def _marked(label: str, accent: str, combining: str) -> Markup:
+    pretty = pretty_symbol(label)
+    return Markup(accent.format(sp.latex(sp.Symbol(label))), pretty[0] + combining + pretty[1:])
+
+
+def _per_second(unit: str, order: int) -> str:
+    return unit if order == 0 else f"{unit or '1'}/s{'^' + str(order) if order > 1 else ''}"
+
+
+def _angular_velocity(
+    frame: str, symbols: tuple[sp.Symbol, ...], latex: str, text: str
+) -> Argument:
+    return Argument(
+        name=f"omega_{frame}",
+        symbols=symbols,
+        names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3)),
+        notation=tuple(Markup(latex.format(k), text.format("₀₁₂₃"[k])) for k in (1, 2, 3)),
+        units=("rad/s",) * 3,
+        about=f"{frame} components of the angular velocity",
+    )

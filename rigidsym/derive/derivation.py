@@ -1,0 +1,152 @@
+"""A derivation is data: quantities, the steps that lead to them, and a proof beside each step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal, Self
+
+import sympy as sp
+
+from rigidsym.errors import QuantityError
+from rigidsym.models.rotation import Citation, RotationModel
+
+Status = Literal["exact", "unproved"]
+
+
+@dataclass(frozen=True, slots=True)
+class Markup:
+    """One formula or symbol, for the two ways of printing it."""
+
+    latex: str
+    text: str  # Unicode, one line
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Proof:
+    """One claim and what became of it.
+
+    *exact*: the residual reduces to zero in the ring. *unproved*: it does not, and the ring does
+    not know all relations, so that nothing is decided; the residual is what is left over.
+    """
+
+    claim: Markup  # R Rᵀ = 1
+    status: Status
+    residual: sp.ImmutableMatrix | None = None  # what is left over; None where it is zero
+
+    @property
+    def is_exact(self) -> bool:
+        return self.status == "exact"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Quantity:
+    """What a step defines."""
+
+    name: str  # in Python, in kernels, in JSON
+    symbol: Markup
+    definition: Markup  # how it follows: C⁻¹(dR/dt Rᵀ)
+    about: str  # words: "angular velocity, space components"
+    unit: str  # SI, "" for a pure number
+    inputs: tuple[str, ...]  # the arguments it depends on, by name: "q", "q_dot", ...
+    is_vector: bool = False  # shape (n,) in kernels, where the expression is an n x 1 matrix
+    source: Citation | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Argument:
+    """A vector of inputs, (n,): the coordinates, their rates, an angular velocity."""
+
+    name: str  # "q"
+    symbols: tuple[sp.Expr, ...]  # the SymPy expressions the components stand for
+    names: tuple[str, ...]  # plain names of the components: "phi_dot"
+    notation: tuple[Markup, ...]  # how a component is printed
+    units: tuple[str, ...]  # a unit a component
+    about: str  # "coordinates", "space components of the angular velocity"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Step:
+    """One quantity, derived: its textbook form, how it follows, and what was proved of it."""
+
+    number: int  # of its equation, in the note and in the docstrings of the kernels
+    quantity: Quantity
+    expression: sp.ImmutableMatrix
+    because: str  # a sentence: how it follows from the steps before
+    proofs: tuple[Proof, ...]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of one value in kernels and JSON."""
+        rows, columns = self.expression.shape
+        return (rows,) if self.quantity.is_vector else (rows, columns)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Singularity:
+    """Where the rate matrix loses rank, and what is lost there."""
+
+    coordinate: sp.Expr
+    value: sp.Expr  # the angle in (−π, π] at which it fails, modulo 2π
+    rank: int
+    lost_space: sp.ImmutableMatrix | None  # no q̇ gives Ω along this direction; (3, 1)
+    lost_body: sp.ImmutableMatrix | None  # the same direction in body components
+    undetermined: sp.ImmutableMatrix | None  # the q̇ that turns nothing, (n, 1)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Singularities:
+    """Where det W vanishes: the determinant, and the angles where that can be said."""
+
+    determinant: sp.Expr
+    points: tuple[Singularity, ...]
+    is_solved: bool  # whether `points` are all the places where the determinant vanishes
+
+
+@dataclass(frozen=True, kw_only=True)
+class Derivation:
+    """An ordered tuple of steps from one rotation model; every quantity is an attribute too."""
+
+    name: str
+    title: str
+    model: RotationModel
+    arguments: tuple[Argument, ...]
+    steps: tuple[Step, ...]
+    singularities: Singularities | None  # None where the rate matrix is not square
+
+    def step(self, quantity: str) -> Step:
+        """The step that defines a quantity; raises QuantityError for one that is not here."""
+        for step in self.steps:
+            if step.quantity.name == quantity:
+                return step
+        names = ", ".join(step.quantity.name for step in self.steps)
+        raise QuantityError(f"{self.name} has no quantity {quantity!r}; it has {names}")
+
+    def select(self, names: Sequence[str]) -> Self:
+        """The derivation with these quantities alone, numbered anew in the order of the steps.
+
+        Raises QuantityError for a name that is not here.
+        """
+        chosen = {self.step(name).quantity.name for name in names}
+        kept = [step for step in self.steps if step.quantity.name in chosen]
+        numbered = tuple(replace(step, number=place) for place, step in enumerate(kept, start=1))
+        return replace(self, steps=numbered)
+
+    def argument(self, name: str) -> Argument:
+        return next(argument for argument in self.arguments if argument.name == name)
+
+    @property
+    def proofs(self) -> Iterator[Proof]:
+        return (proof for step in self.steps for proof in step.proofs)
+
+    @property
+    def is_proved(self) -> bool:
+        return all(proof.is_exact for proof in self.proofs)
+
+    def __getattr__(self, name: str) -> sp.ImmutableMatrix:
+        if name.startswith("_") or name == "steps":  # asked for before there are any steps
+            raise AttributeError(name)
+        for step in self.steps:
+            if step.quantity.name == name:
+                return step.expression
+        raise AttributeError(f"{type(self).__name__} {self.name!r} has no quantity {name!r}")

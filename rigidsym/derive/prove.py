@@ -1,0 +1,74 @@
+"""Claims become proofs: what reduces to zero is exact, what does not is refused or left open."""
+
+from __future__ import annotations
+
+import random
+
+import sympy as sp
+
+from rigidsym.algebra.codec import Codec
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.derive.derivation import Markup, Proof
+from rigidsym.errors import DerivationError, NotARotation
+from rigidsym.models.rotation import RotationModel
+
+_DIGITS = 40
+_POINTS = 3
+
+
+class Prover:
+    """Decides claims about one model in its ring."""
+
+    def __init__(self, model: RotationModel, codec: Codec) -> None:
+        self.model = model
+        self.codec = codec
+
+    def vanishes(self, residual: RingMatrix, claim: Markup) -> Proof:
+        """The proof that a matrix is zero.
+
+        Raises DerivationError where it is shown not to be zero; where the ring does not know
+        enough to tell, the proof says *unproved* and holds what is left.
+        """
+        if residual.is_zero():
+            return Proof(claim=claim, status="exact")
+        left = self._decoded(residual)
+        if self._is_refuted(left):
+            raise DerivationError(f"{self.model.name}: {claim.text} is false; left over: {left}")
+        return Proof(claim=claim, status="unproved", residual=left)
+
+    def is_rotation(self, residual: RingMatrix, claim: Markup) -> Proof:
+        """As `vanishes`, for the claims that make a matrix a rotation; raises NotARotation."""
+        try:
+            return self.vanishes(residual, claim)
+        except DerivationError as error:
+            raise NotARotation(
+                f"{self.model.name}: not a rotation, since {claim.text} fails; "
+                f"left over: {self._decoded(residual)}"
+            ) from error
+
+    def _decoded(self, residual: RingMatrix) -> sp.ImmutableMatrix:
+        decode = self.codec.decode
+        return sp.ImmutableMatrix([[decode(entry) for entry in row] for row in residual.rows])
+
+    def _is_refuted(self, left: sp.ImmutableMatrix) -> bool:
+        """Whether what is left is certainly not zero.
+
+        With constraints no free point can be tried, and only a ring that knows every relation
+        can tell; without them a value at a random point tells as well.
+        """
+        if self.model.constraints:
+            return self.codec.ring.complete
+        return any(self._is_nonzero_at_random(entry) for entry in left if entry != 0)
+
+    def _is_nonzero_at_random(self, entry: sp.Expr) -> bool:
+        unknowns = sorted(
+            entry.atoms(sp.Symbol, sp.Derivative, sp.core.function.AppliedUndef), key=str
+        )
+        generator = random.Random(20)
+        for _ in range(_POINTS):
+            point = {u: sp.Rational(generator.randint(1, 999), 1000) for u in unknowns}
+            derivatives = {u: value for u, value in point.items() if u.is_Derivative}
+            value = entry.subs(derivatives).subs(point).evalf(_DIGITS)
+            if value.is_number and abs(value) > sp.Float(10) ** -(_DIGITS // 2):
+                return True
+        return False

@@ -1,0 +1,149 @@
+"""Where the rate matrix loses rank, which direction is lost, and which rates turn nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from itertools import combinations
+from math import ceil, prod
+
+import sympy as sp
+from sympy.polys.rings import PolyElement
+
+from rigidsym.algebra.codec import Codec
+from rigidsym.algebra.matrix import RingMatrix, Row, cross
+from rigidsym.algebra.present import Presenter
+from rigidsym.algebra.shorten import shortest
+from rigidsym.derive.derivation import Singularities, Singularity
+
+Zero = tuple[sp.Expr, sp.Expr, dict[int, int]]  # coordinate, value, what the generators become
+
+
+def singularities_of(
+    matrix: RingMatrix,
+    rotation: RingMatrix,
+    presenter: Presenter,
+    codec: Codec,
+    coordinates: Sequence[sp.Expr],
+) -> Singularities:
+    """The zeros of det W, for a square rate matrix in space components.
+
+    Solved where every factor of the determinant is a number, or the sine or cosine of a rational
+    multiple of one coordinate; otherwise the determinant is reported and nothing is guessed.
+    """
+    determinant = shortest(codec.ring, matrix.det())
+    zeros, is_solved = _zeros(determinant, codec, coordinates)
+    return Singularities(
+        determinant=presenter.element(determinant),
+        points=tuple(_at(zero, matrix, rotation, presenter) for zero in zeros),
+        is_solved=is_solved,
+    )
+
+
+def _zeros(
+    determinant: PolyElement, codec: Codec, coordinates: Sequence[sp.Expr]
+) -> tuple[list[Zero], bool]:
+    zeros: list[Zero] = []
+    is_solved = True
+    for factor in _factors(determinant):
+        found = _zeros_of_factor(factor, codec, coordinates)
+        is_solved = is_solved and found is not None
+        zeros.extend(found or ())
+    return zeros, is_solved
+
+
+def _factors(element: PolyElement) -> list[PolyElement]:
+    """The irreducible factors that are not numbers; a product of generators needs no search."""
+    if len(element) == 1:
+        (powers,) = element
+        return [gen for gen, power in zip(element.ring.gens, powers, strict=True) if power]
+    return [factor for factor, _ in element.factor_list()[1]]
+
+
+def _zeros_of_factor(
+    factor: PolyElement, codec: Codec, coordinates: Sequence[sp.Expr]
+) -> list[Zero] | None:
+    """Zeros of one irreducible factor in (−π, π]; None where it is not a sine or a cosine."""
+    for sine, cosine in codec.angle_pairs:
+        argument = codec.ring.generators[sine].expression.args[0]
+        rate, coordinate = argument.as_coeff_Mul()
+        if coordinate not in coordinates:
+            continue
+        for place, other, offset in ((sine, cosine, Fraction(0)), (cosine, sine, Fraction(1, 2))):
+            if factor.monic() == codec.ring.generator(place):
+                return [
+                    (coordinate, sp.Rational(turn) * sp.pi, {place: 0, other: sign})
+                    for turn, sign in _half_turns(offset, Fraction(int(rate.p), int(rate.q)))
+                ]
+    return None
+
+
+def _half_turns(offset: Fraction, rate: Fraction) -> Iterator[tuple[Fraction, int]]:
+    """(offset + k)/rate in (−1, 1], in half turns, with the ±1 of what does not vanish there."""
+    reach = ceil(rate) + 1
+    for k in range(-reach, reach + 1):
+        turn = (offset + k) / rate
+        if -1 < turn <= 1:
+            yield turn, -1 if k % 2 else 1
+
+
+def _at(zero: Zero, matrix: RingMatrix, rotation: RingMatrix, presenter: Presenter) -> Singularity:
+    coordinate, value, becomes = zero
+    there = matrix.map(lambda entry: _substituted(entry, becomes))
+    lost = _normal_to(there.T.rows)
+    idle = _normal_to(there.rows)
+    body = None
+    if lost is not None:
+        turned = rotation.map(lambda entry: _substituted(entry, becomes))
+        body = turned.T @ RingMatrix.column(matrix.ring, lost)
+    return Singularity(
+        coordinate=coordinate,
+        value=value,
+        rank=_rank(there),
+        lost_space=_presented(lost, matrix, presenter),
+        lost_body=None if body is None else presenter.matrix(body),
+        undetermined=_presented(idle, matrix, presenter),
+    )
+
+
+def _substituted(element: PolyElement, becomes: dict[int, int]) -> PolyElement:
+    """The element with some generators replaced by whole numbers."""
+    result = element.ring.zero
+    for monomial, coefficient in element.items():
+        factor = prod(value ** monomial[place] for place, value in becomes.items())
+        rest = [0 if place in becomes else power for place, power in enumerate(monomial)]
+        result += element.ring.term_new(tuple(rest), coefficient * factor)
+    return result
+
+
+def _rank(matrix: RingMatrix) -> int:
+    if matrix.det():
+        return 3
+    if any(matrix.adjugate().entries):
+        return 2
+    return int(any(matrix.entries))
+
+
+def _normal_to(vectors: Sequence[Row]) -> Row | None:
+    """A direction at right angles to three vectors that span a plane; None where they do not."""
+    for u, v in combinations(vectors, 2):
+        normal = cross(u, v)
+        if any(normal):
+            return _primitive(normal)
+    return None
+
+
+def _primitive(entries: Sequence[PolyElement]) -> Row:
+    """The entries without their common factor, the first of them with a plus sign."""
+    common = entries[0].ring.zero
+    for entry in entries:
+        common = common.gcd(entry)
+    first = next(entry for entry in entries if entry)
+    common *= 1 if first.exquo(common).LC > 0 else -1
+    return tuple(entry.exquo(common) for entry in entries)
+
+
+def _presented(
+    entries: Row | None, matrix: RingMatrix, presenter: Presenter
+) -> sp.ImmutableMatrix | None:
+    return None if entries is None else presenter.matrix(RingMatrix.column(matrix.ring, entries))

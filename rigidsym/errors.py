@@ -1,0 +1,93 @@
+"""Every exception a user may see. Each says what was wrong, where, and what was expected.
+
+The class carries the exit code of the command line, so that no caller has to know a table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+
+class RigidsymError(Exception):
+    """Base of all errors that rigidsym raises on purpose."""
+
+    exit_code: ClassVar[int] = 1
+
+
+class AlgebraError(RigidsymError):
+    """An expression that the ring cannot hold, or a derivative beyond the ring's order."""
+
+
+class ModelError(RigidsymError):
+    """A rotation model that is not one: unknown sequence, repeated coordinate, wrong shape."""
+
+    exit_code: ClassVar[int] = 2
+
+
+class NotARotation(RigidsymError):
+    """A 3x3 matrix whose R Rᵀ − 1 or det R − 1 does not vanish; the message shows what is left."""
+
+
+class DerivationError(RigidsymError):
+    """A claim of the derivation that is false; the message shows what is left over."""
+
+
+class QuantityError(RigidsymError):
+    """A quantity that the derivation does not hold; the message names those it does."""
+
+    exit_code: ClassVar[int] = 2
+
+
+class ExpressionError(RigidsymError):
+    """Text that is not an expression in the declared names; `column` counts from 1."""
+
+    exit_code: ClassVar[int] = 2
+
+    def __init__(self, message: str, *, column: int = 1) -> None:
+        super().__init__(message)
+        self.message = message
+        self.column = column
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Fault:
+    """One thing wrong in a derivation file."""
+
+    line: int  # counted from 1; 0 where the file as a whole is meant
+    path: str  # "rotation.angles[1]", in the file's own keys
+    message: str  # what was found and what was expected
+
+    def __str__(self) -> str:
+        place = f"line {self.line}: " if self.line else ""
+        return f"{place}{self.path}: {self.message}" if self.path else f"{place}{self.message}"
+
+
+class SpecError(RigidsymError):
+    """A bad derivation file: all its faults at once."""
+
+    exit_code: ClassVar[int] = 3
+
+    def __init__(self, source: str, faults: Sequence[Fault]) -> None:
+        self.source = source
+        self.faults = tuple(sorted(faults, key=lambda fault: (fault.line, fault.path)))
+        lines = "\n".join(f"  {fault}" for fault in self.faults)
+        count = "1 fault" if len(self.faults) == 1 else f"{len(self.faults)} faults"
+        super().__init__(f"{source}: {count}, nothing written\n{lines}")
+
+
+class MissingTool(RigidsymError):
+    """A program outside Python that is not installed; the message names the Debian packages."""
+
+    exit_code: ClassVar[int] = 4
+
+
+class ToolFailed(RigidsymError):
+    """A program outside Python that ran and failed; the message holds the end of its log."""
+
+
+class KernelError(RigidsymError):
+    """A kernel that cannot be made: no such target, or a function that no target can print."""
+
+    exit_code: ClassVar[int] = 2

@@ -1,0 +1,30 @@
+"""Time, the skew matrix of a vector, and the turns about the coordinate axes."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+TIME = sp.Symbol("t")  # the time symbol of sympy.physics.vector.dynamicsymbols
+AXES = ("x", "y", "z")
+
+
+def time_function(name: str) -> sp.Expr:
+    """The function of time `name`(t), the same object that dynamicsymbols(name) gives."""
+    return sp.Function(name)(TIME)
+
+
+def hat(vector: sp.MatrixBase) -> sp.ImmutableMatrix:
+    """C(u), shape (3, 3), with C(u) v = u × v (lecture, section 3.2)."""
+    x, y, z = vector
+    return sp.ImmutableMatrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+def elementary(axis: str, angle: sp.Expr) -> sp.ImmutableMatrix:
+    """Right-handed active turn by `angle` (radians) about the coordinate axis x, y or z.
+
+    Rodrigues' formula for a unit axis e: 1 + sin β C(e) + (1 − cos β) C(e)². For z and x it is
+    the R_z(β) and R_x(β) printed in the lecture, section 3.2.
+    """
+    unit = sp.Matrix([int(axis == name) for name in AXES])
+    skew = hat(unit)
+    return sp.ImmutableMatrix(sp.eye(3) + sp.sin(angle) * skew + (1 - sp.cos(angle)) * skew * skew)
