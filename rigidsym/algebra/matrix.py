@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from operator import add, sub
 
 from sympy.polys.rings import PolyElement
 
@@ -62,13 +63,17 @@ class RingMatrix:
         )
 
     def __add__(self, other: RingMatrix) -> RingMatrix:
-        pairs = zip(self.rows, other.rows, strict=True)
-        return RingMatrix.of(
-            self.ring, [[a + b for a, b in zip(*rows, strict=True)] for rows in pairs]
-        )
+        return self._entrywise(add, other)
 
     def __sub__(self, other: RingMatrix) -> RingMatrix:
-        return self + other.map(lambda entry: -entry)
+        return self._entrywise(sub, other)
+
+    def _entrywise(
+        self, operation: Callable[[PolyElement, PolyElement], PolyElement], other: RingMatrix
+    ) -> RingMatrix:
+        """Sums and differences of normal forms are normal forms."""
+        pairs = zip(self.rows, other.rows, strict=True)
+        return RingMatrix(self.ring, tuple(tuple(map(operation, *rows)) for rows in pairs))
 
     def map(self, function: Callable[[PolyElement], PolyElement]) -> RingMatrix:
         return RingMatrix.of(self.ring, [[function(entry) for entry in row] for row in self.rows])
@@ -83,42 +88,18 @@ class RingMatrix:
     def is_zero(self) -> bool:
         return not any(self.entries)
 
-    def minor(self, row: int, column: int) -> RingMatrix:
-        """What is left without one row and one column."""
-        return RingMatrix(
-            self.ring,
-            tuple(
-                tuple(entry for j, entry in enumerate(entries) if j != column)
-                for i, entries in enumerate(self.rows)
-                if i != row
-            ),
-        )
-
     def det(self) -> PolyElement:
-        """The determinant, by expansion along the first row."""
-        if len(self.rows) == 1:
-            return self.rows[0][0]
-        first = self.rows[0]
-        terms = (
-            (-1) ** j * entry * self.minor(0, j).det() for j, entry in enumerate(first) if entry
-        )
-        return self.ring.reduce(sum(terms, self.ring.zero))
+        """The determinant of a 3x3 matrix, the triple product of its rows."""
+        first, second, third = self.rows
+        return self.ring.dot(zip(first, cross(self.ring, second, third), strict=True))
 
     def adjugate(self) -> RingMatrix:
-        """adj(M) with M adj(M) = det(M) 1."""
-        size = len(self.rows)
-        if size == 1:
-            return RingMatrix.identity(self.ring, 1)
-        return RingMatrix.of(
-            self.ring,
-            [[(-1) ** (i + j) * self.minor(j, i).det() for j in range(size)] for i in range(size)],
-        )
+        """adj(M) of a 3x3 matrix, with M adj(M) = det(M) 1; its columns are normal to rows."""
+        a, b, c = self.rows
+        columns = (cross(self.ring, b, c), cross(self.ring, c, a), cross(self.ring, a, b))
+        return RingMatrix(self.ring, columns).T
 
 
-def cross(u: Row, v: Row) -> Row:
-    """The cross product of two triples of ring elements, unreduced."""
-    return (
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    )
+def cross(ring: Ring, u: Row, v: Row) -> Row:
+    """The cross product of two triples, in normal form."""
+    return tuple(ring.dot(((u[j], v[k]), (-u[k], v[j]))) for j, k in ((1, 2), (2, 0), (0, 1)))

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import reduce
+from operator import add, mul
 
 from sympy.polys.rings import PolyElement
 
@@ -33,35 +35,25 @@ class Quotient:
     @classmethod
     def sum(cls, ring: Ring, parts: Iterable[Quotient]) -> Quotient:
         """The sum, over one denominator where the parts share it."""
-        total = cls.whole(ring, ring.zero)
-        for part in parts:
-            total = total + part
-        return total
+        return reduce(add, parts, cls.whole(ring, ring.zero))
 
     @classmethod
     def product(cls, ring: Ring, parts: Iterable[Quotient]) -> Quotient:
-        total = cls.whole(ring, ring.one)
-        for part in parts:
-            total = total * part
-        return total
+        return reduce(mul, parts, cls.whole(ring, ring.one))
 
     def __add__(self, other: Quotient) -> Quotient:
         if self.denominator == other.denominator:
             return Quotient(self.ring, self.numerator + other.numerator, self.denominator)
-        reduce = self.ring.reduce
-        return Quotient(
-            self.ring,
-            reduce(self.numerator * other.denominator + other.numerator * self.denominator),
-            reduce(self.denominator * other.denominator),
-        )
+        a, b = (self.numerator, self.denominator), (other.numerator, other.denominator)
+        dot = self.ring.dot
+        return Quotient(self.ring, dot(((a[0], b[1]), (b[0], a[1]))), dot(((a[1], b[1]),)))
 
     def __mul__(self, other: Quotient) -> Quotient:
-        reduce = self.ring.reduce
-        return Quotient(
-            self.ring,
-            reduce(self.numerator * other.numerator),
-            reduce(self.denominator * other.denominator),
-        )
+        dot = self.ring.dot
+        below, other_below = self.denominator, other.denominator
+        if other_below != self.ring.one:
+            below = dot(((below, other_below),))
+        return Quotient(self.ring, dot(((self.numerator, other.numerator),)), below)
 
     def __pow__(self, exponent: int) -> Quotient:
         base = self if exponent >= 0 else self.inverse()

@@ -46,6 +46,8 @@ class Ring:
         self.generators = tuple(generators)
         names = [f"g{index}" for index in range(len(self.generators))]
         self.polynomials = PolyRing(names, sp.QQ if has_fractions else sp.ZZ, grevlex)
+        self.zero: PolyElement = self.polynomials.zero
+        self.one: PolyElement = self.polynomials.one
         self.index = {gen.expression: place for place, gen in enumerate(self.generators)}
         self.relations: tuple[PolyElement, ...] = ()
         self.derivatives: dict[int, PolyElement] = {}
@@ -57,14 +59,6 @@ class Ring:
     def complete(self) -> bool:
         """Whether every relation between the generators is known, so that non-zero is decided."""
         return not any(gen.opaque for gen in self.generators)
-
-    @property
-    def zero(self) -> PolyElement:
-        return self.polynomials.zero
-
-    @property
-    def one(self) -> PolyElement:
-        return self.polynomials.one
 
     def generator(self, place: int) -> PolyElement:
         return self.polynomials.gens[place]
@@ -94,6 +88,8 @@ class Ring:
         times = self.polynomials.monomial_mul
         total: Terms = {}
         for first, second in pairs:
+            if not second:
+                continue
             for monomial, coefficient in first.items():
                 for other, factor in second.items():
                     product = times(monomial, other)
@@ -108,7 +104,7 @@ class Ring:
                 result[monomial] = result.get(monomial, 0) + coefficient
             else:
                 _add(result, coefficient, form)
-        return self.polynomials.from_dict({m: c for m, c in result.items() if c})
+        return self.zero.new({m: c for m, c in result.items() if c})
 
     def _normal_form(self, monomial: Monomial) -> Terms | None:
         """Normal form of one monomial, remembered, since reduction is linear in the monomials.
@@ -149,7 +145,7 @@ class Ring:
             if monomial not in self._monomial_rates:
                 self._monomial_rates[monomial] = self._monomial_rate(monomial)
             _add(result, coefficient, self._monomial_rates[monomial])
-        return self.polynomials.from_dict({m: c for m, c in result.items() if c})
+        return self.zero.new({m: c for m, c in result.items() if c})
 
     def _monomial_rate(self, monomial: Monomial) -> PolyElement:
         """d/dt of one monomial, by the product rule; `dt` remembers it."""

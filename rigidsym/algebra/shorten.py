@@ -8,10 +8,11 @@ relation, never to a longer one.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from operator import sub
 
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.ring import Monomial, Ring
+from rigidsym.algebra.ring import Ring
 
 _MOST_STEPS = 60
 
@@ -43,16 +44,8 @@ def _neighbours(ring: Ring, element: PolyElement) -> Iterator[PolyElement]:
     """Each polynomial in which one term was replaced by means of one relation."""
     for relation in ring.relations:
         for part, factor in relation.items():
-            if not any(part):
-                continue
-            for monomial, coefficient in element.items():
-                rest = _divided(monomial, part)
-                if rest is not None and not coefficient % factor:
+            needed = [(place, power) for place, power in enumerate(part) if power]
+            for monomial, coefficient in element.items() if needed else ():
+                if all(monomial[k] >= power for k, power in needed) and not coefficient % factor:
+                    rest = tuple(map(sub, monomial, part))
                     yield element - relation.mul_term((rest, coefficient // factor))
-
-
-def _divided(monomial: Monomial, part: Monomial) -> Monomial | None:
-    """monomial / part, or None where it does not divide."""
-    if any(need > have for have, need in zip(monomial, part, strict=True)):
-        return None
-    return tuple(have - need for have, need in zip(monomial, part, strict=True))

@@ -6,7 +6,10 @@ differs, for the passive one (A = Rᵀ, the direction cosine matrix).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from types import MappingProxyType
 
 from rigidsym.derive.claims import fill, rate_of, spin_of, transpose_of
 from rigidsym.derive.derivation import Markup, Quantity
@@ -214,7 +217,8 @@ def _accelerations() -> tuple[Quantity, ...]:
     )
 
 
-def quantities(*, passive: bool) -> dict[str, Quantity]:
+@cache
+def quantities(*, passive: bool) -> Mapping[str, Quantity]:
     """All quantities by name, in the order of the derivation."""
     table = (
         *(_passive() if passive else _active()),
@@ -222,7 +226,7 @@ def quantities(*, passive: bool) -> dict[str, Quantity]:
         *_rates(BODY),
         *_accelerations(),
     )
-    return {quantity.name: quantity for quantity in table}
+    return MappingProxyType({quantity.name: quantity for quantity in table})
 
 
 QUANTITY_NAMES = tuple(quantities(passive=False))

@@ -90,8 +90,8 @@ def _half_turns(offset: Fraction, rate: Fraction) -> Iterator[tuple[Fraction, in
 def _at(zero: Zero, matrix: RingMatrix, rotation: RingMatrix, presenter: Presenter) -> Singularity:
     coordinate, value, becomes = zero
     there = matrix.map(lambda entry: _substituted(entry, becomes))
-    lost = _normal_to(there.T.rows)
-    idle = _normal_to(there.rows)
+    lost = _normal_to(there.T)
+    idle = _normal_to(there)
     body = None
     if lost is not None:
         turned = rotation.map(lambda entry: _substituted(entry, becomes))
@@ -124,10 +124,10 @@ def _rank(matrix: RingMatrix) -> int:
     return int(any(matrix.entries))
 
 
-def _normal_to(vectors: Sequence[Row]) -> Row | None:
-    """A direction at right angles to three vectors that span a plane; None where they do not."""
-    for u, v in combinations(vectors, 2):
-        normal = cross(u, v)
+def _normal_to(matrix: RingMatrix) -> Row | None:
+    """A direction at right angles to three rows that span a plane; None where they do not."""
+    for u, v in combinations(matrix.rows, 2):
+        normal = cross(matrix.ring, u, v)
         if any(normal):
             return _primitive(normal)
     return None

@@ -1,0 +1,137 @@
+"""Derivation -> plain data for programs: what `--json` prints and `NAME.json` holds.
+
+Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot"), which
+`rigidsym.expression` reads back. A change that breaks readers raises SCHEMA_VERSION.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import sympy as sp
+
+from rigidsym import __version__
+from rigidsym.derive.derivation import (
+    Argument,
+    Derivation,
+    Markup,
+    Proof,
+    Singularities,
+    Singularity,
+    Step,
+)
+
+SCHEMA = "rigidsym.derivation"
+SCHEMA_VERSION = 1
+
+Names = Mapping[sp.Expr, sp.Symbol]
+
+
+def record(derivation: Derivation, request: Mapping[str, Any]) -> dict[str, Any]:
+    """All of a derivation as dictionaries, lists, strings, numbers and booleans.
+
+    `request` is the data that asked for it, from which `rigidsym check` derives it again.
+    """
+    names = _plain_names(derivation.arguments)
+    return {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "generator": f"rigidsym {__version__}",
+        "name": derivation.name,
+        "title": derivation.title,
+        "presentation": "passive" if derivation.model.passive else "active",
+        "convention": list(derivation.model.convention),
+        "source": str(derivation.model.source),
+        "is_proved": derivation.is_proved,
+        "request": dict(request),
+        "arguments": [_argument(argument) for argument in derivation.arguments],
+        "quantities": [_step(step, names) for step in derivation.steps],
+        "singularities": _singularities(derivation.singularities, names),
+    }
+
+
+def _plain_names(arguments: tuple[Argument, ...]) -> Names:
+    """Symbols in place of functions of time, highest derivatives first to be replaced first."""
+    return {
+        expression: sp.Symbol(name)
+        for argument in reversed(arguments)
+        for expression, name in zip(argument.symbols, argument.names, strict=True)
+    }
+
+
+def _argument(argument: Argument) -> dict[str, Any]:
+    components = zip(argument.names, argument.units, argument.notation, strict=True)
+    return {
+        "name": argument.name,
+        "about": argument.about,
+        "components": [
+            {"name": name, "unit": unit, **_markup(notation)}
+            for name, unit, notation in components
+        ],
+    }
+
+
+def _step(step: Step, names: Names) -> dict[str, Any]:
+    quantity = step.quantity
+    return {
+        "number": step.number,
+        "name": quantity.name,
+        "about": quantity.about,
+        "unit": quantity.unit,
+        "symbol": _markup(quantity.symbol),
+        "inputs": list(quantity.inputs),
+        "shape": list(step.shape),
+        "expression": _entries(step.expression, names, is_vector=quantity.is_vector),
+        "because": step.because,
+        "source": str(quantity.source) if quantity.source else None,
+        "proofs": [_proof(proof, names) for proof in step.proofs],
+    }
+
+
+def _proof(proof: Proof, names: Names) -> dict[str, Any]:
+    left = proof.residual
+    return {
+        "claim": _markup(proof.claim),
+        "status": proof.status,
+        "residual": None if left is None else _entries(left, names, is_vector=False),
+    }
+
+
+def _singularities(found: Singularities | None, names: Names) -> dict[str, Any] | None:
+    if found is None:
+        return None
+    return {
+        "determinant": _plain(found.determinant, names),
+        "is_solved": found.is_solved,
+        "points": [_point(point, names) for point in found.points],
+    }
+
+
+def _point(point: Singularity, names: Names) -> dict[str, Any]:
+    return {
+        "coordinate": _plain(point.coordinate, names),
+        "value": str(point.value),
+        "modulo": "2*pi",
+        "rank": point.rank,
+        "lost_direction_space": _vector(point.lost_space, names),
+        "lost_direction_body": _vector(point.lost_body, names),
+        "undetermined_rates": _vector(point.undetermined, names),
+    }
+
+
+def _markup(markup: Markup) -> dict[str, str]:
+    return {"latex": markup.latex, "text": markup.text}
+
+
+def _vector(column: sp.ImmutableMatrix | None, names: Names) -> list[str] | None:
+    return None if column is None else [_plain(entry, names) for entry in column]
+
+
+def _entries(matrix: sp.ImmutableMatrix, names: Names, *, is_vector: bool) -> list[Any]:
+    rows = [[_plain(entry, names) for entry in row] for row in matrix.tolist()]
+    return [row[0] for row in rows] if is_vector else rows
+
+
+def _plain(expression: sp.Expr, names: Names) -> str:
+    return str(expression.xreplace(names))
