@@ -12,7 +12,13 @@ from functools import lru_cache
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.angles import Combination, combination, common_fractions
+from rigidsym.algebra.angles import (
+    Combination,
+    combination,
+    common_fractions,
+    cosine_sine_of_pi,
+    not_exact,
+)
 from rigidsym.errors import AlgebraError
 
 TIME = sp.Symbol("t")  # the time symbol of sympy.physics.vector.dynamicsymbols
@@ -29,6 +35,12 @@ class Kind(IntEnum):
     OPAQUE = 4  # any other function: its relations are not known
     TIME_FUNCTION = 5  # a coordinate or one of its derivatives
     CONSTANT = 6
+
+
+# Generators whose relations to the others may not all be known: √6 and √(x² + 1) may depend on
+# what else there is, and a function that the ring does not know depends on anything.
+UNCERTAIN = frozenset({Kind.RADICAL, Kind.OPAQUE})
+_MONIC = frozenset({Kind.SINE, Kind.COSINE, Kind.TIME_FUNCTION, Kind.CONSTANT})
 
 
 @lru_cache(maxsize=1024)
@@ -56,7 +68,7 @@ class Request:
 
     def __init__(self, order: int) -> None:
         self.order = order
-        self.has_fractions = False  # whether whole numbers do not suffice as coefficients
+        self._has_fractions = False
         self.kinds: dict[sp.Expr, Kind] = {}
         self._angles: list[Combination] = []
         self._atoms: set[sp.Expr] = set()  # what sines and cosines are taken of
@@ -74,6 +86,15 @@ class Request:
     def fractions(self) -> Combination:
         """{atom: fraction}: sines and cosines are generators at fraction·atom."""
         return common_fractions(self._angles)
+
+    @property
+    def needs_fractions(self) -> bool:
+        """Whether coefficients in Z do not suffice: for fractions, or to divide by relations."""
+        return (
+            self._has_fractions
+            or not _MONIC.issuperset(self.kinds.values())
+            or any(not fraction.is_Integer for fraction in self.fractions.values())
+        )
 
     def close(self) -> None:
         """Take the time derivatives of all that was found, until nothing new appears."""
@@ -96,7 +117,7 @@ class Request:
         elif isinstance(expression, sp.sin | sp.cos):
             self._collect_angle(expression.args[0])
         elif expression.is_Rational:
-            self.has_fractions = self.has_fractions or not expression.is_Integer
+            self._has_fractions = self._has_fractions or not expression.is_Integer
         else:
             self._add(expression, _kind(expression))
 
@@ -111,12 +132,11 @@ class Request:
 
     def _collect_angle(self, argument: sp.Expr) -> None:
         terms = combination(argument)
-        for atom in terms:
-            if atom is sp.S.One:
-                raise AlgebraError(f"sin or cos of the number {argument} is not in the ring")
+        if sp.S.One in terms:
+            raise AlgebraError(f"sin and cos of {argument} are not in the ring: name the number")
         if sp.pi in terms:
-            self.collect(sp.sin(terms[sp.pi] * sp.pi))
-            self.collect(sp.cos(terms[sp.pi] * sp.pi))
+            for value in cosine_sine_of_pi(terms[sp.pi]):
+                self.collect(value)
         self._angles.append(terms)
         for atom in terms:
             if atom is not sp.pi and atom not in self._atoms:
@@ -164,10 +184,7 @@ def _kind(expression: sp.Expr) -> Kind:
     if expression.is_Symbol or isinstance(expression, sp.NumberSymbol):
         return Kind.CONSTANT
     if expression.is_Float:
-        raise AlgebraError(
-            f"{expression} is a floating-point number; exact work needs a fraction such as "
-            f"{sp.nsimplify(expression, rational=True)}"
-        )
+        raise not_exact(expression)
     if isinstance(expression, sp.Function | sp.Pow) and not expression.has(sp.zoo, sp.nan, sp.oo):
         return Kind.OPAQUE
     raise AlgebraError(f"{expression} ({type(expression).__name__}) is not in the ring")

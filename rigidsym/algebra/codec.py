@@ -8,8 +8,16 @@ from functools import cached_property, lru_cache
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.adjoin import Kind, Request, as_sine_cosine, is_highest, rate_of, roots_of
-from rigidsym.algebra.angles import Combination, combination
+from rigidsym.algebra.adjoin import (
+    UNCERTAIN,
+    Kind,
+    Request,
+    as_sine_cosine,
+    is_highest,
+    rate_of,
+    roots_of,
+)
+from rigidsym.algebra.angles import Combination, combination, cosine_sine_of_pi
 from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.ring import Generator, Ring
 from rigidsym.errors import AlgebraError
@@ -36,7 +44,7 @@ def codec_for(
         tuple(request.fractions.items()),
         held_to,
         order,
-        request.has_fractions,
+        request.needs_fractions or bool(held_to),
     )
 
 
@@ -48,7 +56,7 @@ def _shared(
     order: int,
     has_fractions: bool,
 ) -> Codec:
-    generators = [Generator(expression=e, opaque=kind is Kind.OPAQUE) for e, kind in found]
+    generators = [Generator(expression=e, opaque=kind in UNCERTAIN) for e, kind in found]
     codec = Codec(Ring(generators, has_fractions=has_fractions), dict(fractions))
     codec.settle(found, constraints, order)
     return codec
@@ -158,8 +166,12 @@ class Codec:
             return Quotient.whole(ring, sine if isinstance(expression, sp.sin) else cosine)
         parts = as_sine_cosine(expression)
         if parts is not None:
-            return self.encode_quotient(parts[0]) * self.encode_quotient(parts[1]).inverse()
-        raise AlgebraError(f"{expression} is not in the ring of {self._names()}")
+            return self.encode_quotient(parts[0]) * self._whole_power(parts[1], -1)
+        raise self._foreign(expression)
+
+    def _foreign(self, expression: sp.Expr) -> AlgebraError:
+        names = ", ".join(str(gen.expression) for gen in self.ring.generators)
+        return AlgebraError(f"{expression} is not in the ring of {names}")
 
     def _number(self, numerator: int, denominator: int) -> Quotient:
         polynomials = self.ring.polynomials
@@ -174,8 +186,13 @@ class Codec:
         if exponent.q == 1:
             return self._whole_power(base, whole)
         counts = sp.factorint(base).values() if base.is_Integer else [1]
-        roots = zip(roots_of(base, exponent.q), counts, strict=True)
-        factors = [self._whole_power(root, count * whole) for root, count in roots]
+        roots = roots_of(base, exponent.q)
+        if any(root not in self.ring.index for root in roots):
+            raise self._foreign(base**exponent)
+        factors = [
+            self._whole_power(root, count * whole)
+            for root, count in zip(roots, counts, strict=True)
+        ]
         return Quotient.product(self.ring, factors)
 
     def _whole_power(self, base: sp.Expr, exponent: int) -> Quotient:
@@ -197,11 +214,12 @@ class Codec:
 
     def _multiple(self, atom: sp.Expr, coefficient: sp.Rational) -> Pair:
         if atom is sp.pi:
-            return self.encode(sp.cos(coefficient * atom)), self.encode(sp.sin(coefficient * atom))
+            cosine, sine = cosine_sine_of_pi(coefficient)
+            return self.encode(cosine), self.encode(sine)
         fraction = self._fractions.get(atom)
         times = coefficient / fraction if fraction else sp.nan
         if not times.is_Integer:
-            raise AlgebraError(f"sin and cos of {coefficient * atom} are not in the ring")
+            raise self._foreign(sp.sin(coefficient * atom))
         index, ring = self.ring.index, self.ring
         cosine = ring.generator(index[sp.cos(fraction * atom)])
         sine = ring.generator(index[sp.sin(fraction * atom)])
@@ -228,6 +246,3 @@ class Codec:
                 for monomial, coefficient in element.items()
             )
         )
-
-    def _names(self) -> str:
-        return ", ".join(str(gen.expression) for gen in self.ring.generators)

@@ -31,7 +31,7 @@ class Generator:
     """One indeterminate of the ring and the SymPy expression it stands for."""
 
     expression: sp.Expr
-    opaque: bool = False  # a function whose relations the ring does not know
+    opaque: bool = False  # whether relations of it may be missing from the ring
 
 
 class Ring:
