@@ -25,20 +25,27 @@ class Motion(Derivation):
     def kernels(self, target: str = "numpy") -> KernelModule:
         """The module of functions for one target: `.source`, `.load()`, `.write(path)`.
 
-        Raises TargetError for an unknown target.
+        Raises KernelError for an unknown target.
         """
         from rigidsym.kernels.module import generate
 
         return generate(self, target)
 
-    def note(self) -> Note:
-        """The document that shows the derivation: `.latex()`."""
+    def note(self, *, with_kernels: bool = True) -> Note:
+        """The document that shows the derivation: `.latex()`.
+
+        `with_kernels` names the functions of the NumPy module beside their equations.
+        """
         from rigidsym.notes.note import note
 
-        return note(self)
+        return note(self, module=f"{self.name}.py" if with_kernels else None)
 
 
 def derive(model: RotationModel) -> Motion:
-    """The proved kinematics of a rotation model; see `rigidsym.derive.kinematics.derive`."""
+    """The proved kinematics of a rotation model.
+
+    Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over, and
+    AlgebraError for expressions that the ring cannot hold.
+    """
     derivation = kinematics.derive(model)
     return Motion(**{field.name: getattr(derivation, field.name) for field in fields(derivation)})

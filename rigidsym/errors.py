@@ -91,3 +91,9 @@ class KernelError(RigidsymError):
     """A kernel that cannot be made: no such target, or a function that no target can print."""
 
     exit_code: ClassVar[int] = 2
+
+
+class CheckError(RigidsymError):
+    """A path that `rigidsym check` cannot check: no record of a derivation there."""
+
+    exit_code: ClassVar[int] = 2

@@ -66,8 +66,7 @@ def _argument(argument: Argument) -> dict[str, Any]:
         "name": argument.name,
         "about": argument.about,
         "components": [
-            {"name": name, "unit": unit, **_markup(notation)}
-            for name, unit, notation in components
+            {"name": name, "unit": unit, **_markup(notation)} for name, unit, notation in components
         ],
     }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 
 import sympy as sp
+from sympy.printing.conventions import split_super_sub
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.derive.derivation import Argument, Markup
@@ -51,8 +52,19 @@ def _derivative(coordinate: sp.Expr, order: int) -> sp.Expr:
 
 @lru_cache(maxsize=1024)
 def _marked(label: str, accent: str, combining: str) -> Markup:
+    """A coordinate's name with its dots, which stand above the first letter: φ̇₁, ḣeading."""
+    head, above, below = split_super_sub(label)
+    latex = sp.latex(sp.Symbol(head))
+    if latex != head or len(head) == 1:
+        latex = accent.format(latex)
+    elif combining:  # a word, not a product of letters
+        latex = accent.format(rf"\mathit{{{head[0]}}}") + rf"\mathit{{{head[1:]}}}"
+    else:
+        latex = rf"\mathit{{{head}}}"
+    latex += f"_{{{' '.join(below)}}}" if below else ""
+    latex += f"^{{{' '.join(above)}}}" if above else ""
     pretty = pretty_symbol(label)
-    return Markup(accent.format(sp.latex(sp.Symbol(label))), pretty[0] + combining + pretty[1:])
+    return Markup(latex, pretty[0] + combining + pretty[1:])
 
 
 def _per_second(unit: str, order: int) -> str:

@@ -17,6 +17,10 @@ def rate_of(matrix: Markup) -> Markup:
     return fill(r"\frac{{d{0}}}{{dt}}", "d{0}/dt", matrix)
 
 
+def rate_of_whole(product: Markup) -> Markup:
+    return fill(r"\frac{{d}}{{dt}}\left({0}\right)", "d({0})/dt", product)
+
+
 def transpose_of(matrix: Markup) -> Markup:
     return fill(r"{0}^{{\mathsf T}}", "{0}ᵀ", matrix)
 

@@ -15,7 +15,7 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.derive import claims
 from rigidsym.derive.arguments import arguments_of
-from rigidsym.derive.derivation import Derivation, Markup, Proof, Singularities, Step
+from rigidsym.derive.derivation import Derivation, Proof, Singularities, Step
 from rigidsym.derive.prove import Prover
 from rigidsym.derive.quantities import (
     ALPHA,
@@ -60,7 +60,7 @@ class _Kinematics:
     def __init__(self, model: RotationModel) -> None:
         self.model = model
         self.arguments = {argument.name: argument for argument in arguments_of(model)}
-        inputs = [s for argument in self.arguments.values() for s in argument.symbols]
+        inputs = [s for name, a in self.arguments.items() if name != "q" for s in a.symbols]
         self.codec = codec_for([*model.matrix, *inputs], constraints=model.constraints, order=2)
         self.ring = self.codec.ring
         self.present = presenter_for(self.codec)
@@ -191,7 +191,7 @@ class _Kinematics:
             "The space components of the angular velocity are differentiated.",
             self.prove.vanishes(
                 second - _hat(space),
-                claims.is_operator(ALPHA, claims.rate_of(_bracketed(claims.spin_of(ROTATION)))),
+                claims.is_operator(ALPHA, claims.rate_of_whole(claims.spin_of(ROTATION))),
             ),
         )
         self._add(
@@ -247,10 +247,6 @@ def _hat(vector: RingMatrix) -> RingMatrix:
     x, y, z = vector.entries
     zero = vector.ring.zero
     return RingMatrix.of(vector.ring, [[zero, -z, y], [z, zero, -x], [-y, x, zero]])
-
-
-def _bracketed(symbol: Markup) -> Markup:
-    return claims.fill(r"\left({0}\right)", "({0})", symbol)
 
 
 def _first_sentence(model: RotationModel) -> str:

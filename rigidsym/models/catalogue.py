@@ -8,9 +8,10 @@ from functools import reduce
 import sympy as sp
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
-from rigidsym.errors import ModelError
+from rigidsym.errors import ExpressionError, ModelError
 from rigidsym.models.rotation import Citation, RotationModel, Turn, lecture
 from rigidsym.models.so3 import AXES, elementary, time_function
+from rigidsym.names import check_name
 
 AXIS_SEQUENCES = tuple(
     first + second + third
@@ -80,9 +81,13 @@ def _what_is_wrong(text: str) -> str:
 
 
 def _three_names(angles: Sequence[str]) -> Sequence[str]:
-    if len(angles) != 3 or len(set(angles)) != 3:
+    try:
+        plain = [check_name(angle) for angle in angles]
+    except ExpressionError as error:
+        raise ModelError(f"an angle has no good name: {error}") from error
+    if len(plain) != 3 or len(set(plain)) != 3:
         raise ModelError(f"Euler angles need three different names, got {', '.join(angles)}")
-    return angles
+    return plain
 
 
 def _product(turns: Sequence[Turn]) -> sp.ImmutableMatrix:

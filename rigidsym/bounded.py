@@ -1,0 +1,168 @@
+"""Arithmetic on expressions that refuses what is too large before it is computed.
+
+SymPy computes at once: 9**9**9 in full, the sign of sin(exp(1e40)) to as many digits as it takes,
+the prime factors of a number under a root. Whoever reads a text that strangers wrote works with
+these operations instead; each takes the column of the text, for the message.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import ceil, comb
+
+import sympy as sp
+
+from rigidsym.errors import ExpressionError
+
+_OPERATIONS: dict[type[ast.operator], Callable[[sp.Expr, sp.Expr], sp.Expr]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
+
+_LIMITS = {"degree": 64, "number of terms": 2000, "number of binary digits": 4096}
+_HIGHEST_EXPONENT = 64
+_HIGHEST_INSIDE = 8  # degree of the argument of a function
+_LARGEST_CONSTANT = 1000  # as the argument of a function
+_LONGEST_ROOT = 64  # binary digits of a number under a root
+
+FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
+    "sin": sp.sin,
+    "cos": sp.cos,
+    "tan": sp.tan,
+    "cot": sp.cot,
+    "sec": lambda angle: 1 / sp.cos(angle),  # SymPy's own raises AttributeError for some sums
+    "csc": lambda angle: 1 / sp.sin(angle),
+    "asin": sp.asin,
+    "acos": sp.acos,
+    "atan": sp.atan,
+    "atan2": sp.atan2,
+    "sinh": sp.sinh,
+    "cosh": sp.cosh,
+    "tanh": sp.tanh,
+    "exp": sp.exp,
+    "log": sp.log,
+    "sqrt": sp.sqrt,
+    "abs": sp.Abs,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Sized:
+    """An expression, and bounds on what it would become if it were multiplied out."""
+
+    expression: sp.Expr
+    degree: int
+    terms: int
+    bits: int  # binary digits of the numbers in it
+
+    @classmethod
+    def number(cls, value: sp.Rational) -> Sized:
+        return cls(value, 0, 1, _bits(value))
+
+    @classmethod
+    def atom(cls, expression: sp.Expr, bits: int = 1) -> Sized:
+        return cls(expression, 1, 1, bits)
+
+
+def operate(operation: ast.operator, left: Sized, right: Sized, column: int) -> Sized:
+    """left + right, -, *, / or **; raises ExpressionError for another and for what is too large."""
+    if isinstance(operation, ast.Pow):
+        return _power(left, right, column)
+    compute = _OPERATIONS.get(type(operation))
+    if compute is None:
+        raise ExpressionError(f"{type(operation).__name__} is not taken", column=column)
+    if isinstance(operation, ast.Div) and right.expression == 0:
+        raise ExpressionError("division by zero", column=column)
+    bits = left.bits + right.bits + 1
+    if isinstance(operation, ast.Add | ast.Sub):
+        degree, terms = max(left.degree, right.degree), left.terms + right.terms
+    else:
+        degree, terms = left.degree + right.degree, left.terms * right.terms
+    _check_size(degree, terms, bits, column)
+    return Sized(compute(left.expression, right.expression), degree, terms, bits)
+
+
+def _power(base: Sized, exponent: Sized, column: int) -> Sized:
+    power = exponent.expression
+    if not power.is_Rational:
+        raise ExpressionError(
+            "expected a number for an exponent, such as 2 or (1/2); of e, write exp(...)",
+            column=column,
+        )
+    if abs(power) > _HIGHEST_EXPONENT or power.q > _HIGHEST_EXPONENT:
+        raise ExpressionError(
+            f"expected an exponent between -{_HIGHEST_EXPONENT} and {_HIGHEST_EXPONENT}",
+            column=column,
+        )
+    if power < 0 and base.expression == 0:
+        raise ExpressionError("division by zero", column=column)
+    if power.q > 1 and _longest_number(base.expression) > _LONGEST_ROOT:
+        raise ExpressionError(
+            "too large to work with: a root of a number with too many digits", column=column
+        )
+    times = ceil(abs(power))
+    degree, bits = base.degree * times, base.bits * times + 1
+    terms = comb(base.terms + times - 1, times)
+    _check_size(degree, terms, bits, column)
+    value = base.expression**power
+    _check_value(value, "a power", column)
+    return Sized(value, degree, terms, bits)
+
+
+def _longest_number(expression: sp.Expr) -> int:
+    """Binary digits of the longest number in it: SymPy factors those under a root."""
+    return max(map(_bits, expression.atoms(sp.Rational)), default=0)
+
+
+def _bits(number: sp.Rational) -> int:
+    return int(number.p).bit_length() + int(number.q).bit_length()
+
+
+def apply(function: str, arguments: Sequence[Sized], column: int) -> Sized:
+    """The value of one of FUNCTIONS; raises ExpressionError where it is not finite and real."""
+    if function == "sqrt":
+        return _power(arguments[0], Sized.number(sp.Rational(1, 2)), column)
+    expressions = [argument.expression for argument in arguments]
+    if function == "exp" and expressions[0].has(sp.log):
+        # SymPy turns exp(n*log(2)) into 2**n at once, however large n is.
+        raise ExpressionError("a logarithm inside exp; write a power instead", column=column)
+    for argument in arguments:
+        _check_argument(argument, column)
+    value = FUNCTIONS[function](*expressions)
+    _check_value(value, function, column)
+    return Sized.atom(value, bits=sum(argument.bits for argument in arguments) + 1)
+
+
+def _check_argument(argument: Sized, column: int) -> None:
+    """Refuse what SymPy, looking for signs and real parts, takes for ever over: sin(exp(1e40))."""
+    most = _LARGEST_CONSTANT
+    numbers = [term for term in sp.Add.make_args(argument.expression) if term.is_number]
+    if argument.degree > _HIGHEST_INSIDE:
+        fault = f"a degree above {_HIGHEST_INSIDE} inside a function"
+    elif any(number.has(sp.Function) for number in numbers):
+        fault = "a function of a function of numbers alone"
+    elif any(not -most <= number <= most for number in numbers):
+        fault = f"a number outside -{most} to {most} inside a function"
+    else:
+        return
+    raise ExpressionError(f"too large to work with: {fault}", column=column)
+
+
+def _check_size(degree: int, terms: int, bits: int, column: int) -> None:
+    for (name, most), size in zip(_LIMITS.items(), (degree, terms, bits), strict=True):
+        if size > most:
+            raise ExpressionError(
+                f"too large to work with: multiplied out, a {name} above {most}", column=column
+            )
+
+
+def _check_value(value: sp.Expr, what: str, column: int) -> None:
+    if value.has(sp.zoo, sp.oo, -sp.oo, sp.nan):
+        raise ExpressionError(f"{what} of this has no finite value", column=column)
+    if value.has(sp.I) or (value.is_number and value.is_real is False):
+        raise ExpressionError(f"{what} of this is not a real number", column=column)

@@ -1,0 +1,51 @@
+"""What there is: rotations, quantities, targets, shipped derivations. `rigidsym list` prints it."""
+
+from __future__ import annotations
+
+import tomllib
+
+from rigidsym.derive.quantities import quantities
+from rigidsym.kernels.targets import TARGETS
+from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
+from rigidsym.notes.measure import columns
+from rigidsym.resources import names, text
+
+
+def inventory() -> str:
+    """The whole list, as text."""
+    sections = (
+        ("Rotations (upper case: about turning axes; lower case: about fixed axes)", _rotations()),
+        ("Quantities", _quantities()),
+        (
+            "Targets of the kernels",
+            [f"{name:<12} {target.about}" for name, target in TARGETS.items()],
+        ),
+        ("Shipped derivations (rigidsym run NAME)", _shipped()),
+    )
+    blocks = ["\n".join([title, *(f"  {line}" for line in lines)]) for title, lines in sections]
+    return "\n\n".join(blocks)
+
+
+def _rotations() -> list[str]:
+    models = [(sequence, EulerAngles(sequence)) for sequence in EULER_SEQUENCES]
+    return [f"{sequence}  R = {model.product}" for sequence, model in models]
+
+
+def _quantities() -> list[str]:
+    return [
+        f"{quantity.name:<34} {_padded(quantity.symbol.text, 9)} {quantity.about}"
+        for quantity in quantities(passive=False).values()
+    ]
+
+
+def _padded(text: str, width: int) -> str:
+    """The text and blanks, by the columns that it takes on a screen."""
+    return text + " " * (width - columns(text))
+
+
+def _shipped() -> list[str]:
+    shipped = names("derivations", ".toml")
+    titles = [
+        tomllib.loads(text("derivations", f"{name}.toml")).get("title", "") for name in shipped
+    ]
+    return [f"{name:<16} {title}" for name, title in zip(shipped, titles, strict=True)]

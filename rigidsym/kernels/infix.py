@@ -1,0 +1,54 @@
+"""Expressions as text in the infix notation that Python, C and JavaScript share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+from rigidsym.kernels.ir import Call, Expression, Name, Negative, Number, Product, Sum
+
+_SUM, _PRODUCT, _ATOM = range(3)  # how tightly a piece of text holds together
+
+
+def infix(expression: Expression, functions: Mapping[str, str]) -> str:
+    """The expression in one line; `functions` are the target's names for sin, cos and sqrt."""
+    return _text(expression, functions)[0]
+
+
+def literal(value: Fraction | float) -> str:
+    """A number as a literal of a floating-point type; a fraction that is none, as a quotient."""
+    if Fraction(float(value)) == value:
+        return repr(float(value))
+    fraction = Fraction(value)
+    return f"{float(fraction.numerator)!r} / {float(fraction.denominator)!r}"
+
+
+def _text(expression: Expression, functions: Mapping[str, str]) -> tuple[str, int]:
+    """The text, and how tightly it holds together."""
+
+    def within(part: Expression, tightness: int) -> str:
+        text, held = _text(part, functions)
+        return text if held >= tightness else f"({text})"
+
+    match expression:
+        case Name(text):
+            return text, _ATOM
+        case Number(value):
+            text = literal(value)
+            return text, _PRODUCT if "/" in text else _ATOM
+        case Call(function, argument):
+            return f"{functions[function]}({argument.text})", _ATOM
+        case Negative(operand):
+            return f"-{within(operand, _PRODUCT)}", _SUM
+        case Sum(terms):
+            first, *others = (within(term, _SUM) for term in terms)
+            signed = (f"- {t[1:]}" if t.startswith("-") else f"+ {t}" for t in others)
+            return " ".join([first, *signed]), _SUM
+        case Product(factors, divisors):
+            above = " * ".join(within(factor, _PRODUCT) for factor in factors)
+            if not divisors:
+                return above, _PRODUCT
+            if len(divisors) == 1:
+                return f"{above} / {within(divisors[0], _ATOM)}", _PRODUCT
+            below = " * ".join(within(divisor, _PRODUCT) for divisor in divisors)
+            return f"{above} / ({below})", _PRODUCT

@@ -1,0 +1,242 @@
+"""What a kernel computes, in no language yet: single assignment, every name defined before use.
+
+Expressions are trees of the six nodes below, over names. What is shared has a name; a call of a
+function (sine, cosine, square root) always has one, so that it is made once.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import prod
+
+from rigidsym.errors import KernelError
+
+FUNCTIONS = ("sin", "cos", "sqrt")  # what every target must be able to call
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """The value of an input or of an assignment."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """An exact number, or the nearest double of an irrational one."""
+
+    value: Fraction | float
+
+
+@dataclass(frozen=True, slots=True)
+class Negative:
+    """Minus the operand; as a term of a sum after the first, a subtraction."""
+
+    operand: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Sum:
+    """The terms, added from left to right."""
+
+    terms: tuple[Expression, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """The factors, multiplied from left to right, over the product of the divisors."""
+
+    factors: tuple[Expression, ...]
+    divisors: tuple[Expression, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A function of one name."""
+
+    function: str  # one of FUNCTIONS
+    argument: Name
+
+
+Expression = Name | Number | Negative | Sum | Product | Call
+
+
+def parts(expression: Expression) -> tuple[Expression, ...]:
+    """The expressions that one node is made of."""
+    match expression:
+        case Negative(operand):
+            return (operand,)
+        case Sum(terms):
+            return terms
+        case Product(factors, divisors):
+            return factors + divisors
+        case Call(_, argument):
+            return (argument,)
+    return ()
+
+
+def walk(expression: Expression) -> Iterator[Expression]:
+    """The expression and all that it is made of, the whole before its parts."""
+    yield expression
+    for part in parts(expression):
+        yield from walk(part)
+
+
+def names_in(expression: Expression) -> Iterator[str]:
+    return (node.text for node in walk(expression) if isinstance(node, Name))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Operations:
+    """What one value of a kernel costs; subtractions count as additions."""
+
+    trigonometric: int = 0
+    roots: int = 0
+    multiplications: int = 0
+    divisions: int = 0
+    additions: int = 0
+    negations: int = 0
+
+    @property
+    def total(self) -> int:
+        return sum(count for count, _, _ in self._table())
+
+    def _table(self) -> tuple[tuple[int, str, str], ...]:
+        return (
+            (self.trigonometric, "sine or cosine", "sines and cosines"),
+            (self.roots, "square root", "square roots"),
+            (self.multiplications, "multiplication", "multiplications"),
+            (self.divisions, "division", "divisions"),
+            (self.additions, "addition", "additions"),
+            (self.negations, "change of sign", "changes of sign"),
+        )
+
+    def __str__(self) -> str:
+        counts = [f"{n} {one if n == 1 else many}" for n, one, many in self._table() if n]
+        total = f"{self.total} operation{'' if self.total == 1 else 's'}"
+        return f"{total}: {', '.join(counts)}" if counts else "no operations"
+
+
+def count(expressions: Iterable[Expression]) -> Operations:
+    """The operations in expressions as they are written."""
+    counts: Counter[str] = Counter()
+    for node in (node for expression in expressions for node in walk(expression)):
+        match node:
+            case Call(function):
+                counts["roots" if function == "sqrt" else "trigonometric"] += 1
+            case Product(factors, divisors):
+                counts["multiplications"] += len(factors) - 1 + max(len(divisors) - 1, 0)
+                counts["divisions"] += bool(divisors)
+            case Sum(terms):
+                counts["additions"] += len(terms) - 1
+                counts["negations"] -= sum(isinstance(term, Negative) for term in terms[1:])
+            case Negative():
+                counts["negations"] += 1
+    return Operations(**counts)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Argument:
+    """A vector of inputs, shape (n,), and the names of its components."""
+
+    name: str
+    components: tuple[str, ...]
+    units: tuple[str, ...]
+    about: str
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """One name and its value."""
+
+    name: str
+    value: Expression
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kernel:
+    """One quantity as a function of vectors: assignments in order, then the outputs by rows.
+
+    Raises KernelError where a name is used before it is defined or defined twice, a call stands
+    inside an expression, or the number of outputs does not fit the shape.
+    """
+
+    name: str
+    arguments: tuple[Argument, ...]
+    assignments: tuple[Assignment, ...]
+    outputs: tuple[Expression, ...]
+    shape: tuple[int, ...]
+    equation: int  # its number in the note
+    symbol: str  # Unicode, one line: "Ω′"
+    definition: str  # Unicode, one line: "Rᵀ Ω"; may be empty
+    about: str  # words
+    unit: str  # SI; "" for a pure number
+
+    def __post_init__(self) -> None:
+        if len(self.outputs) != prod(self.shape):
+            raise KernelError(
+                f"{self.name}: shape {self.shape} needs {prod(self.shape)} outputs, "
+                f"got {len(self.outputs)}"
+            )
+        known: set[str] = set()
+        for name in self.components:
+            self._define(name, known)
+        for assignment in self.assignments:
+            self._check(assignment.value, known, is_whole=True)
+            self._define(assignment.name, known)
+        for output in self.outputs:
+            self._check(output, known, is_whole=False)
+
+    def _define(self, name: str, known: set[str]) -> None:
+        if name in known:
+            raise KernelError(f"{self.name}: {name} is defined twice")
+        known.add(name)
+
+    def _check(self, expression: Expression, known: set[str], *, is_whole: bool) -> None:
+        for node in walk(expression):
+            if isinstance(node, Name) and node.text not in known:
+                raise KernelError(f"{self.name}: {node.text} is used before it is defined")
+            if isinstance(node, Call) and not (is_whole and node is expression):
+                raise KernelError(f"{self.name}: {node.function} is called inside an expression")
+
+    @property
+    def components(self) -> tuple[str, ...]:
+        """The names of all inputs, in the order of the arguments."""
+        return tuple(name for argument in self.arguments for name in argument.components)
+
+    @cached_property
+    def operations(self) -> Operations:
+        return count([*(assignment.value for assignment in self.assignments), *self.outputs])
+
+    @cached_property
+    def divisors(self) -> tuple[Expression, ...]:
+        """What the kernel divides by, each once: where one of them vanishes, it has a pole."""
+        wholes = [*(assignment.value for assignment in self.assignments), *self.outputs]
+        nodes = (node for whole in wholes for node in walk(whole))
+        found = (d for node in nodes if isinstance(node, Product) for d in node.divisors)
+        return tuple(dict.fromkeys(found))
+
+    @cached_property
+    def delicate(self) -> frozenset[str]:
+        """Names that reach a divisor: near a pole their relative error is the result's."""
+        reached = {name for divisor in self.divisors for name in names_in(divisor)}
+        for assignment in reversed(self.assignments):
+            if assignment.name in reached:
+                reached.update(names_in(assignment.value))
+        return frozenset(reached)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Program:
+    """The kernels of one derivation, and what a reader of the generated file must know."""
+
+    name: str  # of the file, without its suffix
+    title: str
+    convention: tuple[str, ...]  # sentences
+    source: str  # where the rotation comes from
+    arguments: tuple[Argument, ...]  # all that occur, in the order of a signature
+    kernels: tuple[Kernel, ...]

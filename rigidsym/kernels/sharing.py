@@ -1,0 +1,188 @@
+"""Common subexpressions over all outputs of a kernel.
+
+Expressions are kept as a graph of sums and products in which equal things are one node, whatever
+their sign. What several products or several sums have in common becomes a node of its own, the
+pair that occurs most often first.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable, Iterable, Mapping
+from fractions import Fraction
+from itertools import combinations
+from typing import TypeVar
+
+_FEWEST_RECIPROCALS = 3  # divisions by one thing that a reciprocal and as many products replace
+
+Factors = tuple[int, ...]  # nodes in order; ~node divides
+Terms = tuple[tuple[Fraction, int], ...]  # coefficient and node, in the order of the nodes
+Weighted = tuple[Fraction, int]  # a number times a node
+PairOfTerms = tuple[int, int, Fraction]  # two nodes, and the coefficient of the second
+
+Pair = TypeVar("Pair", bound=Hashable)
+
+
+class Graph:
+    """Products, sums and atoms by number; equal ones have one number."""
+
+    def __init__(self) -> None:
+        self.products: dict[int, Factors] = {}
+        self.sums: dict[int, Terms] = {}
+        self.calls: dict[int, tuple[str, Weighted]] = {}
+        self.irrationals: dict[int, float] = {}
+        self._numbers: dict[Hashable, int] = {}
+        self.one = self.atom(())  # the empty product
+
+    def atom(self, key: Hashable) -> int:
+        """What has no parts here, an input, by its name."""
+        return self._numbers.setdefault(key, len(self._numbers))
+
+    def irrational(self, value: float) -> int:
+        """A number that no fraction is: a fixed root, a fixed sine."""
+        number = self.atom(value)
+        self.irrationals.setdefault(number, value)
+        return number
+
+    def call(self, function: str, argument: Weighted) -> int:
+        """A function of one weighted node."""
+        number = self.atom((function, argument))
+        self.calls.setdefault(number, (function, argument))
+        return number
+
+    def product(self, factors: Iterable[int]) -> int:
+        """The product of nodes (~node divides); a node over itself goes away."""
+        counted: Counter[int] = Counter()
+        for factor in factors:
+            counted[max(factor, ~factor)] += 1 if factor >= 0 else -1
+        counted.pop(self.one, None)
+        flat = tuple(sorted(n if k > 0 else ~n for n, k in counted.items() for _ in range(abs(k))))
+        if len(flat) == 1 and flat[0] >= 0:
+            return flat[0]
+        number = self.atom(flat)
+        self.products.setdefault(number, flat)
+        return number
+
+    def sum(self, terms: Iterable[Weighted]) -> Weighted:
+        """The sum of weighted nodes, as one node whose sign and size have been taken out."""
+        total: dict[int, Fraction] = {}
+        for coefficient, node in terms:
+            total[node] = total.get(node, Fraction(0)) + coefficient
+        left = [(c, node) for node, c in sorted(total.items()) if c]
+        if len(left) < 2:
+            return left[0] if left else (Fraction(0), self.one)
+        scale = _common_scale([c for c, _ in left])
+        scaled = tuple((c / scale, node) for c, node in left)
+        number = self.atom(scaled)
+        self.sums.setdefault(number, scaled)
+        return scale, number
+
+    def factors(self, node: int) -> Factors:
+        """What a node is the product of."""
+        return self.products.get(node, (node,))
+
+    def parts(self, node: int) -> list[int]:
+        """The nodes that a node is made of, as often as it uses them."""
+        if node in self.products:
+            return [max(factor, ~factor) for factor in self.products[node]]
+        if node in self.calls:
+            return [self.calls[node][1][1]]
+        return [part for _, part in self.sums.get(node, ())]
+
+    def reachable(self, roots: Iterable[int]) -> set[int]:
+        """The nodes that the roots are made of."""
+        found: set[int] = set()
+        waiting = list(roots)
+        while waiting:
+            node = waiting.pop()
+            if node not in found:
+                found.add(node)
+                waiting.extend(self.parts(node))
+        return found
+
+    def share(self, roots: Iterable[int]) -> None:
+        """Give a node of its own to what several products or several sums have in common."""
+        roots = list(roots)
+        while pair := _most_common(_factor_pairs(f) for f in self._used(self.products, roots)):
+            self._take_factors(roots, *pair)
+        self._take_reciprocals(roots)
+        while found := _most_common(_term_pairs(t) for t in self._used(self.sums, roots)):
+            self._take_terms(roots, *found)
+
+    def _used(self, table: Mapping[int, Pair], roots: list[int]) -> list[Pair]:
+        return [table[node] for node in sorted(self.reachable(roots)) if node in table]
+
+    def _take_factors(self, roots: list[int], a: int, b: int) -> None:
+        common = self.product((a, b))
+        for node in sorted(self.reachable(roots) & self.products.keys() - {common}):
+            factors = list(self.products[node])
+            while _holds(factors, a, b):
+                factors.remove(a)
+                factors.remove(b)
+                factors.append(common)
+            self._redefine(self.products, node, tuple(sorted(factors)))
+
+    def _take_terms(self, roots: list[int], a: int, b: int, ratio: Fraction) -> None:
+        _, common = self.sum(((Fraction(1), a), (ratio, b)))
+        for node in sorted(self.reachable(roots) & self.sums.keys() - {common}):
+            terms = {part: c for c, part in self.sums[node]}
+            if a in terms and terms.get(b) == ratio * terms[a]:
+                terms[common] = terms.pop(a)
+                del terms[b]
+                self._redefine(self.sums, node, tuple((c, n) for n, c in sorted(terms.items())))
+
+    def _take_reciprocals(self, roots: list[int]) -> None:
+        """One reciprocal for several divisions by one thing."""
+        products = self._used(self.products, roots)
+        divided = Counter(f for factors in products for f in set(factors) if f < 0)
+        for divisor in sorted(f for f, n in divided.items() if n >= _FEWEST_RECIPROCALS):
+            inverse = self.product((divisor,))
+            for node in sorted(self.reachable(roots) & self.products.keys() - {inverse}):
+                factors = (inverse if f == divisor else f for f in self.products[node])
+                self._redefine(self.products, node, tuple(sorted(factors)))
+
+    def _redefine(self, table: dict[int, Pair], node: int, value: Pair) -> None:
+        """Write a node in other terms; it can still be found by its new form."""
+        table[node] = value
+        self._numbers.setdefault(value, node)
+
+
+def _common_scale(coefficients: list[Fraction]) -> Fraction:
+    """The sign of most coefficients, and their size where it is one."""
+    minuses = sum(c < 0 for c in coefficients) - sum(c > 0 for c in coefficients)
+    is_minus = minuses > 0 or (minuses == 0 and coefficients[0] < 0)
+    sizes = {abs(c) for c in coefficients}
+    size = sizes.pop() if len(sizes) == 1 else Fraction(1)
+    return -size if is_minus else size
+
+
+def _factor_pairs(factors: Factors) -> Counter[tuple[int, int]]:
+    """Pairs of factors, and how often each can be taken out of the product at once."""
+    counted = Counter(factors)
+    pairs = {(a, b): min(counted[a], counted[b]) for a, b in combinations(sorted(counted), 2)}
+    squares = {(a, a): times // 2 for a, times in counted.items() if times > 1}
+    return Counter(pairs | squares)
+
+
+def _term_pairs(terms: Terms) -> Counter[PairOfTerms]:
+    """Pairs of terms up to a common number."""
+    return Counter((a, b, d / c) for (c, a), (d, b) in combinations(terms, 2))
+
+
+def _most_common(found: Iterable[Counter[Pair]]) -> Pair | None:
+    """The pair that occurs most often, of those that occur twice.
+
+    Among equals the one that is a whole node already, which comes without a new operation.
+    """
+    times: Counter[Pair] = Counter()
+    wholes: set[Pair] = set()
+    for pairs in found:
+        times.update(pairs)
+        if len(pairs) == 1:
+            wholes.update(pairs)
+    several = [pair for pair, count in times.items() if count > 1]
+    return max(several, key=lambda pair: (times[pair], pair in wholes), default=None)
+
+
+def _holds(factors: list[int], a: int, b: int) -> bool:
+    return factors.count(a) > 1 if a == b else a in factors and b in factors

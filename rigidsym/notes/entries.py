@@ -1,0 +1,60 @@
+"""Names of the entries of a vector or matrix: Ω′₁, R₂₃, Ṙ₂₃, (W⁻¹)₁₂."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from rigidsym.derive.derivation import Derivation, Markup, Step
+
+_BOLD = re.compile(r"\\(?:mathbf|boldsymbol)\{([^{}]*)\}")
+_RATE = re.compile(r"\\frac\{d(\w|\\[A-Za-z]+)\}\{dt\}")
+_RATE_TEXT = re.compile(r"d(\w)(′?)/dt")
+_LETTER = re.compile(r"(?:\w|\\[A-Za-z]+|\\dot\{(?:\w|\\[A-Za-z]+)\})'?")
+_LETTER_TEXT = re.compile(r"\w\u0307?′?")
+RESIDUAL = Markup(r"\boldsymbol{\Delta}", "Δ")  # what is left over of a claim
+_DIGITS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+
+
+def entry_names(step: Step, derivation: Derivation) -> tuple[Markup, ...]:
+    """A name for each entry, row by row.
+
+    Vectors that are arguments of other quantities, such as the rates, have the names of those.
+    """
+    known = {argument.name: argument.notation for argument in derivation.arguments}
+    argument = _argument_name(step.quantity.name)
+    return known.get(argument) or indexed(step.quantity.symbol, step.shape)
+
+
+def _argument_name(quantity: str) -> str:
+    """The argument that a quantity may be used as: rates as q_dot, an angular velocity as omega."""
+    if quantity.startswith("rates_from_"):
+        return "q_dot"
+    return quantity.replace("angular_velocity_", "omega_")
+
+
+def indexed(symbol: Markup, shape: tuple[int, ...]) -> tuple[Markup, ...]:
+    """The symbol with the index of each entry, in light face."""
+    stem = _plain_letter(symbol)
+    return tuple(_indexed(stem, index) for index in _indices(shape))
+
+
+def _indices(shape: tuple[int, ...]) -> Iterator[str]:
+    if len(shape) == 1:
+        return (str(row + 1) for row in range(shape[0]))
+    rows, columns = shape
+    return (f"{row + 1}{column + 1}" for row in range(rows) for column in range(columns))
+
+
+def _plain_letter(symbol: Markup) -> Markup:
+    """The symbol without bold face, a derivative as a dot, brackets around anything compound."""
+    latex = _RATE.sub(r"\\dot{\1}", _BOLD.sub(r"\1", symbol.latex))
+    text = _RATE_TEXT.sub("\\1\u0307\\2", symbol.text)
+    return Markup(
+        latex if _LETTER.fullmatch(latex) else rf"\bigl({latex}\bigr)",
+        text if _LETTER_TEXT.fullmatch(text) else f"({text})",
+    )
+
+
+def _indexed(stem: Markup, index: str) -> Markup:
+    return Markup(f"{stem.latex}_{{{index}}}", stem.text + index.translate(_DIGITS))

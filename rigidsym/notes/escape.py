@@ -1,0 +1,114 @@
+"""Any text as LaTeX text: what is special to TeX is escaped, what the font lacks is replaced."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import cache
+
+_SPECIAL = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "%": r"\%",
+    "_": r"\_",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+    '"': r"\textquotedbl{}",
+    "`": r"\textasciigrave{}",
+}
+_MATH = {
+    "′": "'",
+    "ᵀ": r"^{\mathsf T}",
+    "⁻": "^{-}",
+    "−": "-",
+    "×": r"\times",
+    "·": r"\cdot",
+    "±": r"\pm",
+    "∂": r"\partial",
+    "√": r"\surd",
+    "∞": r"\infty",
+    "≤": r"\le",
+    "≥": r"\ge",
+    "≠": r"\ne",
+    "≈": r"\approx",
+    "→": r"\to",
+    "²": "^{2}",
+    "³": "^{3}",
+    "¹": "^{1}",
+    **{superscript: f"^{{{digit}}}" for digit, superscript in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
+    **{subscript: f"_{{{digit}}}" for digit, subscript in enumerate("₀₁₂₃₄₅₆₇₈₉")},
+}
+_GREEK = frozenset(
+    (
+        *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa"),
+        *("lambda", "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi"),
+        *("omega", "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Upsilon", "Phi"),
+        *("Psi", "Omega"),
+    )
+)
+_TEXT_ACCENTS = {"\u0307": r"\.", "\u0308": r"\""}
+_MATH_ACCENTS = {"\u0307": r"\dot", "\u0308": r"\ddot"}
+_PUNCTUATION = "–—‘’“”…€"
+_MISSING = set("ĦħĸĿŀŉŦŧſ")  # in the range of Latin letters, but not in the T1 fonts
+_LIGATURES = re.compile(r"([-,'])(?=\1)")
+_CLUSTERS = re.compile(r"(?s)(.)([\u0300-\u036f]*)")
+
+
+def escape(text: str) -> str:
+    """The text in LaTeX; a character that no font has appears as its code, [U+4E2D]."""
+    clusters = _CLUSTERS.findall(unicodedata.normalize("NFC", text))
+    written = "".join(_cluster(base, marks) for base, marks in clusters)
+    return _LIGATURES.sub(r"\1{}", written)
+
+
+@cache
+def _cluster(base: str, marks: str) -> str:
+    """One character with the accents above it."""
+    if not marks:
+        return _character(base)
+    if len(marks) == 1 and marks in _MATH_ACCENTS:
+        if _greek(base):
+            return rf"\ensuremath{{{_MATH_ACCENTS[marks]}{{{_greek(base)}}}}}"
+        return f"{_TEXT_ACCENTS[marks]}{{{_character(base)}}}"
+    return _character(base) + "".join(map(_code, marks))
+
+
+def _character(character: str) -> str:
+    if character in _SPECIAL:
+        return _SPECIAL[character]
+    if character in _MATH or _greek(character):
+        return rf"\ensuremath{{{_MATH.get(character) or _greek(character)}}}"
+    if character == "\u00a0":
+        return "~"
+    if character.isspace() or unicodedata.category(character).startswith("C"):
+        return " "
+    if _is_in_font(character):
+        return character
+    parts = unicodedata.normalize("NFD", character)
+    return _cluster(parts[0], parts[1:]) if len(parts) > 1 else _code(character)
+
+
+def _is_in_font(character: str) -> bool:
+    is_letter = character <= "\u017e" and character not in _MISSING
+    return is_letter or character in _PUNCTUATION
+
+
+def _greek(character: str) -> str:
+    """The macro of a Greek letter, or nothing."""
+    name = unicodedata.name(character, "").replace("LAMDA", "LAMBDA")
+    for kind, change in (("GREEK SMALL LETTER ", str.lower), ("GREEK CAPITAL LETTER ", str.title)):
+        letter = change(name.removeprefix(kind))
+        if name.startswith(kind) and letter in _GREEK:
+            return f"\\{letter}"
+    return ""
+
+
+def _code(character: str) -> str:
+    return f"[U+{ord(character):04X}]"

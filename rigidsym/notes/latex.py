@@ -1,0 +1,170 @@
+"""Document -> LaTeX. The template only places the pieces that are made here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rigidsym import resources
+from rigidsym.derive.derivation import Markup
+from rigidsym.notes.document import (
+    Block,
+    Cited,
+    Code,
+    Document,
+    Equation,
+    EquationReference,
+    EquationRow,
+    Paragraph,
+    Section,
+    Span,
+    Strong,
+    Table,
+    Text,
+)
+from rigidsym.notes.escape import escape
+from rigidsym.notes.layout import Display, display, pack
+
+TEMPLATE = "note.tex.jinja"
+_DELIMITERS = {
+    "block_start_string": "((*",
+    "block_end_string": "*))",
+    "variable_start_string": "(((",
+    "variable_end_string": ")))",
+    "comment_start_string": "((=",
+    "comment_end_string": "=))",
+}
+_LINE = 41.5  # ems: 160 mm at 11 points
+_NUMBERED_LINE = 38.6  # ems: beside a number such as (13)
+_ABBREVIATED = (
+    r"In short, with $s_\alpha$ for $\sin\alpha$ and $c_\alpha$ for $\cos\alpha$ of any angle,"
+)
+
+
+def print_latex(document: Document) -> str:
+    """The note as a LaTeX file; the same document gives the same bytes."""
+    printer = _Printer(document)
+    template = resources.environment(**_DELIMITERS).get_template(TEMPLATE)
+    return template.render(
+        title=escape(document.title),
+        subtitle=escape(document.subtitle),
+        sections=[
+            {"title": escape(section.title), "body": printer.body(section)}
+            for section in document.sections
+        ],
+        sources=[
+            {"key": printer.key(source), "text": escape(source)} for source in document.sources
+        ],
+    )
+
+
+class _Printer:
+    """Blocks and spans of one document in LaTeX."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+
+    def body(self, section: Section) -> str:
+        return "\n".join(map(self._block, section.blocks))
+
+    def _block(self, block: Block) -> str:
+        match block:
+            case Paragraph():
+                # no empty line: a display that follows belongs to the paragraph
+                return "\n" + self._text(block.text)
+            case Equation():
+                return self._equation(block)
+            case EquationRow():
+                packed = pack(block.equations, self.document.notation, _LINE)
+                return f"\\[\n{packed}\n\\]"
+            case Table():
+                return self._table(block)
+
+    def _equation(self, equation: Equation) -> str:
+        width = _NUMBERED_LINE if equation.number else _LINE
+        shown = display(equation, self.document.notation, width)
+        lines = [*self._announced(equation, shown), *self._numbered(equation, shown.latex)]
+        return "\n".join(lines)
+
+    def _announced(self, equation: Equation, shown: Display) -> Iterator[str]:
+        if shown.done == "abbreviated":
+            yield _ABBREVIATED
+        if shown.done == "listed":
+            whole = " = ".join(side.latex for side in equation.sides)
+            yield f"The entries of ${whole}$ are"
+
+    def _numbered(self, equation: Equation, inside: str) -> Iterator[str]:
+        if not equation.number:
+            yield f"\\[\n{inside}\n\\]"
+            return
+        yield f"\\begin{{resultof}}{{{equation.number}}}{{{self._label(equation.label)}}}"
+        yield inside
+        yield r"\end{resultof}"
+        yield rf"\remark{{{self._claims(equation)}}}{{{self._function(equation)}}}"
+
+    def _claims(self, equation: Equation) -> str:
+        kinds = (("Proved", equation.proved), (r"\textbf{Unproved}", equation.unproved))
+        return " ".join(
+            f"{kind}: {', '.join(map(_display_style, claims))}." for kind, claims in kinds if claims
+        )
+
+    def _function(self, equation: Equation) -> str:
+        return self._span(Code(equation.function)) if equation.function else ""
+
+    def _table(self, table: Table) -> str:
+        head, *rows = (
+            " & ".join(map(self._cell, row)) + r" \\" for row in (table.head, *table.rows)
+        )
+        return "\n".join(
+            [
+                rf"\begin{{ruled}}{{{'l' * len(table.head)}}}",
+                head,
+                r"\midrule",
+                *rows,
+                r"\end{ruled}",
+            ]
+        )
+
+    def _cell(self, text: Text) -> str:
+        return "".join(_tall(s) if isinstance(s, Markup) else self._span(s) for s in text)
+
+    def _text(self, text: Text) -> str:
+        return "".join(map(self._span, text))
+
+    def _span(self, span: Span) -> str:
+        match span:
+            case str():
+                return escape(span)
+            case Markup():
+                return f"${span.latex}$"
+            case Code():
+                return rf"\texttt{{{escape(span.text)}}}"
+            case Strong():
+                return rf"\textbf{{{escape(span.text)}}}"
+            case EquationReference():
+                return rf"\eqref{{{self._label(span.label)}}}"
+            case Cited():
+                return self._cited(span)
+
+    def _cited(self, cited: Cited) -> str:
+        source, equation = cited.citation.text, escape(cited.citation.equation)
+        place = f"[eq.~{equation}]" if equation else ""
+        return rf"\cite{place}{{{self.key(source)}}}"
+
+    def key(self, source: str) -> str:
+        """The key of a source, unique among the notes that may be bound together."""
+        return self._label(f"source-{self.document.sources.index(source) + 1}")
+
+    def _label(self, label: str) -> str:
+        return f"{self.document.name}:{label}"
+
+
+def _display_style(formula: Markup) -> str:
+    """A formula in a line of its own height; fractions in small type would be hard to read."""
+    style = r"\displaystyle " if r"\frac" in formula.latex else ""
+    return f"${style}{formula.latex}$"
+
+
+def _tall(formula: Markup) -> str:
+    """The same in a table, where the fractions of neighbouring rows would touch."""
+    written = _display_style(formula)
+    return rf"\tall{{{written}}}" if r"\frac" in formula.latex else written

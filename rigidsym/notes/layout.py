@@ -1,0 +1,119 @@
+"""How an equation is set so that it fits: on one line, on two, in shorthand, or entry by entry.
+
+The choice is by estimated width, in this order. A reader who has to know of it is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import sympy as sp
+
+from rigidsym.notes.breaking import break_lines
+from rigidsym.notes.document import Equation
+from rigidsym.notes.formula import latex
+from rigidsym.notes.measure import ems, matrix_ems
+from rigidsym.notes.notation import Notation
+
+Rows = Sequence[Sequence[str]]
+
+_EQUAL = ems("=")
+_QUAD = ems(r"\quad")
+_ROW = r" \\[2pt]" + "\n"  # dots above the letters want some air
+_HIGH_ROW = r" \\[7pt]" + "\n"  # so do fractions
+
+
+@dataclass(frozen=True, slots=True)
+class Display:
+    """The inside of a display, and what was done that the reader has to be told."""
+
+    latex: str
+    done: Literal["", "abbreviated", "listed"] = ""
+
+
+def display(equation: Equation, notation: Notation, width: float) -> Display:
+    """The equation in the first form that fits into `width` ems; a listing where none does."""
+    if equation.matrix is None:
+        return Display(_chain(equation, width))
+    full = _rows(equation.matrix, notation, shorthand=False)
+    for form, needed in _forms(equation, full):
+        if needed <= width:
+            return Display(form)
+    if equation.matrix.shape[1] > 1:
+        for form, needed in _forms(equation, _rows(equation.matrix, notation, shorthand=True)):
+            if needed <= width:
+                return Display(form, "abbreviated")
+    return Display(_listing(equation, full, width), "listed")
+
+
+def pack(equations: Sequence[Equation], notation: Notation, width: float) -> str:
+    """Short equations, as many on a line as fit into `width` ems."""
+    lines: list[str] = []
+    room = 0.0
+    for equation in equations:
+        form, needed = _one_line(equation, _rows(equation.matrix, notation, shorthand=False))
+        if lines and needed + 2 * _QUAD <= room:
+            lines[-1] += rf" \qquad {form}"
+            room -= needed + 2 * _QUAD
+        else:
+            lines.append(form)
+            room = width - needed
+    return lines[0] if len(lines) == 1 else _environment("gathered", _HIGH_ROW.join(lines))
+
+
+def _rows(matrix: sp.ImmutableMatrix, notation: Notation, *, shorthand: bool) -> Rows:
+    return [[latex(e, notation, shorthand=shorthand) for e in row] for row in matrix.tolist()]
+
+
+def _forms(equation: Equation, rows: Rows) -> Iterator[tuple[str, float]]:
+    """The equation on one line, and broken before its last equals sign; with their widths."""
+    yield _one_line(equation, rows)
+    if len(equation.sides) > 1:
+        first, *others = (side.latex for side in equation.sides)
+        above = " = ".join(others)
+        lines = f"{first} &= {above}{_HIGH_ROW}&= {_matrix(rows)}"
+        widest = max(ems(above), matrix_ems(rows))
+        yield _environment("aligned", lines), ems(first) + _EQUAL + widest
+
+
+def _one_line(equation: Equation, rows: Rows) -> tuple[str, float]:
+    sides = [side.latex for side in equation.sides]
+    needed = sum(map(ems, sides)) + _EQUAL * len(sides) + matrix_ems(rows)
+    return " = ".join([*sides, _matrix(rows)]), needed
+
+
+def _matrix(rows: Rows) -> str:
+    first, *others = (" & ".join(row).replace(r"\frac", r"\dfrac") for row in rows)
+    text, above = first, first
+    for line in others:
+        text += (_HIGH_ROW if r"\dfrac" in above + line else _ROW) + line
+        above = line
+    return _environment("pmatrix", text)
+
+
+def _listing(equation: Equation, rows: Rows, width: float) -> str:
+    """One entry after the other, long ones broken at + and −."""
+    entries = [entry for row in rows for entry in row]
+    lines: list[str] = []
+    for name, entry in zip(equation.entries, entries, strict=True):
+        room = width - ems(name.latex) - _EQUAL - _QUAD
+        first, *others = break_lines(entry, room, ems, _QUAD)
+        lines.append(f"{name.latex} &= {first.text}")
+        lines += ["&" + r"\quad" * (1 + line.depth) + f" {{}}{line.text}" for line in others]
+    return _environment("aligned", _ROW.join(lines))
+
+
+def _chain(equation: Equation, width: float) -> str:
+    """Sides that are equal: on one line, or each on its own."""
+    sides = [side.latex for side in equation.sides]
+    whole = " = ".join(sides)
+    if ems(whole) <= width:
+        return whole
+    first, *others = sides
+    return _environment("aligned", f"{first} &= " + f"{_ROW}&= ".join(others))
+
+
+def _environment(name: str, inside: str) -> str:
+    return f"\\begin{{{name}}}\n{inside}\n\\end{{{name}}}"

@@ -1,0 +1,67 @@
+"""The names that formulas are printed with, and the order in which a reader expects them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+from sympy.printing.pretty.pretty_symbology import pretty_symbol
+
+from rigidsym.derive.derivation import Argument, Markup
+from rigidsym.errors import AlgebraError
+
+Place = tuple[int, int]  # order of the time derivative, index of the component
+
+_CONSTANTS = {sp.pi: Markup(r"\pi", "π")}
+_GIVEN_RATE = 1  # a given angular velocity stands where the rates stand
+_ORDERS = {"q": 0, "q_dot": 1, "q_ddot": 2}
+_WORDS = re.compile(r"(\\(?:math|text|operator)\w*\{[^}]*\}|\\[A-Za-z]+)|([A-Za-z]{2,})")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Notation:
+    """How symbols are printed, and which of them are coordinates, rates and accelerations.
+
+    A symbol that is in neither table is a constant, printed as SymPy prints its name.
+    """
+
+    names: Mapping[sp.Expr, Markup] = field(default_factory=dict)
+    places: Mapping[sp.Expr, Place] = field(default_factory=dict)
+
+    def name(self, symbol: sp.Expr) -> Markup:
+        """The name of a symbol; raises AlgebraError for what is neither known nor a symbol."""
+        known = self.names.get(symbol) or _CONSTANTS.get(symbol)
+        if known is not None:
+            return known
+        if not isinstance(symbol, sp.Symbol | AppliedUndef):
+            raise AlgebraError(
+                f"no printed form for {symbol} of type {type(symbol).__name__}: expected numbers, "
+                "symbols, their sums, products and powers, and sin, cos, tan, cot"
+            )
+        label = symbol.name if isinstance(symbol, sp.Symbol) else symbol.func.__name__
+        return Markup(words_in_italics(sp.latex(sp.Symbol(label))), pretty_symbol(label))
+
+
+def notation_of(arguments: Iterable[Argument]) -> Notation:
+    """The notation of a derivation, from its arguments."""
+    arguments = tuple(arguments)
+    return Notation(
+        names={
+            symbol: markup
+            for argument in arguments
+            for symbol, markup in zip(argument.symbols, argument.notation, strict=True)
+        },
+        places={
+            symbol: (_ORDERS.get(argument.name, _GIVEN_RATE), index)
+            for argument in arguments
+            for index, symbol in enumerate(argument.symbols)
+        },
+    )
+
+
+def words_in_italics(latex: str) -> str:
+    """LaTeX in which names of several letters are set as words, not as products of letters."""
+    return _WORDS.sub(lambda m: m[1] or rf"\mathit{{{m[2]}}}", latex)

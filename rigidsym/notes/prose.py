@@ -1,0 +1,130 @@
+"""The sentences of the note that lead from one equation to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rigidsym.derive.claims import fill, rate_of, spin_of
+from rigidsym.derive.derivation import Markup, Singularities
+from rigidsym.derive.quantities import BODY, COSINES, ROTATION, SPACE
+from rigidsym.models.rotation import lecture
+from rigidsym.notes.document import Block, Cited, Equation, Paragraph, Text
+from rigidsym.notes.formula import markup
+from rigidsym.notes.notation import Notation
+from rigidsym.notes.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION, listed, words
+
+_MOTION = lecture("15", "section 3.2")
+_VELOCITY = Markup(r"\dot{\mathbf{x}}", "ẋ")
+_BODY_VELOCITY = Markup(r"\dot{\mathbf{x}}'", "ẋ′")
+DETERMINANTS = tuple(
+    fill(r"\det {0}", "det {0}", frame.matrix) for frame in (SPACE, BODY)
+)  # of the two rate matrices, which are equal
+_VECTOR = Markup(r"\mathbf{u}", "u")
+
+
+def product(factors: Sequence[Markup]) -> Markup:
+    return Markup(
+        r"\,".join(factor.latex for factor in factors), " ".join(factor.text for factor in factors)
+    )
+
+
+def equal(*sides: Markup) -> Markup:
+    return Markup(" = ".join(s.latex for s in sides), " = ".join(s.text for s in sides))
+
+
+def turn(axis: str, angle: Markup) -> Markup:
+    """R_z(φ)."""
+    return fill(rf"\mathbf{{{{R}}}}_{axis}({{0}})", f"R_{axis}({{0}})", angle)
+
+
+def motion(*, passive: bool) -> Iterator[Block]:
+    """Why the derivative times the transpose is the operator of the angular velocity."""
+    yield from _passive_motion() if passive else _active_motion()
+    yield Paragraph(words("For a vector {} the matrix of {} is", _VECTOR, _operator(_VECTOR)))
+
+
+def _active_motion() -> Iterator[Block]:
+    spinning = spin_of(ROTATION)
+    yield Paragraph(words("A point at rest in the body, {}, has the velocity", ACTIVE))
+    yield Equation(
+        sides=(
+            _VELOCITY,
+            product([rate_of(ROTATION), BODY_POSITION]),
+            product([spinning, POSITION]),
+        )
+    )
+    yield Paragraph(
+        words(
+            "This velocity is also {}, so that {} is the matrix of the operator {}\u00a0{}.",
+            _cross(SPACE.omega, POSITION),
+            spinning,
+            _operator(SPACE.omega),
+            Cited(_MOTION),
+        )
+    )
+
+
+def _passive_motion() -> Iterator[Block]:
+    spinning = spin_of(COSINES)
+    yield Paragraph(
+        words("A vector at rest in space has the body components {}, which change by", PASSIVE)
+    )
+    yield Equation(
+        sides=(
+            _BODY_VELOCITY,
+            product([rate_of(COSINES), POSITION]),
+            product([spinning, BODY_POSITION]),
+        )
+    )
+    yield Paragraph(
+        words(
+            "Seen from the body it turns backwards, by {}, so that {} is the matrix of the "
+            "operator {}\u00a0{}.",
+            _minus(_cross(BODY.omega, BODY_POSITION)),
+            spinning,
+            _minus(_operator(BODY.omega)),
+            Cited(_MOTION),
+        )
+    )
+
+
+def _cross(left: Markup, right: Markup) -> Markup:
+    return fill(r"{0}\times{1}", "{0} × {1}", left, right)
+
+
+def _operator(vector: Markup) -> Markup:
+    return fill(r"{0}\times", "{0} ×", vector)
+
+
+def _minus(symbol: Markup) -> Markup:
+    return fill("-{0}", "−{0}", symbol)
+
+
+def zeros(singularities: Singularities, notation: Notation) -> Text:
+    """Where the determinant vanishes, as far as that was decided."""
+    angles = [
+        (equal(markup(point.coordinate, notation), markup(point.value, notation)),)
+        for point in singularities.points
+    ]
+    if angles and singularities.is_solved:
+        return ("It vanishes at ", *listed(angles), ", up to whole turns, and nowhere else.")
+    if angles:
+        more = ", up to whole turns; where else it vanishes was not decided."
+        return ("It vanishes at ", *listed(angles), more)
+    if singularities.is_solved:
+        return ("It never vanishes: the rates always follow from the angular velocity.",)
+    return ("Where it vanishes was not decided.",)
+
+
+def proofs_in_words(*, is_proved: bool) -> Text:
+    """What the table of proofs means by its words."""
+    exact = (
+        "Each claim was put to the ring of polynomials in which the derivation was made, modulo "
+        "the relations between its generators, such as that of sine and cosine. It is exact where "
+        "the difference of its two sides reduces to zero there."
+    )
+    unproved = (
+        " It is unproved where something is left over and the relations that are known do not "
+        "decide whether that is zero; then it is shown below the table."
+    )
+    return (exact if is_proved else exact + unproved,)

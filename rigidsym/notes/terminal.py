@@ -1,0 +1,173 @@
+"""Derivation -> text for a terminal: convention, quantities, what fails, what was proved."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Literal
+
+import sympy as sp
+
+from rigidsym.derive.derivation import Derivation, Markup, Proof, Step
+from rigidsym.derive.quantities import ROTATION
+from rigidsym.notes.breaking import break_lines
+from rigidsym.notes.document import Text
+from rigidsym.notes.entries import RESIDUAL, entry_names, indexed
+from rigidsym.notes.formula import markup, text
+from rigidsym.notes.grid import grid
+from rigidsym.notes.measure import columns
+from rigidsym.notes.notation import notation_of
+from rigidsym.notes.prose import DETERMINANTS, equal, product, turn, zeros
+from rigidsym.notes.words import convention, plain, singular, unit_in_words
+
+Style = Callable[[str, Literal["heading", "dim"]], str]
+
+_INDENT = "  "
+_DEEPER = "    "
+_NO_BREAK = "\u00a0"
+
+
+def unstyled(words: str, _: str) -> str:
+    """The style of a terminal without any."""
+    return words
+
+
+def show(derivation: Derivation, *, width: int = 88, style: Style = unstyled) -> str:
+    """The derivation as plain text, at most `width` columns wide where formulas allow.
+
+    `style` is given each heading and each aside, and returns it with the codes of the terminal.
+    """
+    screen = _Screen(derivation, width, style)
+    return "\n".join(screen.lines())
+
+
+class _Screen:
+    """The lines of one derivation."""
+
+    def __init__(self, derivation: Derivation, width: int, style: Style) -> None:
+        self.derivation = derivation
+        self.width = width
+        self.style = style
+        self.notation = notation_of(derivation.arguments)
+
+    def lines(self) -> Iterator[str]:
+        yield self.style(self.derivation.title, "heading")
+        yield ""
+        yield from self._convention()
+        for step in self.derivation.steps:
+            yield ""
+            yield from self._headline(step)
+            yield from self._value(step)
+        yield from self._singularities()
+        yield from self._proofs()
+
+    def _convention(self) -> Iterator[str]:
+        for sentence in convention(self.derivation):
+            yield from self._wrapped(sentence)
+        turns = self.derivation.model.turns
+        if turns:
+            factors = [turn(t.axis, markup(t.angle, self.notation)) for t in turns]
+            yield _INDENT + equal(ROTATION, product(factors)).text
+
+    def _headline(self, step: Step) -> Iterator[str]:
+        """(5) angular velocity, body components           angular_velocity_body, rad/s"""
+        quantity = step.quantity
+        left = f"({step.number}) {quantity.about}"
+        unit = f", {unit_in_words(quantity.unit)}" if quantity.unit else ""
+        right = quantity.name + unit
+        room = self.width - columns(left)
+        if room - columns(right) < len(_INDENT):
+            yield self.style(left, "heading")
+            yield self.style(right.rjust(self.width), "dim")
+        else:
+            yield self.style(left, "heading") + self.style(right.rjust(room), "dim")
+
+    def _value(self, step: Step) -> Iterator[str]:
+        names = entry_names(step, self.derivation)
+        yield from self._matrix(_prefixes(step), step.expression, names)
+        for proof in step.proofs:
+            if not proof.is_exact:
+                yield f"{_INDENT}✗ unproved: {proof.claim.text}"
+
+    def _matrix(
+        self, prefixes: Sequence[str], matrix: sp.ImmutableMatrix, names: Sequence[Markup]
+    ) -> list[str]:
+        """The matrix in brackets, in the first form that fits, or else entry by entry."""
+        rows = [[text(entry, self.notation) for entry in row] for row in matrix.tolist()]
+        for lines in _forms(prefixes, rows):
+            if max(map(columns, lines)) <= self.width:
+                return lines
+        return self._listing(names, [entry for row in rows for entry in row])
+
+    def _listing(self, names: Iterable[Markup], entries: Iterable[str]) -> list[str]:
+        """A line an entry; long ones are broken, and hang below their equals sign."""
+        lines: list[str] = []
+        for name, entry in zip(names, entries, strict=True):
+            head = f"{_INDENT}{name.text} = "
+            room = self.width - columns(head)
+            first, *others = break_lines(entry, room, columns, len(_INDENT))
+            hang = " " * columns(head)
+            lines.append(head + first.text)
+            lines += [hang + _INDENT * line.depth + line.text for line in others]
+        return lines
+
+    def _singularities(self) -> Iterator[str]:
+        found = self.derivation.singularities
+        if found is None:
+            return
+        yield ""
+        yield self.style("Where the rates fail", "heading")
+        value = markup(found.determinant, self.notation)
+        yield _INDENT + equal(*DETERMINANTS, value).text
+        yield from self._wrapped(zeros(found, self.notation))
+        for point in found.points:
+            yield from self._wrapped(singular(point, self.derivation))
+
+    def _proofs(self) -> Iterator[str]:
+        yield ""
+        yield self.style("What was proved", "heading")
+        for step in self.derivation.steps:
+            for proof in step.proofs:
+                yield from self._proof(step.number, proof)
+
+    def _proof(self, number: int, proof: Proof) -> Iterator[str]:
+        mark, status = ("✓", "exact") if proof.is_exact else ("✗", "unproved")
+        yield f"{_INDENT}{mark} {f'({number})':<5}{status:<10}{proof.claim.text}"
+        if proof.residual is not None:
+            yield f"{_DEEPER}left over:"
+            names = indexed(RESIDUAL, proof.residual.shape)
+            yield from self._matrix([f"{RESIDUAL.text} = "], proof.residual, names)
+
+    def _wrapped(self, sentence: Text) -> list[str]:
+        whole = (_unbroken(span) if isinstance(span, Markup) else span for span in sentence)
+        lines = textwrap.wrap(
+            plain(tuple(whole)),
+            self.width,
+            initial_indent=_INDENT,
+            subsequent_indent=_DEEPER,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        return [line.replace(_NO_BREAK, " ") for line in lines]
+
+
+def _unbroken(formula: Markup) -> str:
+    return formula.text.replace(" ", _NO_BREAK)
+
+
+def _forms(prefixes: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[list[str]]:
+    """The matrix beside each prefix, or below the first one; with wide gaps or with narrow ones."""
+    for prefix in prefixes:
+        yield grid(_INDENT + prefix, rows)
+        yield grid(_INDENT + prefix, rows, tight=True)
+    below = [_INDENT + prefixes[0].rstrip()]
+    yield [*below, *grid(_DEEPER, rows)]
+    yield [*below, *grid(_DEEPER, rows, tight=True)]
+
+
+def _prefixes(step: Step) -> list[str]:
+    """ "Ω′ = Rᵀ Ω = " and, where that is too long, "Ω′ = "."""
+    symbol, definition = step.quantity.symbol.text, step.quantity.definition.text
+    if definition in ("", symbol):
+        return [f"{symbol} = "]
+    return [f"{symbol} = {definition} = ", f"{symbol} = "]

@@ -1,0 +1,173 @@
+"""Sentences with formulas in them: what the note and the terminal say in words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain, zip_longest
+
+import sympy as sp
+
+from rigidsym.derive.claims import fill
+from rigidsym.derive.derivation import Argument, Derivation, Markup, Singularity
+from rigidsym.derive.quantities import BODY, COSINES, RATES, ROTATION, SPACE
+from rigidsym.models.so3 import AXES
+from rigidsym.notes.document import Cited, Code, EquationReference, Span, Strong, Text
+from rigidsym.notes.formula import markup
+from rigidsym.notes.notation import Notation, notation_of
+
+POSITION = Markup(r"\mathbf{x}", "x")
+BODY_POSITION = Markup(r"\mathbf{x}'", "x′")
+COORDINATES = Markup(r"\mathbf{q}", "q")
+ACTIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", POSITION, ROTATION, BODY_POSITION)
+PASSIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", BODY_POSITION, COSINES, POSITION)
+TRANSPOSED = fill(r"{0} = {1}^{{\mathsf T}}", "{0} = {1}ᵀ", COSINES, ROTATION)
+
+_SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+_ALSO_WORDS = ("a", "A", "I")  # in a sentence these are words, whatever an angle is called
+
+
+def words(template: str, *spans: Span) -> Text:
+    """The template with a span in place of each {}."""
+    parts = template.split("{}")
+    mixed = chain.from_iterable(zip(parts, (*spans, ""), strict=True))
+    return tuple(span for span in mixed if span)
+
+
+def listed(items: Sequence[Text], last: str = " and ") -> Text:
+    """The texts a, b, c as: a, b and c."""
+    joints = [*[", "] * (len(items) - 2), last] if len(items) > 1 else []
+    mixed = chain.from_iterable((*item, joint) for item, joint in zip_longest(items, joints))
+    return tuple(span for span in mixed if span)
+
+
+def plain(text: Text) -> str:
+    """The text on one line of Unicode."""
+    return "".join(map(_plain, text))
+
+
+def _plain(span: Span) -> str:
+    match span:
+        case str():
+            return span
+        case Markup() | Code() | Strong():
+            return span.text
+        case Cited():
+            return str(span.citation)
+        case EquationReference():
+            return span.label
+
+
+def symbols_of(derivation: Derivation) -> dict[str, Markup]:
+    """The symbols that may occur in a sentence about a derivation, by their plain text."""
+    named = chain(
+        (Markup(axis, axis) for axis in AXES),
+        chain.from_iterable(argument.notation for argument in derivation.arguments),
+        (step.quantity.symbol for step in derivation.steps),
+        (SPACE.omega, BODY.omega, RATES),
+    )
+    return {symbol.text: symbol for symbol in named if symbol.text not in _ALSO_WORDS}
+
+
+def with_symbols(sentence: str, symbols: Mapping[str, Markup]) -> Text:
+    """A plain sentence, with the symbols in it made into formulas."""
+    longest_first = sorted(symbols, key=len, reverse=True)
+    pattern = r"(?<!\w)(" + "|".join(map(re.escape, longest_first)) + r")(?!\w)"
+    parts = re.split(pattern, sentence)
+    return tuple(symbols.get(part, part) for part in parts if part)
+
+
+def convention(derivation: Derivation) -> tuple[Text, ...]:
+    """The convention, a sentence or two an entry: turns, direction of the rotation, frames."""
+    symbols = symbols_of(derivation)
+    return (
+        *(with_symbols(sentence, symbols) for sentence in derivation.model.convention),
+        _direction(passive=derivation.model.passive),
+        words(
+            "The angular velocity has the components {} along the axes of space and {} along the "
+            "axes of the body.",
+            SPACE.omega,
+            BODY.omega,
+        ),
+        _coordinates(derivation.argument("q")),
+    )
+
+
+def _direction(*, passive: bool) -> Text:
+    if passive:
+        return words(
+            "The matrix shown is the direction cosine matrix {}, the passive form: {} takes "
+            "components along the axes of space to components along the axes of the body.",
+            TRANSPOSED,
+            PASSIVE,
+        )
+    return words(
+        "The rotation is active: {} takes components along the axes of the body to components "
+        "along the axes of space.",
+        ACTIVE,
+    )
+
+
+def _coordinates(argument: Argument) -> Text:
+    names = listed([(name,) for name in argument.notation], ", ")
+    units = sorted(set(argument.units))
+    measured = f", in {unit_in_words(units[0])}" if len(units) == 1 and units[0] else ""
+    head = words("The coordinates are {} = (", COORDINATES)
+    return (*head, *names, f"){measured}; a dot is the derivative with respect to time.")
+
+
+def unit_in_words(unit: str) -> str:
+    """rad/s² for rad/s^2; a pure number has the unit 1."""
+    return re.sub(r"\^(-?\d+)", lambda m: m[1].translate(_SUPERSCRIPTS), unit) or "1"
+
+
+def vector(entries: Iterable[sp.Expr], notation: Notation) -> Text:
+    """The components in a row, with a place to break the line after each comma."""
+    return ("(", *listed([(markup(entry, notation),) for entry in entries], ", "), ")")
+
+
+def singular(point: Singularity, derivation: Derivation) -> Text:
+    """What is lost at a singular angle, and what remains determined."""
+    notation = notation_of(derivation.arguments)
+    coordinate, value = markup(point.coordinate, notation), markup(point.value, notation)
+    at = fill("{0} = {1}", "{0} = {1}", coordinate, value)
+    return (
+        *words("At {} ", at),
+        *_determined(point, derivation, notation),
+        *_lost(point, notation),
+        ".",
+    )
+
+
+def _determined(point: Singularity, derivation: Derivation, notation: Notation) -> Text:
+    idle = point.undetermined
+    if idle is None:
+        return (f"the rate matrix has rank {point.rank}",)
+    rates = vector(idle, notation)
+    kept = determined(idle, derivation.argument("q").symbols)
+    only = () if kept is None else words("only {} is determined; ", markup(kept, notation))
+    return (*only, "rates in proportion to ", *rates, " turn nothing")
+
+
+def determined(idle: sp.ImmutableMatrix, coordinates: Sequence[sp.Expr]) -> sp.Expr | None:
+    """The combination of two coordinates that rates along `idle` leave as it is.
+
+    None where `idle` is not constant or does not move exactly two coordinates.
+    """
+    moved = [(rate, q) for rate, q in zip(idle, coordinates, strict=True) if rate != 0]
+    if len(moved) != 2 or not all(rate.is_Rational for rate, _ in moved):
+        return None
+    (first, q), (second, r) = moved
+    return q - first / second * r
+
+
+def _lost(point: Singularity, notation: Notation) -> Text:
+    if point.lost_space is None or point.lost_body is None:
+        return ()
+    return (
+        ", and no rates turn the body about ",
+        *vector(point.lost_space, notation),
+        " in space, that is ",
+        *vector(point.lost_body, notation),
+        " in the body",
+    )

@@ -1,0 +1,63 @@
+"""From checked data to the content of files: pure, so that `check` can compare and tests can read.
+
+Nothing here writes; the command line does.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from rigidsym.api import Motion, derive
+from rigidsym.record import record
+from rigidsym.spec import DerivationSpec
+
+PDF = "pdf"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Product:
+    """One derivation and the text files that are printed from it."""
+
+    motion: Motion
+    files: Mapping[str, str]  # file name -> content, for the folder that is named motion.name
+    wants_pdf: bool
+
+    @property
+    def name(self) -> str:
+        return self.motion.name
+
+    @property
+    def record_text(self) -> str:
+        return self.files[f"{self.name}.json"]
+
+
+def products(spec: DerivationSpec) -> Iterator[Product]:
+    """The products of a derivation file, one after the other as they are asked for."""
+    for single in spec.singles():
+        yield product(single)
+
+
+def product(spec: DerivationSpec) -> Product:
+    """The product of a specification that names one rotation."""
+    (model,) = spec.models
+    motion = derive(model)
+    motion = replace(motion, name=spec.name, title=spec.title or motion.title)
+    if spec.quantities:
+        motion = motion.select(spec.quantities)
+    return Product(
+        motion=motion,
+        files={f"{spec.name}.{ending}": text for ending, text in _texts(motion, spec)},
+        wants_pdf=PDF in spec.note,
+    )
+
+
+def _texts(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
+    """(ending, content) of each text file, the record last, since it speaks for the others."""
+    for target in spec.kernels:
+        module = motion.kernels(target)
+        yield module.ending, module.source
+    if spec.note:
+        yield "tex", motion.note(with_kernels="numpy" in spec.kernels).latex()
+    yield "json", json.dumps(record(motion, spec.to_data()), indent=1, ensure_ascii=False) + "\n"

@@ -1,0 +1,110 @@
+"""LaTeX -> PDF, by latexmk and pdflatex where they are installed.
+
+TeX runs in a directory of its own, may read and write nowhere else, and may run no program.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from rigidsym.errors import MissingTool, ToolFailed
+
+PROGRAMS = ("latexmk", "pdflatex")
+DEBIAN_PACKAGES = ("texlive-latex-recommended", "texlive-pictures", "latexmk", "lmodern")
+TIMEOUT = 120.0  # seconds
+
+_COMMAND = (
+    "latexmk",
+    "-norc",
+    "-pdf",
+    "-interaction=nonstopmode",
+    "-halt-on-error",
+    "-file-line-error",
+    "-latexoption=-no-shell-escape",
+    "note.tex",
+)
+_CONFINED = {"openin_any": "p", "openout_any": "p"}
+_SAME_EVERY_TIME = {"SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1"}
+_WARNING = re.compile(r"^(?:Over|Under)full .*|^.*\bWarning: .*|^No file .*", re.MULTILINE)
+_LOG_LINES = 25
+
+
+@dataclass(frozen=True, slots=True)
+class Typeset:
+    """A PDF, and what TeX complained of: overfull boxes, undefined references, any warning."""
+
+    pdf: bytes
+    warnings: tuple[str, ...]
+
+
+def typeset(tex: str, *, timeout: float = TIMEOUT) -> Typeset:
+    """The PDF of a LaTeX document; the same text gives the same bytes.
+
+    Raises MissingTool where TeX is not installed, and ToolFailed, with the end of the log, where
+    TeX stops at an error or runs longer than `timeout` seconds.
+    """
+    _require_programs()
+    with tempfile.TemporaryDirectory(prefix="rigidsym-") as folder:
+        source = Path(folder, "note.tex")
+        source.write_text(tex, encoding="utf-8")
+        output = _run(folder, timeout)
+        log = _read(source.with_suffix(".log")) or output
+        pdf = source.with_suffix(".pdf")
+        if not pdf.is_file():
+            raise ToolFailed(f"TeX made no PDF; the end of its log:\n{_last_lines(log)}")
+        return Typeset(pdf=pdf.read_bytes(), warnings=tuple(_WARNING.findall(log)))
+
+
+def missing_programs() -> tuple[str, ...]:
+    """The programs that typesetting needs and that are not on the search path."""
+    return tuple(program for program in PROGRAMS if shutil.which(program) is None)
+
+
+def _require_programs() -> None:
+    missing = missing_programs()
+    if missing:
+        raise MissingTool(
+            f"a PDF needs {' and '.join(missing)}, not found here; on Debian: "
+            f"apt install {' '.join(DEBIAN_PACKAGES)}"
+        )
+
+
+def _run(folder: str, timeout: float) -> str:
+    """What latexmk prints; whatever ends this process or its patience ends TeX too."""
+    process = subprocess.Popen(
+        _COMMAND,
+        cwd=folder,
+        env=_SAME_EVERY_TIME | os.environ | _CONFINED,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,  # so that latexmk and its pdflatex are ended together
+    )
+    try:
+        output, _ = process.communicate(timeout=timeout)
+    except subprocess.TimeoutExpired as error:
+        raise ToolFailed(f"TeX was stopped after {timeout:g} seconds") from error
+    finally:
+        _end(process)
+    return output.decode("utf-8", "replace")
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    if process.poll() is None:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+
+
+def _read(path: Path) -> str:
+    return path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+
+
+def _last_lines(log: str) -> str:
+    return "\n".join(log.splitlines()[-_LOG_LINES:])

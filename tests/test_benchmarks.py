@@ -1,0 +1,183 @@
+"""The benchmarks run, on sizes that take no time, and say what they found. No clock is judged."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from benchmarks import accuracy, cold_start, derivation, form, kernels, run, sympy_forms
+from benchmarks.measure import Spread, interleaved, peak_memory, ratios, run_process
+from benchmarks.report import Column, Figure, Report, Table, summary
+
+AS_IT_COMES = {"as it comes": sympy_forms.SIMPLIFIED["as it comes"]}
+
+
+# measure
+
+
+def test_actions_take_turns_and_the_warm_up_is_left_out():
+    order: list[str] = []
+    actions = {name: lambda n=name: order.append(n) or len(order) for name in "ab"}
+    assert interleaved(actions, 2, warm_up=1) == {"a": [3, 5], "b": [4, 6]}
+    assert order == list("ababab")
+
+
+def test_ratios_are_taken_pair_by_pair():
+    assert ratios([2.0, 9.0, 4.0], [1.0, 3.0, 4.0]) == Spread(1.0, 2.0, 3.0)
+
+
+def test_peak_memory_counts_what_an_array_takes():
+    size = 1_000_000
+    assert size <= peak_memory(lambda: np.ones(size, np.int8)) < 1.1 * size
+
+
+def test_a_process_that_fails_is_not_timed_silently():
+    with pytest.raises(RuntimeError, match="failed"):
+        run_process([*cold_start.rigidsym_command(), "no such command"])
+
+
+# report
+
+
+def test_numbers_stand_right_and_words_left():
+    columns = (Column("what"), Column("ms", ".1f"))
+    table = Table("Title", columns, (("a", 1.25), ("longer", 123.0)))
+    assert list(table.lines()) == [
+        "Title",
+        "  what       ms",
+        "  a         1.2",
+        "  longer  123.0",
+    ]
+
+
+def test_the_summary_marks_what_is_not_met():
+    figures = (Figure("one", "at most 2", "1", True), Figure("two", "at most 2", "3", False))
+    text = summary({"name": Report("Title", (), figures)})
+    assert text.splitlines() == [
+        "1 of 2 figures met",
+        "  met      one: 1 (to reach: at most 2)",
+        "  NOT MET  two: 3 (to reach: at most 2)",
+    ]
+
+
+# derivation
+
+
+@pytest.mark.parametrize("work", derivation.WORK)
+def test_each_work_is_timed_convention_by_convention(work):
+    totals = derivation.in_this_process(work, ["ZXZ", "zyx"])
+    assert 0 < totals[0] < totals[1]
+
+
+def test_both_sides_derive_the_same_velocities():
+    ours, theirs = derivation.velocities("ZXZ"), derivation.sympy_velocities("ZXZ")
+    for one, other in zip(ours, theirs, strict=True):
+        assert (one - other).expand().is_zero_matrix
+
+
+def test_derivation_judges_the_middle_of_the_repeats():
+    totals = {
+        derivation.EVERYTHING: [[0.1] * 24, [0.1] * 24, [9.0] * 24],
+        derivation.VELOCITIES: [[0.05] * 24] * 3,
+        derivation.SYMPY: [[12.0] * 24] * 3,
+    }
+    report = derivation.report(totals)
+    assert [figure.met for figure in report.figures] == [True, True, True]
+    assert "24 conventions" in report.text()
+
+
+# form
+
+
+@pytest.fixture(scope="module")
+def surveyed():
+    return sympy_forms.survey("ZXZ", AS_IT_COMES, {})
+
+
+def test_a_survey_has_every_quantity(surveyed):
+    assert set(surveyed) == set(form.SYMBOLS)
+
+
+def test_surveys_are_kept_and_read_back(surveyed, tmp_path, monkeypatch):
+    monkeypatch.setattr(sympy_forms, "RESULTS", tmp_path / "results")
+    sympy_forms.save({"ZXZ": surveyed})
+    assert sympy_forms.load() == {"ZXZ": surveyed}
+
+
+def test_the_form_table_counts_both_sides(surveyed):
+    found = form.compare("ZXZ", surveyed)
+    report = form.report(found)
+    assert {c.quantity for c in found} == set(form.SYMBOLS)
+    assert all(c.ours > 0 and c.sympy_best <= c.sympy_raw for c in found)
+    assert len(report.data) == len(found)
+    assert "dR/dt·Rᵀ" in report.text()
+    assert not any(figure.met for figure in report.figures)  # one convention is not all
+
+
+def test_forms_of_different_value_are_refused(surveyed):
+    swapped = {"angular_velocity_space": surveyed["angular_velocity_body"]}
+    with pytest.raises(ArithmeticError, match="differ in value"):
+        form.compare("ZXZ", swapped)
+
+
+# cold start
+
+
+def test_cold_start_compares_with_the_import_of_sympy():
+    seconds = {name: [0.1, 0.1] for name in cold_start.commands("out")}
+    report = cold_start.report(seconds)
+    assert [figure.met for figure in report.figures] == [True, True]
+    assert 'python -c "import sympy"' in report.text()
+
+
+# kernels
+
+
+def test_kernels_are_compared_on_equal_values():
+    cases = kernels.cases("ZXZ", 50)
+    outcome = kernels.measure(cases[0], 2)
+    report = kernels.report([outcome], 50)
+    assert [case.quantity for case in cases] == list(kernels.QUANTITIES)
+    assert {len(seconds) for seconds in outcome.seconds.values()} == {2}
+    assert len(report.figures) == 2
+    assert "50 orientations" in report.text()
+
+
+# accuracy
+
+
+def test_the_witness_knows_a_turn_about_one_axis():
+    found = accuracy.exact("ZXZ", [0.5, 0.0, 0.25], [2.0, 0.0, 1.0])
+    R = np.array(found["rotation_matrix"], float).reshape(3, 3)
+    assert np.allclose(R[:2, 0], [np.cos(0.75), np.sin(0.75)])
+    assert np.allclose(np.array(found["angular_velocity_space"], float), [0, 0, 3])
+    assert np.allclose(np.array(found["angular_velocity_body"], float), [0, 0, 3])
+
+
+@pytest.mark.parametrize("sequence", ["ZXZ", "zyx"])
+def test_errors_are_a_few_eps(sequence):
+    found = accuracy.errors(sequence, 3)
+    assert {way for way, _, _ in found} == {way.name for way in accuracy.WAYS}
+    assert 0 <= max(found.values()) < 20
+
+
+# run
+
+
+def test_one_command_prints_and_writes(tmp_path, capsys):
+    path = tmp_path / "results.json"
+    assert run.main(["accuracy", "--samples", "1", "--json", str(path)]) == 0
+    assert "scalar twins, float64" in capsys.readouterr().out
+    written = json.loads(path.read_text(encoding="utf-8"))
+    assert set(written) == {"schema", "machine", "benchmarks"}
+    assert set(written["benchmarks"]) == {"accuracy"}
+
+
+@pytest.mark.parametrize("wrong", [["speed"], ["--repeats", "0"], ["--size", "many"]])
+def test_wrong_arguments_are_usage_errors(wrong, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        run.main(wrong)
+    assert exit_.value.code == 2
+    assert "error: argument" in capsys.readouterr().err

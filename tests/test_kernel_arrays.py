@@ -1,0 +1,276 @@
+"""Generated NumPy functions and arrays: shapes, strides, types, `out`, what is refused, memory."""
+
+from __future__ import annotations
+
+import tracemalloc
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import mutually_broadcastable_shapes
+from kernel_modules import QUANTITIES, inputs, module, one_by_one
+from numpy.testing import assert_allclose, assert_array_equal
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_the_twin_agrees_with_the_array(sequence, name):
+    arrays = inputs(name)
+    found = getattr(module(sequence), name)(*arrays)
+    assert found.shape == (7, *QUANTITIES[name][1])
+    assert found.flags.c_contiguous
+    assert_allclose(found, one_by_one(name, arrays, sequence), rtol=1e-13, atol=1e-13)
+    single = getattr(module(sequence), name)(*(a[0] for a in arrays))
+    assert single.shape == QUANTITIES[name][1]
+    assert_allclose(single, found[0], rtol=1e-13, atol=1e-13)
+
+
+@st.composite
+def arrays_in_any_manner(draw) -> list[np.ndarray]:
+    """Arrays of q and q_dot with broadcastable leading axes, any strides, types, byte orders."""
+    shapes = draw(
+        mutually_broadcastable_shapes(num_shapes=2, max_dims=3, min_side=0, max_side=4)
+    ).input_shapes
+    seed = draw(st.integers(0, 1000))
+    rng = np.random.default_rng(seed)
+    arrays = [rng.uniform(-3, 3, (*shape, 3)) for shape in shapes]
+    return [draw(st.sampled_from(MANNERS))(array) for array in arrays]
+
+
+def strided(array: np.ndarray) -> np.ndarray:
+    wide = np.full(tuple(2 * n + 1 for n in array.shape), np.nan)
+    view = wide[tuple(slice(1, 2 * n + 1, 2) for n in array.shape)]
+    view[...] = array
+    return view
+
+
+def read_only(array: np.ndarray) -> np.ndarray:
+    array.flags.writeable = False
+    return array
+
+
+MANNERS = [
+    np.asarray,
+    strided,
+    read_only,
+    np.asfortranarray,
+    lambda a: a[..., ::-1].copy()[..., ::-1],
+    lambda a: a.astype(">f8"),
+    lambda a: a.astype(np.float32),
+    lambda a: a.astype(">f4"),
+    lambda a: a.round().astype(np.int64),
+    lambda a: a.round().astype(np.int8),
+    lambda a: a.tolist() if a.size else a,
+    np.ma.masked_invalid,
+    lambda a: np.moveaxis(np.moveaxis(a, -1, 0).copy(), 0, -1),
+]
+
+
+@given(arrays_in_any_manner())
+@settings(max_examples=200, deadline=None)
+def test_shapes_strides_and_types_are_numpys(arrays):
+    plain = [np.asarray(a, dtype=float) for a in arrays]
+    before = [np.array(a, copy=True) for a in arrays]
+    found = module().angular_velocity_body(*arrays)
+    singles = all(np.asarray(a).dtype.char == "f" for a in arrays)
+    assert type(found) is np.ndarray
+    assert found.dtype == (np.float32 if singles else np.float64)
+    expected = one_by_one("angular_velocity_body", plain)
+    assert found.shape == expected.shape
+    assert_allclose(found, expected, atol=1e-5 if singles else 1e-13)
+    for array, copy in zip(arrays, before, strict=True):
+        assert_array_equal(array, copy)
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 4095, 8191, 8192, 8193, 20_001])
+@pytest.mark.parametrize("name", ["angular_velocity_body", "rotation_matrix"])
+def test_any_number_of_orientations(name, count):
+    arrays = inputs(name, (count,))
+    found = getattr(module(), name)(*arrays)
+    assert found.shape == (count, *QUANTITIES[name][1])
+    places = [k for k in (0, 1, 4095, 8191, 8192, count - 1) if 0 <= k < count]
+    expected = one_by_one(name, [a[places] for a in arrays])
+    assert_allclose(found[places], expected, atol=1e-13)
+
+
+def test_axes_broadcast_against_each_other_over_many_blocks():
+    q, q_dot = inputs("angular_velocity_space", (200,))
+    found = module().angular_velocity_space(q[:, np.newaxis], q_dot)
+    assert found.shape == (200, 200, 3)
+    expected = module().angular_velocity_space(np.repeat(q, 200, axis=0), np.tile(q_dot, (200, 1)))
+    assert_array_equal(found, expected.reshape(200, 200, 3))
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+@pytest.mark.parametrize("arrange", [np.asarray, strided, np.asfortranarray])
+def test_out_is_filled_and_returned(name, arrange):
+    arrays = inputs(name, (9, 2))
+    expected = getattr(module(), name)(*arrays)
+    out = arrange(np.full(expected.shape, np.nan))
+    assert getattr(module(), name)(*arrays, out=out) is out
+    assert_array_equal(out, expected)
+
+
+def test_out_of_one_orientation():
+    arrays = inputs("rotation_rate", ())
+    out = np.empty((3, 3))
+    assert module().rotation_rate(*arrays, out=out) is out
+    assert_array_equal(out, module().rotation_rate(*arrays))
+
+
+@pytest.mark.parametrize("count", [1, 5, 30_000])
+@pytest.mark.parametrize("shift", [0, 1, 3, 4])
+def test_out_may_overlap_the_arguments(count, shift):
+    memory = np.random.default_rng(7).uniform(-3, 3, 3 * count + 4)
+    q, out = memory[: 3 * count].reshape(-1, 3), memory[shift : shift + 3 * count].reshape(-1, 3)
+    q_dot = inputs("angular_velocity_body", (count,))[1]
+    expected = module().angular_velocity_body(q.copy(), q_dot)
+    assert_array_equal(module().angular_velocity_body(q, q_dot, out=out), expected)
+
+
+def test_out_may_be_the_reversed_argument():
+    q = inputs("rotation_matrix", (30_000,))[0]
+    expected = module().angular_velocity_space(q, q.copy())
+    assert_array_equal(module().angular_velocity_space(q, q, out=q[::-1]), expected)
+
+
+def test_columns_of_one_table_are_not_copied():
+    table = np.random.default_rng(9).uniform(-3, 3, (100_000, 9))
+    q, q_dot, out = table[:, :3], table[:, 3:6], table[:, 6:]
+    expected = module().angular_velocity_body(q.copy(), q_dot.copy())
+    assert peak(lambda: module().angular_velocity_body(q, q_dot, out=out)) < 2e6
+    assert_array_equal(out, expected)
+
+
+class Labelled(np.ndarray):
+    """A subclass, as units and tables make them."""
+
+
+def test_masked_arrays_and_subclasses_are_plain_arrays():
+    q = inputs("rotation_matrix", (4,))[0]
+    expected = module().rotation_matrix(q)
+    masked = np.ma.masked_array(q, mask=q > 0)
+    for given_as in (masked, q.view(Labelled)):
+        found = module().rotation_matrix(given_as)
+        assert type(found) is np.ndarray
+        assert_array_equal(found, expected)
+
+
+Q = np.zeros((5, 3))
+LAST = "expected (..., 3), the last axis phi, theta, psi"
+TYPES = "expected float64, float32 or integers"
+RAGGED = [[1, 2, 3], [1]]
+REFUSED = [
+    (np.zeros((5, 4)), ValueError, f"q: got shape (5, 4); {LAST}"),
+    (1.0, ValueError, f"q: got shape (); {LAST}"),
+    ([], ValueError, f"q: got shape (0,); {LAST}"),
+    (np.zeros((4, 3)), ValueError, "axes before the last do not broadcast: q (4, 3), q_dot (5, 3)"),
+    (RAGGED, ValueError, f"q: not an array; {LAST}"),
+    (Q.astype(np.float16), TypeError, f"q: got dtype float16; {TYPES}"),
+    (Q.astype(np.longdouble), TypeError, f"q: got dtype {np.dtype(np.longdouble)}; {TYPES}"),
+    (Q.astype(complex), TypeError, f"q: got dtype complex128; {TYPES}"),
+    (Q.astype(bool), TypeError, f"q: got dtype bool; {TYPES}"),
+    (Q.astype(object), TypeError, f"q: got dtype object; {TYPES}"),
+    (None, TypeError, f"q: got dtype object; {TYPES}"),
+    (["a", "b", "c"], TypeError, f"q: got dtype <U1; {TYPES}"),
+    (Q.astype("m8[s]"), TypeError, f"q: got dtype timedelta64[s]; {TYPES}"),
+]
+
+
+@pytest.mark.parametrize(("q", "kind", "message"), REFUSED)
+def test_arguments_that_are_refused(q, kind, message):
+    with pytest.raises(kind) as caught:
+        module().angular_velocity_body(q, Q)
+    assert str(caught.value) == message
+
+
+def test_the_argument_at_fault_is_named():
+    with pytest.raises(ValueError, match=r"^q_dot: got shape .* phi_dot, theta_dot, psi_dot$"):
+        module().angular_velocity_body(Q, [1.0, 2.0])
+
+
+REFUSED_OUT = [
+    ([0.0] * 3, TypeError, "out: got list; expected a NumPy array"),
+    (np.zeros((5, 3), np.float32), TypeError, "out: got dtype float32; expected float64"),
+    (np.zeros((5, 3), ">f8"), TypeError, "out: got dtype >f8; expected float64"),
+    (np.zeros((3, 5)), ValueError, "out: got shape (3, 5); expected (5, 3)"),
+    (np.zeros((1, 5, 3)), ValueError, "out: got shape (1, 5, 3); expected (5, 3)"),
+    (read_only(np.zeros((5, 3))), ValueError, "out: the array is read-only"),
+]
+
+
+@pytest.mark.parametrize(("out", "kind", "message"), REFUSED_OUT)
+def test_outs_that_are_refused(out, kind, message):
+    with pytest.raises(kind) as caught:
+        module().angular_velocity_body(Q, Q, out=out)
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("leading", [(), (3,)])
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_what_is_not_finite_goes_where_it_belongs(bad, leading, dtype):
+    q, q_dot = (a.astype(dtype) for a in inputs("angular_velocity_body", leading))
+    clean = module().angular_velocity_body(q, q_dot)
+    q[..., 2] = bad  # psi stands in the first two components of Ω′ alone
+    found = module().angular_velocity_body(q, q_dot)
+    assert np.isnan(found[..., :2]).all()
+    assert_array_equal(found[..., 2], clean[..., 2])
+    twin = np.array(one_by_one("angular_velocity_body", [q, q_dot]))
+    assert_array_equal(np.isnan(twin), np.isnan(found))
+    q[..., 2] = 0
+    q_dot[..., 0] = bad  # in all three components
+    assert not np.isfinite(module().angular_velocity_body(q, q_dot)).any()
+
+
+@pytest.mark.parametrize("name", [n for n in QUANTITIES if "inverse" in n or "rates_from" in n])
+@pytest.mark.parametrize("leading", [(), (2,)])
+def test_a_pole_gives_no_finite_number_and_no_warning(name, leading):
+    arrays = inputs(name, leading)
+    arrays[0][..., 1] = 0.0
+    found = getattr(module(), name)(*arrays)
+    assert not np.isfinite(found).all()
+    twin = one_by_one(name, arrays)
+    assert_array_equal(np.isfinite(twin), np.isfinite(found))
+
+
+def test_single_precision_overflows_without_a_warning():
+    big = np.full(3, 3e38, np.float32)
+    with np.errstate(all="raise"):
+        found = module().angular_velocity_body(np.full(3, 0.4, np.float32), big)
+    assert found.dtype == np.float32
+
+
+def test_the_sign_of_zero_is_kept():
+    q = np.array([-0.0, 0.3, 0.0])
+    assert np.signbit(module().rotation_matrix(np.stack([q, q]))[0, 0, 2])
+
+
+def test_the_error_state_of_the_caller_is_left_alone():
+    with np.errstate(all="raise"):
+        module().rotation_matrix(np.full((2, 3), np.inf))
+        assert set(np.geterr().values()) == {"raise"}
+
+
+def peak(call) -> int:
+    """The most memory that a call held at one time, in bytes."""
+    call()
+    tracemalloc.start()
+    try:
+        call()
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+@pytest.mark.parametrize("dtype", [np.float64, np.int64])
+def test_memory_is_the_outputs_and_two_megabytes(name, dtype):
+    arrays = [a.astype(dtype) for a in inputs(name, (200_000,))]
+    size = getattr(module(), name)(*arrays).nbytes
+    assert peak(lambda: getattr(module(), name)(*arrays)) <= size + 2e6
+
+
+def test_a_million_orientations_need_no_more():
+    q, q_dot = (np.zeros((1_000_000, 3)) for _ in range(2))
+    assert peak(lambda: module().rotation_rate(q, q_dot)) <= 72e6 + 2e6

@@ -1,0 +1,144 @@
+"""Generated NumPy functions are true: SciPy, numerical derivatives and 50 digits say so."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from conftest import derived
+from kernel_modules import EPS, QUANTITIES, inputs, module, one_by_one
+from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
+from witness import derivative, evaluate, mp, paths, rotation, unhat
+
+from rigidsym.kernels.module import generate
+
+
+def as_array(matrix) -> np.ndarray:
+    array = np.array(matrix.tolist(), dtype=float)
+    return array[:, 0] if array.shape[1] == 1 else array
+
+
+def test_rotation_matrix_is_scipys(sequence):
+    q = inputs("rotation_matrix", (50,))[0]
+    assert_allclose(
+        module(sequence).rotation_matrix(q),
+        Rotation.from_euler(sequence, q).as_matrix(),
+        atol=4 * EPS,
+    )
+
+
+def test_passive_rotation_matrix_is_the_transpose(sequence):
+    passive = generate(derived(sequence, passive=True)).load()
+    q = inputs("rotation_matrix")[0]
+    expected = Rotation.from_euler(sequence, q).inv().as_matrix()
+    assert_allclose(passive.rotation_matrix(q), expected, atol=4 * EPS)
+
+
+def test_velocities_and_accelerations_are_those_of_the_numerical_derivative(sequence):
+    (path,) = paths(1, seed=7)
+    turned, rate, second = (
+        derivative(lambda t: rotation(sequence, path.at(t)), order) for order in range(3)
+    )
+    spin = rate * turned.T
+    omega = unhat(spin)
+    alpha = unhat(second * turned.T + rate * rate.T)
+    expected = {
+        "rotation_rate": rate,
+        "spin_matrix": spin,
+        "angular_velocity_space": omega,
+        "angular_velocity_body": turned.T * omega,
+        "angular_acceleration_space": alpha,
+        "angular_acceleration_body": turned.T * alpha,
+    }
+    q, q_dot, q_ddot = (np.array(c, float) for c in (path.q, path.q_dot, path.q_ddot))
+    for name, value in expected.items():
+        arguments = (q, q_dot, q_ddot)[: len(QUANTITIES[name][0])]
+        found = getattr(module(sequence), name)(*arguments)
+        assert_allclose(found, as_array(value), rtol=0, atol=1e-14, err_msg=name)
+
+
+def test_rates_come_back_from_the_velocity(sequence):
+    q, q_dot = inputs("angular_velocity_space", (50,))
+    functions = module(sequence)
+    for frame in ("space", "body"):
+        omega = getattr(functions, f"angular_velocity_{frame}")(q, q_dot)
+        rates = getattr(functions, f"rates_from_angular_velocity_{frame}")(q, omega)
+        assert_allclose(rates, q_dot, rtol=1e-10, atol=1e-10)
+        matrix = getattr(functions, f"rate_matrix_{frame}")(q)
+        inverse = getattr(functions, f"inverse_rate_matrix_{frame}")(q)
+        assert_allclose(np.einsum("nij,nj->ni", matrix, q_dot), omega, atol=1e-14)
+        assert_allclose(matrix @ inverse, np.broadcast_to(np.eye(3), (50, 3, 3)), atol=1e-10)
+
+
+SPECIAL = np.array([*itertools.product(np.pi / 4 * np.arange(-4, 5), repeat=3)])
+
+
+def angles_of_all_sizes() -> np.ndarray:
+    rng = np.random.default_rng(3)
+    sizes = (1e-8, 1.0, np.pi, 1e4)
+    return np.concatenate([rng.uniform(-s, s, (40, 3)) for s in sizes] + [SPECIAL[::9]])
+
+
+def exactly(sequence: str, name: str, arrays: list[np.ndarray]) -> list[list]:
+    """The derivation's own expression at 50 digits, entry by entry, point by point."""
+    motion = derived(sequence)
+    symbols = [s for a in QUANTITIES[name][0] for s in motion.argument(a).symbols]
+    points = zip(*(array.tolist() for array in arrays), strict=True)
+    values = (dict(zip(symbols, map(mp.mpf, itertools.chain(*p)), strict=True)) for p in points)
+    return [list(evaluate(motion.step(name).expression, known)) for known in values]
+
+
+def worst_error(found: np.ndarray, exact: list[list]) -> float:
+    """The largest error in eps of the largest entry at its point."""
+    worst = 0.0
+    for values, truth in zip(found.reshape(len(exact), -1).tolist(), exact, strict=True):
+        largest = max(map(abs, truth)) or mp.mpf(1)
+        errors = [abs(mp.mpf(v) - t) / largest for v, t in zip(values, truth, strict=True)]
+        worst = max(worst, float(max(errors)) / EPS)
+    return worst
+
+
+@pytest.mark.parametrize(
+    "name", ["rotation_matrix", "angular_velocity_space", "angular_velocity_body"]
+)
+def test_error_is_at_most_4_eps(sequence, name):
+    q = angles_of_all_sizes()
+    q_dot = np.random.default_rng(5).uniform(-3, 3, q.shape)
+    arrays = [q, q_dot][: len(QUANTITIES[name][0])]
+    exact = exactly(sequence, name, arrays)
+    functions = module(sequence)
+    assert worst_error(getattr(functions, name)(*arrays), exact) <= 4
+    assert worst_error(one_by_one(name, arrays, sequence), exact) <= 4
+
+
+@pytest.mark.parametrize("name", QUANTITIES)
+def test_agrees_with_the_derivation_at_50_digits(sequence, name):
+    arrays = inputs(name, (6,))
+    found = getattr(module(sequence), name)(*arrays)
+    assert worst_error(found, exactly(sequence, name, arrays)) <= 60  # 1/sin θ is up to 20 here
+
+
+@pytest.mark.parametrize("sequence", ["ZXZ", "zyx"])
+def test_near_a_pole_only_the_input_limits_the_accuracy(sequence):
+    pole = 0.0 if sequence == "ZXZ" else np.pi / 2
+    q = np.array([[0.3, pole + distance, -0.7] for distance in (1e-3, -1e-6, 1e-9, 1e-12)])
+    omega = np.ones_like(q)
+    found = module(sequence).rates_from_angular_velocity_body(q, omega)
+    exact = exactly(sequence, "rates_from_angular_velocity_body", [q, omega])
+    assert worst_error(found, exact) <= 8
+
+
+def test_large_angles_are_right():
+    rng = np.random.default_rng(11)
+    q = np.concatenate([rng.uniform(-s, s, (30, 3)) for s in (1e6, 1e15, 1e300)])
+    assert worst_error(module().rotation_matrix(q), exactly("ZXZ", "rotation_matrix", [q])) <= 4
+
+
+def test_single_precision_is_as_good_as_single_precision_can_be(sequence):
+    q = angles_of_all_sizes().astype(np.float32)
+    found = module(sequence).rotation_matrix(q)
+    assert found.dtype == np.float32
+    expected = module(sequence).rotation_matrix(q.astype(np.float64))
+    assert np.abs(found - expected).max() <= 5 * np.finfo(np.float32).eps

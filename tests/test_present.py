@@ -1,0 +1,185 @@
+"""What people read: equal to the normal form, found again when read back, never longer."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sympy import Rational, cos, cot, pi, sin, sqrt, tan
+from witness import TOLERANCE, mp, number, paths, values_along
+
+from rigidsym.algebra import present
+from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.present import Presenter, presenter_for
+from rigidsym.algebra.quotient import Quotient
+from rigidsym.errors import AlgebraError
+from rigidsym.models.so3 import time_function
+
+LAW = settings(max_examples=150, deadline=None, derandomize=True)
+TIME = sp.Symbol("t")
+a, b, w, x, y, z = map(time_function, ("a", "b", "w", "x", "y", "z"))
+a_dot, b_dot = a.diff(TIME), b.diff(TIME)
+m = sp.Symbol("m")
+UNIT = w**2 + x**2 + y**2 + z**2 - 1
+
+
+GENERATORS = [sin(a), cos(a), sin(b), cos(b), a_dot, b_dot, m]
+CODEC = codec_for(GENERATORS)
+PRESENTER = presenter_for(CODEC)
+
+
+def shown(expression: sp.Expr, codec: Codec = CODEC) -> sp.Expr:
+    """The textbook form of an expression."""
+    return presenter_for(codec).quotient(codec.encode_quotient(expression))
+
+
+FOLDED = [
+    (sin(a) ** 2 + cos(a) ** 2, 1),
+    (1 - cos(a) ** 2, sin(a) ** 2),
+    (1 - sin(a) ** 2, cos(a) ** 2),
+    (cos(a) ** 2 - 1, -(sin(a) ** 2)),
+    (m - m * cos(a) ** 2, m * sin(a) ** 2),
+    (m * sin(a) ** 2 + m * cos(a) ** 2, m),
+    (3 * sin(a) ** 2 + 3 * cos(a) ** 2 + sin(b), sin(b) + 3),
+    (2 - cos(a) ** 2 - sin(b) ** 2, sin(a) ** 2 + cos(b) ** 2),
+    (
+        m * sin(a) ** 2 * cos(b) ** 2 + m * cos(a) ** 2 * cos(b) ** 2 + m * sin(b) ** 2,
+        m,
+    ),
+    (sin(a) ** 3 + sin(a) * cos(a) ** 2, sin(a)),
+    ((sin(a) + cos(a)) ** 2, 1 + 2 * sin(a) * cos(a)),
+    (sin(a) * m + cos(b) * m, m * (sin(a) + cos(b))),
+    (sin(a) / cos(a), tan(a)),
+    (m * cos(a) / sin(a), m * cot(a)),
+    (sin(a) ** 2 / cos(a) ** 2, tan(a) ** 2),
+    ((1 - cos(a) ** 2) / sin(a), sin(a)),
+    (cos(a) / (1 - sin(a) ** 2), 1 / cos(a)),
+    ((1 - cos(a) ** 2) * sin(b) / (sin(a) * cos(b)), sin(a) * tan(b)),
+    (sin(a) / (1 + cos(a)), sin(a) / (1 + cos(a))),
+    ((m**2 - 1) / (m - 1), m + 1),
+    (m * sin(a) / (m * cos(a) + m), sin(a) / (cos(a) + 1)),
+    (sp.Integer(0), 0),
+    (Rational(-2, 3) * m, -2 * m / 3),
+    (-sin(a) - cos(a), -sin(a) - cos(a)),
+]
+
+
+@pytest.mark.parametrize(("expression", "expected"), FOLDED, ids=str)
+def test_textbook_forms(expression, expected):
+    assert shown(expression) == expected
+
+
+UNIT_FORMS = [
+    (UNIT + 1, 1),
+    ((UNIT + 1) ** 2, 1),
+    (w**2 + x**2 + y**2, 1 - z**2),
+    (1 - w**2 - x**2, y**2 + z**2),
+    (w * (UNIT + 1), w),
+    (w * w.diff(TIME) + x * x.diff(TIME) + y * y.diff(TIME) + z * z.diff(TIME), 0),
+    (1 - w**2, 1 - w**2),
+]
+
+
+@pytest.mark.parametrize(("expression", "expected"), UNIT_FORMS, ids=str)
+def test_squares_of_a_unit_quaternion_fold(expression, expected):
+    assert shown(expression, codec_for([w, x, y, z], constraints=[UNIT])) == expected
+
+
+def test_numbers_with_roots():
+    for expression, expected in (
+        (sqrt(2) * sqrt(3) * sin(a), sqrt(6) * sin(a)),
+        (sin(a + pi / 4), sqrt(2) * (sin(a) + cos(a)) / 2),
+        (sin(a + pi / 3) - sin(a - pi / 3), sqrt(3) * cos(a)),
+    ):
+        assert shown(expression, codec_for([expression])) == expected
+
+
+VALUES = {**values_along((a, b), paths(1, size=2, seed=5)[0]), m: mp.mpf(5) / 11}
+
+
+def polynomials(largest: int = 4) -> st.SearchStrategy:
+    monomials = st.lists(st.sampled_from(GENERATORS), max_size=4).map(lambda f: sp.Mul(*f))
+    terms = st.tuples(st.integers(-4, 4), monomials).map(lambda pair: pair[0] * pair[1])
+    return st.lists(terms, min_size=1, max_size=largest).map(lambda parts: sp.Add(*parts))
+
+
+def is_same_number(first: sp.Expr, second: sp.Expr) -> bool:
+    one, other = number(first, dict(VALUES)), number(second, dict(VALUES))
+    return bool(abs(one - other) <= TOLERANCE * max(1, abs(other)))
+
+
+@given(expression=polynomials())
+@LAW
+def test_form_has_the_value_of_the_expression(expression):
+    assert is_same_number(PRESENTER.element(CODEC.encode(expression)), expression)
+
+
+@given(expression=polynomials())
+@LAW
+def test_form_is_found_again_when_read_back(expression):
+    form = PRESENTER.element(CODEC.encode(expression))
+    assert PRESENTER.quotient(CODEC.encode_quotient(form)) == form
+
+
+@given(expression=polynomials())
+@LAW
+def test_form_is_never_longer_than_the_normal_form(expression):
+    element = CODEC.encode(expression)
+    decoded = sp.expand(CODEC.decode(element))
+    assert sp.count_ops(PRESENTER.element(element)) <= sp.count_ops(decoded)
+
+
+@given(above=polynomials(3), below=polynomials(2))
+@LAW
+def test_quotients_keep_their_value(above, below):
+    denominator = CODEC.encode(below)
+    if denominator:
+        value = Quotient(CODEC.ring, CODEC.encode(above), denominator)
+        assert is_same_number(PRESENTER.quotient(value), above / below)
+
+
+def test_high_powers_are_not_made_longer_by_nesting():
+    codec = codec_for([cos(a / 3), cos(2 * a)])
+    element = codec.encode(cos(a / 3) * cos(2 * a))
+    form = presenter_for(codec).element(element)
+    assert sp.count_ops(form) <= sp.count_ops(sp.expand(codec.decode(element)))
+
+
+def test_matrix_is_presented_entry_by_entry():
+    entries = [sin(a) ** 2 + cos(a) ** 2, m * sin(a), cos(a) * m**2, 1 - sin(b) ** 2]
+    encoded = [CODEC.encode(entry) for entry in entries]
+    matrix = RingMatrix.of(CODEC.ring, [encoded[:2], encoded[2:]])
+    assert PRESENTER.matrix(matrix) == sp.Matrix([[1, m * sin(a)], [cos(a) * m**2, cos(b) ** 2]])
+    divided = PRESENTER.matrix(matrix, CODEC.encode(m))
+    assert divided == sp.Matrix([[1 / m, sin(a)], [cos(a) * m, cos(b) ** 2 / m]])
+
+
+def test_presenter_is_shared_like_its_ring():
+    assert presenter_for(CODEC) is PRESENTER
+
+
+def forgetful(_ring, element):
+    """A shortening that loses a term."""
+    return element - element.ring.term_new(*next(iter(element.items())))
+
+
+def test_a_form_with_another_value_is_not_returned(monkeypatch):
+    value = CODEC.encode(m * sin(a) + cos(b))
+    monkeypatch.setattr(present, "shortest", forgetful)
+    with pytest.raises(AlgebraError, match="differs from its normal form"):
+        Presenter(CODEC).quotient(Quotient(CODEC.ring, value, CODEC.encode(1 + m)))
+
+
+def test_a_factor_lost_on_the_way_is_seen(monkeypatch):
+    def without_bracket(terms, weights):
+        return tuple(
+            present.Product(product.coefficient, product.powers)
+            for product in honest(terms, weights)
+        )
+
+    honest = present.collect
+    monkeypatch.setattr(present, "collect", without_bracket)
+    with pytest.raises(AlgebraError, match="differs from its normal form"):
+        Presenter(CODEC).element(CODEC.encode(m * sin(a) + m * cos(b)))

@@ -1,0 +1,304 @@
+"""The laws of the ring: normal forms, the zero test and the derivation d/dt."""
+
+from __future__ import annotations
+
+from math import prod
+
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from rigidsym.algebra.matrix import RingMatrix, cross
+from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.ring import Generator, Ring
+from rigidsym.errors import AlgebraError
+from rigidsym.models.so3 import time_function
+
+LAW = settings(max_examples=60, deadline=None, derandomize=True)
+theta, w, x, y, z = map(time_function, ("theta", "w", "x", "y", "z"))
+TIME = sp.Symbol("t")
+
+
+def ring_of(*expressions: sp.Expr, **options) -> Ring:
+    return Ring([Generator(expression=expression) for expression in expressions], **options)
+
+
+def circle(**options) -> Ring:
+    """sin θ, cos θ, θ̇, a constant m: one relation, and the derivatives of all but θ̇."""
+    ring = ring_of(sp.sin(theta), sp.cos(theta), theta.diff(TIME), sp.Symbol("m"), **options)
+    s, c, rate, _ = ring.polynomials.gens
+    ring.set_relations([s**2 + c**2 - 1])
+    ring.set_derivatives({0: c * rate, 1: -s * rate, 3: ring.zero})
+    return ring
+
+
+def sphere() -> Ring:
+    """A unit quaternion and its rates, on the sphere and tangent to it."""
+    ring = ring_of(w, x, y, z, *(q.diff(TIME) for q in (w, x, y, z)))
+    q, rates = ring.polynomials.gens[:4], ring.polynomials.gens[4:]
+    ring.set_relations(
+        [
+            sum(a**2 for a in q) - 1,
+            sum(a * b for a, b in zip(q, rates, strict=True)),
+        ]
+    )
+    ring.set_derivatives(dict(enumerate(rates)))
+    return ring
+
+
+def roots() -> Ring:
+    """√2 and an inverse: relations with leading coefficients other than 1."""
+    ring = ring_of(sp.sqrt(2), 1 / (1 + 3 * x**2), x)
+    root, inverse, q = ring.polynomials.gens
+    ring.set_relations([root**2 - 2, inverse * (1 + 3 * q**2) - 1])
+    return ring
+
+
+RINGS = {"circle": circle(), "sphere": sphere(), "roots": roots()}
+every_ring = pytest.mark.parametrize("ring", RINGS.values(), ids=RINGS)
+
+
+def polynomials(ring: Ring, *, without: tuple[int, ...] = ()) -> st.SearchStrategy:
+    """Random polynomials in the generators, as they come: not in normal form."""
+    gens = [gen for place, gen in enumerate(ring.polynomials.gens) if place not in without]
+    monomials = st.lists(st.sampled_from(gens), max_size=4)
+    terms = st.lists(st.tuples(st.integers(-9, 9), monomials), max_size=4)
+    return terms.map(lambda found: sum((prod(m, start=ring.one) * c for c, m in found), ring.zero))
+
+
+@every_ring
+@given(data=st.data())
+@LAW
+def test_normal_form_is_a_homomorphism(ring, data):
+    a, b = data.draw(polynomials(ring)), data.draw(polynomials(ring))
+    reduce = ring.reduce
+    assert reduce(a + b) == reduce(reduce(a) + reduce(b))
+    assert reduce(a * b) == reduce(reduce(a) * reduce(b))
+    assert reduce(-a) == -reduce(a)
+
+
+@every_ring
+@given(data=st.data())
+@LAW
+def test_normal_form_is_idempotent_and_fixes_numbers(ring, data):
+    normal = ring.reduce(data.draw(polynomials(ring)))
+    assert ring.reduce(normal) == normal
+    assert ring.reduce(ring.one * 7) == ring.one * 7
+    assert ring.reduce(ring.zero) == ring.zero
+
+
+@every_ring
+@given(data=st.data())
+@LAW
+def test_members_of_the_ideal_and_they_alone_are_zero(ring, data):
+    member = sum(
+        (data.draw(polynomials(ring)) * relation for relation in ring.relations), ring.zero
+    )
+    other = data.draw(polynomials(ring))
+    assert ring.is_zero(member)
+    assert ring.reduce(other + member) == ring.reduce(other)
+    assert not ring.is_zero(ring.reduce(other) + member + 1) or ring.reduce(other) == -ring.one
+
+
+@every_ring
+@given(data=st.data())
+@LAW
+def test_dot_is_the_sum_of_products(ring, data):
+    pairs = [(data.draw(polynomials(ring)), data.draw(polynomials(ring))) for _ in range(2)]
+    assert ring.dot(pairs) == ring.reduce(sum((a * b for a, b in pairs), ring.zero))
+
+
+SMOOTH = {
+    "circle": (RINGS["circle"], (2,)),
+    "sphere": (RINGS["sphere"], (4, 5, 6, 7)),
+}
+every_derivation = pytest.mark.parametrize(("ring", "rates"), SMOOTH.values(), ids=SMOOTH)
+
+
+@every_derivation
+@given(data=st.data())
+@LAW
+def test_dt_is_linear_and_obeys_leibniz(ring, rates, data):
+    a = data.draw(polynomials(ring, without=rates))
+    b = data.draw(polynomials(ring, without=rates))
+    assert ring.dt(a * 3 - b) == ring.reduce(ring.dt(a) * 3 - ring.dt(b))
+    assert ring.dt(a * b) == ring.reduce(ring.dt(a) * b + a * ring.dt(b))
+
+
+@every_derivation
+@given(data=st.data(), power=st.integers(1, 3))
+@LAW
+def test_dt_obeys_the_chain_rule(ring, rates, data, power):
+    a = data.draw(polynomials(ring, without=rates))
+    below = a ** (power - 1) if power > 1 else ring.one
+    assert ring.dt(a**power) == ring.reduce(power * below * ring.dt(a))
+
+
+@every_derivation
+@given(data=st.data())
+@LAW
+def test_dt_does_not_ask_which_form_it_is_given(ring, rates, data):
+    a = data.draw(polynomials(ring, without=rates))
+    assert ring.dt(ring.reduce(a)) == ring.dt(a)
+
+
+@every_derivation
+def test_dt_of_a_relation_is_zero(ring, rates):
+    q = {place for place in range(len(ring.generators)) if place not in rates}
+    assert q == set(ring.derivatives)
+    assert ring.dt(ring.relations[0]) == ring.zero
+    assert ring.dt(ring.one * 5) == ring.zero
+
+
+def test_dt_of_the_circle():
+    ring = RINGS["circle"]
+    s, c, rate, m = ring.polynomials.gens
+    assert ring.dt(s) == c * rate
+    assert ring.dt(c) == -s * rate
+    assert ring.dt(m * s * c) == ring.reduce(m * rate * (c**2 - s**2))
+    assert not ring.dt(m)
+
+
+def test_dt_beyond_the_order_names_what_is_missing():
+    ring = RINGS["circle"]
+    rate = ring.generator(2)
+    assert not ring.can_derive(rate)
+    with pytest.raises(AlgebraError) as caught:
+        ring.dt(rate * ring.generator(3))
+    assert str(caught.value) == (
+        "the ring was built without the time derivative of Derivative(theta(t), t); "
+        "build it with a higher order"
+    )
+
+
+def test_contradictory_relations_are_refused():
+    ring = ring_of(x)
+    q = ring.generator(0)
+    with pytest.raises(AlgebraError, match=r"^the relations contradict one another: .*1 = 0$"):
+        ring.set_relations([q - 1, q - 2])
+
+
+def test_relations_that_say_nothing_are_no_relations():
+    ring = ring_of(x)
+    ring.set_relations([ring.zero])
+    assert ring.relations == ()
+    assert ring.reduce(ring.generator(0) ** 5) == ring.generator(0) ** 5
+
+
+def test_new_relations_replace_what_was_remembered():
+    ring = ring_of(x)
+    q = ring.generator(0)
+    assert ring.reduce(q**2) == q**2
+    ring.set_relations([q**2 - 2])
+    assert ring.reduce(q**2) == ring.one * 2
+    ring.set_relations([])
+    assert ring.reduce(q**2) == q**2
+
+
+def test_new_derivatives_replace_what_was_remembered():
+    ring = ring_of(x, y)
+    q, other = ring.polynomials.gens
+    ring.set_derivatives({0: other})
+    assert ring.dt(q**2) == 2 * q * other
+    ring.set_derivatives({0: ring.one})
+    assert ring.dt(q**2) == 2 * q
+
+
+def test_whole_numbers_and_fractions_give_one_normal_form():
+    whole, field = circle(has_fractions=False), circle(has_fractions=True)
+    for ring in (whole, field):
+        s, c, _, m = ring.polynomials.gens
+        assert ring.is_zero((s**2 + c**2) ** 3 * m - m)
+        assert not ring.is_zero(s**2 - c**2)
+
+
+def test_a_ring_with_an_opaque_function_is_not_complete():
+    plain = ring_of(x)
+    dark = Ring([Generator(expression=sp.cosh(x), opaque=True), Generator(expression=x)])
+    assert plain.complete
+    assert not dark.complete
+
+
+class TestQuotient:
+    ring = RINGS["circle"]
+    s, c, rate, m = ring.polynomials.gens
+
+    def of(self, numerator, denominator):
+        return Quotient(self.ring, numerator, denominator)
+
+    def test_equal_by_cross_multiplication(self):
+        tangent = self.of(self.s, self.c)
+        doubled = self.of(2 * self.s * self.m, 2 * self.c * self.m)
+        assert tangent.equals(doubled)
+        assert self.of(self.s, 1 + self.c).equals(self.of(1 - self.c, self.s))
+        assert not tangent.equals(tangent.inverse())
+
+    def test_arithmetic(self):
+        tangent, one = self.of(self.s, self.c), Quotient.whole(self.ring, self.ring.one)
+        secant = self.of(self.ring.one, self.c)
+        assert (one + tangent**2).equals(secant**2)
+        assert (tangent * tangent.inverse()).equals(one)
+        assert (tangent**-2).equals(tangent.inverse() ** 2)
+        assert (tangent**0).equals(one)
+        assert Quotient.sum(self.ring, []).equals(Quotient.whole(self.ring, self.ring.zero))
+        assert Quotient.product(self.ring, [tangent, secant]).equals(self.of(self.s, self.c**2))
+
+    @pytest.mark.parametrize("power", [-1, -3])
+    def test_zero_does_not_divide(self, power):
+        zero = Quotient.whole(self.ring, self.ring.zero)
+        with pytest.raises(AlgebraError, match="zero in the ring"):
+            zero**power
+
+    def test_hidden_zero_does_not_divide(self):
+        hidden = self.ring.reduce(self.s**2 + self.c**2 - 1)
+        with pytest.raises(AlgebraError, match="zero in the ring"):
+            self.of(self.s, hidden)
+
+
+class TestMatrix:
+    ring = RINGS["circle"]
+    s, c, rate, m = ring.polynomials.gens
+
+    def turn(self):
+        one, zero = self.ring.one, self.ring.zero
+        rows = [[self.c, -self.s, zero], [self.s, self.c, zero], [zero, zero, one]]
+        return RingMatrix.of(self.ring, rows)
+
+    def test_products_and_transposes(self):
+        turn = self.turn()
+        one = RingMatrix.identity(self.ring, 3)
+        assert (turn @ turn.T - one).is_zero()
+        assert ((turn @ turn).T - turn.T @ turn.T).is_zero()
+        assert not (turn - turn.T).is_zero()
+        assert turn.shape == (3, 3)
+        assert turn[1, 0] == self.s
+
+    def test_product_rule(self):
+        turn = self.turn()
+        both = (turn @ turn).dt()
+        assert (both - (turn.dt() @ turn + turn @ turn.dt())).is_zero()
+        assert ((turn @ turn.T).dt()).is_zero()
+
+    def test_adjugate_and_determinant(self):
+        m, s, c, one = self.m, self.s, self.c, self.ring.one
+        matrix = RingMatrix.of(self.ring, [[m, s, one], [c, 2 * m, s], [s * c, one, m**2]])
+        identity = RingMatrix.identity(self.ring, 3)
+        assert (matrix @ matrix.adjugate() - identity.scale(matrix.det())).is_zero()
+        assert (matrix.adjugate() @ matrix - identity.scale(matrix.det())).is_zero()
+        assert matrix.T.det() == matrix.det()
+        assert (matrix @ matrix).det() == self.ring.reduce(matrix.det() ** 2)
+        assert self.turn().det() == self.ring.one
+
+    def test_cross_product(self):
+        u, v = (self.s, self.c, self.m), (self.m, self.ring.one, self.s)
+        normal = cross(self.ring, u, v)
+        for vector in (u, v):
+            assert not self.ring.dot(zip(vector, normal, strict=True))
+        assert cross(self.ring, v, u) == tuple(-entry for entry in normal)
+
+    def test_parallel_vectors_are_seen_through_the_relations(self):
+        """s·(s, c, 0) is held as (1 − c², sc, 0), and its cross product with (s, c, 0) is zero."""
+        vector = (self.s, self.c, self.ring.zero)
+        longer = tuple(self.ring.reduce(self.s * entry) for entry in vector)
+        assert not any(cross(self.ring, vector, longer))

@@ -1,0 +1,223 @@
+"""Rotations that are not in the catalogue.
+
+Whatever is a rotation is proved so without a change to the ring; whatever is not is refused; and
+what cannot be told is marked unproved.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+import sympy as sp
+from samples import (
+    NORM,
+    ROTATIONS,
+    TIME,
+    WRONG,
+    about_z,
+    alpha,
+    chain,
+    length,
+    m,
+    model,
+    phi,
+    psi,
+    theta,
+    u,
+    w,
+    x,
+    y,
+    z,
+)
+from sympy import cosh, pi, sech, sin, sinh, sqrt, tanh
+from witness import agree, derivative, evaluate, mp, paths, unhat, values_along
+
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.derive.derivation import Derivation
+from rigidsym.derive.kinematics import derive
+from rigidsym.errors import AlgebraError, DerivationError, ModelError, NotARotation
+from rigidsym.models.so3 import elementary, time_function
+
+DERIVED: dict[str, Derivation] = {}
+
+
+def derived(name: str) -> Derivation:
+    if name not in DERIVED:
+        DERIVED[name] = derive(ROTATIONS[name])
+    return DERIVED[name]
+
+
+@pytest.mark.parametrize("name", ROTATIONS)
+def test_other_rotations_are_data(name):
+    """Orthogonal, skew, Ω = R Ω′ and W q̇ = Ω, each proved exactly."""
+    motion = derived(name)
+    assert motion.is_proved
+    assert {"rotation_matrix", "spin_matrix", "rate_matrix_body"} <= {
+        step.quantity.name for step in motion.steps
+    }
+
+
+FREE = [name for name, sample in ROTATIONS.items() if not sample.constraints]
+
+
+@pytest.mark.parametrize("name", FREE)
+def test_other_rotations_turn_as_the_numbers_do(name):
+    """Small coordinates, so that roots and tangents stay where they are real."""
+    sample, motion = ROTATIONS[name], derived(name)
+    (path,) = paths(1, size=len(sample.coordinates), seed=6)
+    path = dataclasses.replace(path, q=tuple(value / 9 for value in path.q))
+    constants = {m: mp.mpf(3) / 7, length: mp.mpf(5) / 7, alpha: mp.mpf(2) / 3}
+
+    def R(t):
+        return evaluate(sample.matrix, {**values_along(sample.coordinates, path, t), **constants})
+
+    def printed(quantity):
+        values = {**values_along(sample.coordinates, path), **constants}
+        return evaluate(getattr(motion, quantity), values)
+
+    first, second = derivative(R), derivative(R, 2)
+    omega = unhat(first * R(0).T)
+    assert agree(printed("rotation_matrix"), R(0))
+    assert agree(printed("angular_velocity_space"), omega)
+    assert agree(printed("angular_velocity_body"), R(0).T * omega)
+    assert agree(printed("rate_matrix_space") * mp.matrix(path.q_dot), omega)
+    alpha_space = unhat(second * R(0).T + first * first.T)
+    assert agree(printed("angular_acceleration_space"), alpha_space)
+    assert agree(printed("angular_acceleration_body"), R(0).T * alpha_space)
+
+
+def test_a_chain_of_eight_turns_is_a_rotation():
+    angles = [time_function(f"q{k}") for k in range(1, 9)]
+    matrix = chain(*zip("zxyzxyzx", angles, strict=True))
+    codec = codec_for([*matrix, *(sp.diff(angle, TIME) for angle in angles)], order=1)
+    R = RingMatrix.of(codec.ring, [[codec.encode(e) for e in row] for row in matrix.tolist()])
+    spin = R.dt() @ R.T
+    assert (R @ R.T - RingMatrix.identity(codec.ring, 3)).is_zero()
+    assert R.det() == codec.ring.one
+    assert (spin + spin.T).is_zero()
+    omega = RingMatrix.column(codec.ring, [spin[2, 1], spin[0, 2], spin[1, 0]])
+    assert (R @ (R.T @ omega) - omega).is_zero()
+
+
+def test_a_square_rate_matrix_is_inverted_and_others_are_not():
+    assert hasattr(derived("rotation vector"), "inverse_rate_matrix_space")
+    assert derived("rotation vector").singularities is not None
+    for name in ("unit quaternion", "five turns", "gear"):
+        assert not hasattr(derived(name), "inverse_rate_matrix_space")
+        assert derived(name).singularities is None
+
+
+@pytest.mark.parametrize(
+    "sample",
+    [
+        model(about_z(sech(u), tanh(u)), u),
+        model(about_z(1 / cosh(u), sinh(u) / cosh(u)), u),
+    ],
+    ids=["sech and tanh", "sinh and cosh"],
+)
+def test_functions_of_unknown_relations_leave_the_claims_unproved(sample):
+    """It is a rotation, but the ring does not know sech² + tanh² = 1."""
+    motion = derive(sample)
+    unproved = [proof for proof in motion.proofs if not proof.is_exact]
+    assert not motion.is_proved
+    assert {proof.claim.text for proof in unproved} >= {"R Rᵀ = 1", "det R = 1"}
+    for proof in unproved:
+        assert proof.status == "unproved"
+        values = {**values_along([u], paths(1, size=1)[0]), TIME: mp.mpf(0)}
+        assert proof.residual is not None
+        assert not proof.residual.is_zero_matrix
+        assert agree(evaluate(proof.residual, values), mp.zeros(*proof.residual.shape))
+
+
+@pytest.mark.parametrize(("sample", "claim", "residual"), WRONG.values(), ids=WRONG)
+def test_what_is_no_rotation_is_refused_with_what_is_left_over(sample, claim, residual):
+    with pytest.raises(NotARotation) as caught:
+        derive(sample)
+    message = str(caught.value)
+    assert message.startswith(f"sample: not a rotation, since {claim} fails; left over: ")
+    assert residual in message.split("left over: ", 1)[1]
+
+
+def test_passive_is_refused_alike():
+    sample = dataclasses.replace(WRONG["reflection"][0], passive=True)
+    with pytest.raises(NotARotation, match=r"det A = 1 fails; left over: .*-2"):
+        derive(sample)
+
+
+def test_dependent_roots_do_not_refute_a_rotation():
+    """√(4v²) = 2√(v²), which the ring does not know: nothing is decided, and nothing refused."""
+    one = sqrt(4 * x**2 + 4 * y**2 + 4 * z**2) / (2 * NORM)
+    for constraints in ((), (w - phi,)):
+        motion = derive(model(one * elementary("z", phi), phi, x, y, z, w, constraints=constraints))
+        assert not motion.is_proved
+
+
+@pytest.mark.parametrize(
+    "angle", [phi + TIME, phi + alpha * sin(TIME), phi + psi], ids=["time", "drive", "stranger"]
+)
+def test_motion_that_the_coordinates_do_not_hold_is_refused(angle):
+    with pytest.raises((DerivationError, AlgebraError, ModelError)):
+        derive(model(elementary("z", angle), phi))
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [
+        about_z(
+            2 / (sp.exp(u) + sp.exp(-u)),
+            (sp.exp(u) - sp.exp(-u)) / (sp.exp(u) + sp.exp(-u)),
+        ),
+        elementary("z", sp.exp(u)) * elementary("x", sp.exp(-u)),
+    ],
+    ids=["gudermannian", "angles"],
+)
+def test_exponentials_are_never_passed_in_silence(matrix):
+    """Proved, marked unproved, or refused; and what is proved is right."""
+    try:
+        motion = derive(model(matrix, u))
+    except AlgebraError:
+        return
+    values = values_along([u], paths(1, size=1)[0])
+    R = evaluate(motion.rotation_matrix, values)
+    assert agree(R * R.T, mp.eye(3))
+
+
+def test_an_inverse_is_not_claimed_where_the_determinant_may_vanish():
+    """The middle angle is zero in disguise, so that W has no inverse anywhere."""
+    hidden = theta * cosh(u) ** 2 - theta * sinh(u) ** 2 - theta
+    motion = derive(model(chain(("z", phi), ("x", hidden), ("z", psi)), phi, theta, psi))
+    for step in motion.steps:
+        if step.quantity.name.startswith(("inverse", "rates_from")):
+            assert not all(proof.is_exact for proof in step.proofs)
+
+
+class TestSingularAngles:
+    def singular(self, *turns):
+        return derive(model(chain(*turns), phi, theta, psi)).singularities
+
+    def test_multiples_vanish_more_often(self):
+        found = self.singular(("z", phi), ("x", 2 * theta), ("z", psi))
+        assert found.is_solved
+        assert {point.value for point in found.points} == {-pi / 2, 0, pi / 2, pi}
+        assert all(point.rank == 2 for point in found.points)
+
+    def test_halves_vanish_less_often(self):
+        found = self.singular(("z", phi), ("x", theta / 2), ("z", psi))
+        assert found.is_solved
+        assert {point.value for point in found.points} == {0}
+        found = self.singular(("x", phi), ("y", theta / 2), ("z", psi))
+        assert found.is_solved
+        assert {point.value for point in found.points} == {pi}
+
+    @pytest.mark.parametrize("axes", ["zxz", "xyz"])
+    def test_what_does_not_repeat_with_a_full_turn_is_not_called_solved(self, axes):
+        """cos(θ/3) vanishes at 3π/2, and not modulo 2π."""
+        found = self.singular((axes[0], phi), (axes[1], theta / 3), (axes[2], psi))
+        assert not found.is_solved
+
+    def test_an_offset_is_reported_and_not_guessed(self):
+        found = self.singular(("z", phi), ("x", theta + alpha), ("z", psi))
+        assert not found.is_solved
+        assert found.determinant.has(alpha)
