@@ -22,7 +22,7 @@ _HOMES = {
     "EULER_SEQUENCES": "rigidsym.models.catalogue",
     "RotationModel": "rigidsym.models.rotation",
     "Citation": "rigidsym.models.rotation",
-    "Derivation": "rigidsym.derive.derivation",
+    "Derivation": "rigidsym.mechanics.derivation",
     "RigidsymError": "rigidsym.errors",
     "NotARotation": "rigidsym.errors",
 }
@@ -41,8 +41,8 @@ __all__ = [
 
 if TYPE_CHECKING:
     from rigidsym.api import Motion, derive
-    from rigidsym.derive.derivation import Derivation
     from rigidsym.errors import NotARotation, RigidsymError
+    from rigidsym.mechanics.derivation import Derivation
     from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
     from rigidsym.models.rotation import Citation, RotationModel
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
-from rigidsym.derive import kinematics
-from rigidsym.derive.derivation import Derivation
+from rigidsym.mechanics import kinematics
+from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.rotation import RotationModel
 
 if TYPE_CHECKING:

@@ -215,11 +215,11 @@ class _Walk:
     def value(self, node: ast.expr) -> Sized:
         if isinstance(node, ast.BinOp):
             return self._chain(node)
-        if isinstance(node, ast.UnaryOp):
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd | ast.USub):
             operand = self.value(node.operand)
             is_minus = isinstance(node.op, ast.USub)
             return replace(operand, expression=-operand.expression) if is_minus else operand
-        if isinstance(node, ast.Call):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
             return self._call(node)
         if isinstance(node, ast.Constant):
             return _number(self._tokens[node.col_offset])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import tomllib
 
-from rigidsym.derive.quantities import quantities
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.mechanics.quantities import quantities
 from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
 from rigidsym.notes.measure import columns
 from rigidsym.resources import names, text

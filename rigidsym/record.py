@@ -12,7 +12,7 @@ from typing import Any
 import sympy as sp
 
 from rigidsym import __version__
-from rigidsym.derive.derivation import (
+from rigidsym.mechanics.derivation import (
     Argument,
     Derivation,
     Markup,

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from rigidsym import resources
-from rigidsym.derive.quantities import QUANTITY_NAMES
 from rigidsym.errors import ExpressionError, Fault, ModelError, SpecError
 from rigidsym.expression import check_name, parse_turns
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.mechanics.quantities import QUANTITY_NAMES
 from rigidsym.models.catalogue import DEFAULT_ANGLES, EulerAngles, euler_sequence
 from rigidsym.models.rotation import RotationModel
 from rigidsym.names import offer

@@ -11,8 +11,8 @@ from conftest import derived
 from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
-from rigidsym.derive.arguments import arguments_of
 from rigidsym.errors import AlgebraError
+from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.models.catalogue import EulerAngles
 from rigidsym.notes.breaking import break_lines
 from rigidsym.notes.formula import latex, text

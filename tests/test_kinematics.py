@@ -25,8 +25,8 @@ from witness import (
     values_along,
 )
 
-from rigidsym.derive.derivation import Derivation
-from rigidsym.derive.kinematics import derive
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.kinematics import derive
 from rigidsym.models.catalogue import EulerAngles
 
 FRAMES = ("space", "body")

@@ -11,7 +11,7 @@ from sympy import cos, sin
 from sympy.physics.vector import dynamicsymbols
 from witness import agree, evaluate, paths, values_along
 
-from rigidsym.derive.kinematics import derive
+from rigidsym.mechanics.kinematics import derive
 from rigidsym.models.catalogue import EulerAngles
 from rigidsym.models.so3 import elementary, hat
 

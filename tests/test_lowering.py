@@ -17,7 +17,7 @@ from rigidsym.kernels import ir
 from rigidsym.kernels.assign import write
 from rigidsym.kernels.infix import infix
 from rigidsym.kernels.ir import Assignment, Call, Name, Negative, Number, Product, Sum
-from rigidsym.kernels.layout import bracketed
+from rigidsym.kernels.layout import assignment_lines, bracketed
 from rigidsym.kernels.lower import _Reader, lower
 from rigidsym.kernels.naming import Names, identifier
 from rigidsym.kernels.narrow import narrowed
@@ -153,8 +153,12 @@ def test_a_product_that_is_part_of_another_is_its_own_common_part():
         ["x0 = a * b", "x1 = c * x0"],
         ["x1", "d * x1", "x0"],
     )
-    assignments, _ = lower_all([A * B * C, A * B * C * D, A * B])
-    assert assignments[1].value == Product((Name("c"), Name("x0")))
+    _, outputs = lower_all([A * B * C, A * B * C * D, A * B])
+    assert outputs[0] == Name("x1")
+
+
+def test_a_quotient_that_is_part_of_a_product_stays_one():
+    assert lowered(A * B * D / C, A * B / C) == (["x0 = a * b / c"], ["d * x0", "x0"])
 
 
 def test_powers_become_products():
@@ -165,6 +169,14 @@ def test_one_reciprocal_replaces_three_divisions():
     assignments, outputs = lowered(A / D, B / D, C / D)
     assert assignments == ["x0 = 1.0 / d"]
     assert outputs == ["a * x0", "b * x0", "c * x0"]
+
+
+def test_a_fraction_over_a_name():
+    assert lowered(-1 / (3 * A), 2 / (3 * A), 1 / (4 * A)) == (
+        ["x0 = 1.0 / a"],
+        ["-x0 / 3.0", "2.0 * x0 / 3.0", "0.25 * x0"],
+    )
+    assert lowered(-1 / (3 * A)) == ([], ["-1.0 / (a * 3.0)"])
 
 
 def test_two_divisions_stay():
@@ -226,6 +238,7 @@ EXPRESSIONS = st.recursive(
         st.lists(e, min_size=2, max_size=4).map(lambda parts: sp.Add(*parts)),
         st.lists(e, min_size=2, max_size=3).map(lambda parts: sp.Mul(*parts)),
         e.map(lambda x: x**2),
+        st.tuples(e, st.sampled_from([A, B, 3 * C])).map(lambda pair: pair[0] / pair[1]),
     ),
     max_leaves=12,
 )
@@ -233,7 +246,7 @@ EXPRESSIONS = st.recursive(
 
 @given(st.lists(EXPRESSIONS, min_size=1, max_size=5))
 @settings(max_examples=150, deadline=None)
-def test_lowering_is_exact_for_any_polynomial(expressions):
+def test_lowering_is_exact_for_any_sum_of_products_and_quotients(expressions):
     assignments, outputs = lower_all(expressions)
     values = {symbol.name: symbol for symbol in INPUTS}
     found = restored(assignments, outputs, values)
@@ -284,6 +297,13 @@ def test_trees_are_printed_with_the_brackets_they_need(tree, text):
 @pytest.mark.parametrize(("second", "lines"), [(39, 1), (40, 3), (41, 4)])
 def test_items_are_laid_out_by_width(second, lines):
     text = bracketed(4, "fun(", ["a" * 38, "b" * second], ")")
+    assert len(text.splitlines()) == lines
+    assert max(map(len, text.splitlines())) <= 88
+
+
+@pytest.mark.parametrize(("size", "lines"), [(42, 1), (43, 3), (80, 3), (81, 4)])
+def test_wide_assignments_get_brackets(size, lines):
+    text = assignment_lines(4, "a" * 39, f"{'b' * (size - 4)} * c")
     assert len(text.splitlines()) == lines
     assert max(map(len, text.splitlines())) <= 88
 

@@ -8,8 +8,8 @@ import pytest
 import sympy as sp
 from conftest import derived
 
-from rigidsym.derive.derivation import Derivation, Markup, Proof
-from rigidsym.derive.kinematics import derive
+from rigidsym.mechanics.derivation import Derivation, Markup, Proof
+from rigidsym.mechanics.kinematics import derive
 from rigidsym.models.catalogue import EulerAngles
 from rigidsym.models.rotation import Citation, RotationModel
 from rigidsym.models.so3 import elementary, time_function

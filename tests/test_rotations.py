@@ -35,9 +35,9 @@ from witness import agree, derivative, evaluate, mp, paths, unhat, values_along
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.derive.derivation import Derivation
-from rigidsym.derive.kinematics import derive
 from rigidsym.errors import AlgebraError, DerivationError, ModelError, NotARotation
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.kinematics import derive
 from rigidsym.models.so3 import elementary, time_function
 
 DERIVED: dict[str, Derivation] = {}

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from rigidsym import typeset as typesetting
-from rigidsym.derive.kinematics import derive
 from rigidsym.errors import MissingTool, ToolFailed
+from rigidsym.mechanics.kinematics import derive
 from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.rotation import Citation, RotationModel
 from rigidsym.models.so3 import elementary, time_function

@@ -55,6 +55,8 @@ class Presenter:
 
     def quotient(self, value: Quotient) -> sp.Expr:
         """The textbook form of a quotient."""
+        if not value.numerator:
+            return sp.S.Zero
         key = value.numerator, value.denominator
         known = self._known.get(key)
         if known is None:
@@ -87,7 +89,11 @@ class Presenter:
         powers = list(product.powers)
         number = product.coefficient
         factors = [sp.Rational(number.numerator, number.denominator), *self._ratios(powers)]
-        factors += [self._expressions[k] ** power for k, power in enumerate(powers) if power]
+        factors += [
+            expression if power == 1 else expression**power
+            for expression, power in zip(self._expressions, powers, strict=True)
+            if power
+        ]
         if product.bracket:
             factors.append(self._sum(product.bracket))
         return sp.Mul(*factors)

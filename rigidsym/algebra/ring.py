@@ -38,8 +38,8 @@ class Ring:
     """K[generators] modulo relations; elements are `PolyElement`s in normal form.
 
     K is Z where that suffices, since whole numbers are fast, and Q otherwise. `relations` are
-    polynomials that vanish; `derivatives` holds d/dt of the generators that have one in this
-    ring (the highest derivatives of the coordinates have none).
+    polynomials that vanish, `relation_terms` their terms one by one. `derivatives` holds d/dt of
+    the generators that have one in this ring: the highest derivatives of the coordinates have none.
     """
 
     def __init__(self, generators: Sequence[Generator], *, has_fractions: bool = True) -> None:
@@ -51,6 +51,7 @@ class Ring:
         self.index = {gen.expression: place for place, gen in enumerate(self.generators)}
         self.relations: tuple[PolyElement, ...] = ()
         self.derivatives: dict[int, PolyElement] = {}
+        self.relation_terms: list[tuple[Monomial, list[tuple[int, int]], Any, PolyElement]] = []
         self._rules: list[Rule] = []
         self._normal_forms: dict[Monomial, Terms | None] = {}
         self._monomial_rates: dict[Monomial, PolyElement] = {}
@@ -70,6 +71,12 @@ class Ring:
         if any(element.is_ground for element in basis):
             raise AlgebraError("the relations contradict one another: they imply 1 = 0")
         self._rules = [_rewriting_rule(element) for element in basis]
+        self.relation_terms = [
+            (term, _powers(term), coefficient, relation)
+            for relation in self.relations
+            for term, coefficient in relation.items()
+            if any(term)
+        ]
         self._normal_forms = {}
         self._monomial_rates = {}
 
@@ -166,9 +173,13 @@ def _rewriting_rule(element: PolyElement) -> Rule:
     """A basis element read as: leading monomial -> minus the rest."""
     leading = element.leading_expv()
     lead = element[leading]
-    needed = [(place, power) for place, power in enumerate(leading) if power]
     tail = {m: element.ring.domain.exquo(-c, lead) for m, c in element.items() if m != leading}
-    return leading, needed, tail
+    return leading, _powers(leading), tail
+
+
+def _powers(monomial: Monomial) -> list[tuple[int, int]]:
+    """(place, power) of the generators that occur."""
+    return [(place, power) for place, power in enumerate(monomial) if power]
 
 
 def _add(total: Terms, coefficient: Any, terms: Terms) -> None:

@@ -19,6 +19,8 @@ _MOST_STEPS = 60
 
 def shortest(ring: Ring, element: PolyElement) -> PolyElement:
     """A shortest polynomial found that equals `element` in the ring."""
+    if element.is_ground:
+        return element
     best = current = element
     seen = {current}
     for _ in range(_MOST_STEPS):
@@ -42,10 +44,12 @@ def _length(element: PolyElement) -> tuple[int, int]:
 
 def _neighbours(ring: Ring, element: PolyElement) -> Iterator[PolyElement]:
     """Each polynomial in which one term was replaced by means of one relation."""
-    for relation in ring.relations:
-        for part, factor in relation.items():
-            needed = [(place, power) for place, power in enumerate(part) if power]
-            for monomial, coefficient in element.items() if needed else ():
-                if all(monomial[k] >= power for k, power in needed) and not coefficient % factor:
-                    rest = tuple(map(sub, monomial, part))
-                    yield element - relation.mul_term((rest, coefficient // factor))
+    domain = ring.polynomials.domain
+    for part, needed, factor, relation in ring.relation_terms:
+        for monomial, coefficient in element.items():
+            if any(monomial[k] < power for k, power in needed):
+                continue
+            times, left = domain.div(coefficient, factor)
+            if not left:  # in Z a coefficient may not be divisible
+                rest = tuple(map(sub, monomial, part))
+                yield element - relation.mul_term((rest, times))

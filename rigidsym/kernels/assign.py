@@ -182,8 +182,8 @@ def _scaled(size: Fraction, expression: Expression) -> Expression:
     factors, divisors = _split(expression)
     if Fraction(float(size)) == size:
         return Product((Number(size), *factors), divisors)
-    above = [Number(Fraction(size.numerator))] if size.numerator != 1 else []
-    return Product((*above, *factors), (*divisors, Number(Fraction(size.denominator))))
+    above = (*([] if size.numerator == 1 else [Number(Fraction(size.numerator))]), *factors)
+    return Product(above or (_ONE,), (*divisors, Number(Fraction(size.denominator))))
 
 
 def _split(expression: Expression) -> tuple[tuple[Expression, ...], tuple[Expression, ...]]:

@@ -53,6 +53,10 @@ class Product:
     factors: tuple[Expression, ...]
     divisors: tuple[Expression, ...] = ()
 
+    def __post_init__(self) -> None:
+        if not self.factors:
+            raise KernelError("a product needs a factor, be it one")
+
 
 @dataclass(frozen=True, slots=True)
 class Call:

@@ -12,13 +12,13 @@ from fractions import Fraction
 
 import sympy as sp
 
-from rigidsym.derive.derivation import Argument as Vector
-from rigidsym.derive.derivation import Derivation, Step
 from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
 from rigidsym.kernels.assign import write
 from rigidsym.kernels.naming import Names
 from rigidsym.kernels.sharing import Factors, Graph, Weighted
+from rigidsym.mechanics.derivation import Argument as Vector
+from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.models.rotation import RotationModel
 
 Monomial = tuple[Fraction, Factors]  # a number times nodes of the graph, ~node dividing

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
-from rigidsym.derive.derivation import Derivation
 from rigidsym.kernels.lower import lower
 from rigidsym.kernels.targets import TARGETS, printer
+from rigidsym.mechanics.derivation import Derivation
 from rigidsym.writing import write_text
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import sympy as sp
 
 TIME = sp.Symbol("t")  # the time symbol of sympy.physics.vector.dynamicsymbols
@@ -19,12 +21,15 @@ def hat(vector: sp.MatrixBase) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
+@lru_cache(maxsize=256)
 def elementary(axis: str, angle: sp.Expr) -> sp.ImmutableMatrix:
     """Right-handed active turn by `angle` (radians) about the coordinate axis x, y or z.
 
-    Rodrigues' formula for a unit axis e: 1 + sin β C(e) + (1 − cos β) C(e)². For z and x it is
-    the R_z(β) and R_x(β) printed in the lecture, section 3.2.
+    For z and x it is the R_z(β) and R_x(β) printed in the lecture, section 3.2.
     """
-    unit = sp.Matrix([int(axis == name) for name in AXES])
-    skew = hat(unit)
-    return sp.ImmutableMatrix(sp.eye(3) + sp.sin(angle) * skew + (1 - sp.cos(angle)) * skew * skew)
+    first = AXES.index(axis)
+    second, third = (first + 1) % 3, (first + 2) % 3
+    cosine, sine = sp.cos(angle), sp.sin(angle)
+    entries = {(first, first): 1, (second, second): cosine, (third, third): cosine}
+    entries |= {(second, third): -sine, (third, second): sine}
+    return sp.ImmutableMatrix(3, 3, lambda row, column: entries.get((row, column), 0))

@@ -9,9 +9,9 @@ from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
-from rigidsym.derive.claims import orthogonal, skew, spin_of
-from rigidsym.derive.derivation import Derivation, Markup, Proof, Step
-from rigidsym.derive.quantities import BODY, COSINES, RATES, ROTATION, SPACE
+from rigidsym.mechanics.claims import orthogonal, skew, spin_of
+from rigidsym.mechanics.derivation import Derivation, Markup, Proof, Step
+from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.models.rotation import Citation
 from rigidsym.models.so3 import elementary, hat
 from rigidsym.notes.document import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from rigidsym.derive.derivation import Derivation, Markup, Step
+from rigidsym.mechanics.derivation import Derivation, Markup, Step
 
 _BOLD = re.compile(r"\\(?:mathbf|boldsymbol)\{([^{}]*)\}")
 _RATE = re.compile(r"\\frac\{d(\w|\\[A-Za-z]+)\}\{dt\}")

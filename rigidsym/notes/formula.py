@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from rigidsym.derive.derivation import Markup
+from rigidsym.mechanics.derivation import Markup
 from rigidsym.notes.notation import Notation
 from rigidsym.notes.order import (
     FUNCTIONS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from rigidsym import resources
-from rigidsym.derive.derivation import Markup
+from rigidsym.mechanics.derivation import Markup
 from rigidsym.notes.document import (
     Block,
     Cited,

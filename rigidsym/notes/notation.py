@@ -10,8 +10,8 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
-from rigidsym.derive.derivation import Argument, Markup
 from rigidsym.errors import AlgebraError
+from rigidsym.mechanics.derivation import Argument, Markup
 
 Place = tuple[int, int]  # order of the time derivative, index of the component
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rigidsym.derive.derivation import Derivation
+from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.compose import compose
 from rigidsym.notes.document import Document
 from rigidsym.notes.latex import print_latex

@@ -8,7 +8,7 @@ from enum import IntEnum
 from itertools import pairwise
 from typing import ClassVar, Protocol
 
-from rigidsym.derive.derivation import Markup
+from rigidsym.mechanics.derivation import Markup
 
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rigidsym.derive.claims import fill, rate_of, spin_of
-from rigidsym.derive.derivation import Markup, Singularities
-from rigidsym.derive.quantities import BODY, COSINES, ROTATION, SPACE
+from rigidsym.mechanics.claims import fill, rate_of, spin_of
+from rigidsym.mechanics.derivation import Markup, Singularities
+from rigidsym.mechanics.quantities import BODY, COSINES, ROTATION, SPACE
 from rigidsym.models.rotation import lecture
 from rigidsym.notes.document import Block, Cited, Equation, Paragraph, Text
 from rigidsym.notes.formula import markup

@@ -8,8 +8,8 @@ from typing import Literal
 
 import sympy as sp
 
-from rigidsym.derive.derivation import Derivation, Markup, Proof, Step
-from rigidsym.derive.quantities import ROTATION
+from rigidsym.mechanics.derivation import Derivation, Markup, Proof, Step
+from rigidsym.mechanics.quantities import ROTATION
 from rigidsym.notes.breaking import break_lines
 from rigidsym.notes.document import Text
 from rigidsym.notes.entries import RESIDUAL, entry_names, indexed

@@ -8,9 +8,9 @@ from itertools import chain, zip_longest
 
 import sympy as sp
 
-from rigidsym.derive.claims import fill
-from rigidsym.derive.derivation import Argument, Derivation, Markup, Singularity
-from rigidsym.derive.quantities import BODY, COSINES, RATES, ROTATION, SPACE
+from rigidsym.mechanics.claims import fill
+from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Singularity
+from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.document import Cited, Code, EquationReference, Span, Strong, Text
 from rigidsym.notes.formula import markup

@@ -13,11 +13,11 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
-from rigidsym.derive import claims
-from rigidsym.derive.arguments import arguments_of
-from rigidsym.derive.derivation import Derivation, Proof, Singularities, Step
-from rigidsym.derive.prove import Prover
-from rigidsym.derive.quantities import (
+from rigidsym.mechanics import claims
+from rigidsym.mechanics.arguments import arguments_of
+from rigidsym.mechanics.derivation import Derivation, Proof, Singularities, Step
+from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.quantities import (
     ALPHA,
     ALPHA_BODY,
     BODY,
@@ -28,7 +28,7 @@ from rigidsym.derive.quantities import (
     Frame,
     quantities,
 )
-from rigidsym.derive.singularities import singularities_of
+from rigidsym.mechanics.singularities import singularities_of
 from rigidsym.models.rotation import RotationModel
 
 
@@ -71,6 +71,7 @@ class _Kinematics:
         self.R = self._encoded(model.matrix)
         self.R_dot = self.R.dt()
         self.spin = self.R_dot @ self.R.T
+        self.shown_spin = self.R_dot.T @ self.R if model.passive else self.spin
         self.omega = _unhat(self.spin)
         self.omega_body = self.R.T @ self.omega
 
@@ -91,16 +92,13 @@ class _Kinematics:
             self.present.matrix(shown_dot),
             "The matrix is differentiated entry by entry, by the chain rule.",
             self.prove.vanishes(
-                shown_dot @ shown.T + shown @ shown_dot.T, claims.stays_orthogonal(symbol)
+                self.shown_spin + self.shown_spin.T, claims.stays_orthogonal(symbol)
             ),
         )
 
     def angular_velocity(self) -> None:
         """The spin matrix, Ω read off from it, and Ω′ = RᵀΩ (lecture, eq. 7 and 16)."""
-        if self.model.passive:
-            self._passive_spin()
-        else:
-            self._active_spin()
+        self._spin_step()
         self._add(
             "angular_velocity_space",
             self.present.matrix(self.omega),
@@ -120,25 +118,19 @@ class _Kinematics:
             ),
         )
 
-    def _active_spin(self) -> None:
-        self._add(
-            "spin_matrix",
-            self.present.matrix(self.spin),
-            "The derivative is multiplied by the transposed rotation; the product is skew.",
-            self.prove.vanishes(self.spin + self.spin.T, claims.skew(claims.spin_of(ROTATION))),
-        )
-
-    def _passive_spin(self) -> None:
-        spin, symbol = self.R_dot.T @ self.R, claims.spin_of(COSINES)
+    def _spin_step(self) -> None:
+        spin, passive = self.shown_spin, self.model.passive
+        symbol = claims.spin_of(COSINES if passive else ROTATION)
+        proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol))]
+        if passive:
+            operator = claims.is_operator(BODY.omega, symbol, "-")
+            proofs.append(self.prove.vanishes(spin + _hat(self.omega_body), operator))
         self._add(
             "spin_matrix",
             self.present.matrix(spin),
-            "The derivative is multiplied by the transpose; the product is skew, and it is the "
-            "operator of −Ω′, not of Ω.",
-            self.prove.vanishes(spin + spin.T, claims.skew(symbol)),
-            self.prove.vanishes(
-                spin + _hat(self.omega_body), claims.is_operator(BODY.omega, symbol, "-")
-            ),
+            "The derivative is multiplied by the transpose; the product is skew"
+            + (", and it is the operator of −Ω′, not of Ω." if passive else "."),
+            *proofs,
         )
 
     def rates(self, frame: Frame, omega: RingMatrix) -> None:
@@ -183,14 +175,13 @@ class _Kinematics:
     def accelerations(self) -> None:
         """dΩ/dt, and its body components, which are the derivatives of those of Ω′."""
         space = self.omega.dt()
-        body = self.R.T @ space
-        second = self.R_dot.dt() @ self.R.T + self.R_dot @ self.R_dot.T
+        body = self.omega_body.dt()
         self._add(
             "angular_acceleration_space",
             self.present.matrix(space),
             "The space components of the angular velocity are differentiated.",
             self.prove.vanishes(
-                second - _hat(space),
+                self.spin.dt() - _hat(space),
                 claims.is_operator(ALPHA, claims.rate_of_whole(claims.spin_of(ROTATION))),
             ),
         )
@@ -199,9 +190,7 @@ class _Kinematics:
             self.present.matrix(body),
             "Its body components are the derivatives of those of the angular velocity, since "
             "Ω × Ω vanishes.",
-            self.prove.vanishes(
-                self.R @ self.omega_body.dt() - space, claims.rotates(ROTATION, ALPHA_BODY, ALPHA)
-            ),
+            self.prove.vanishes(self.R @ body - space, claims.rotates(ROTATION, ALPHA_BODY, ALPHA)),
         )
 
     def singularities(self) -> Singularities | None:

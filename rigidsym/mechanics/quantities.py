@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 
-from rigidsym.derive.claims import fill, rate_of, spin_of, transpose_of
-from rigidsym.derive.derivation import Markup, Quantity
+from rigidsym.mechanics.claims import fill, rate_of, spin_of, transpose_of
+from rigidsym.mechanics.derivation import Markup, Quantity
 from rigidsym.models.rotation import Citation, lecture
 
 _DIEBEL = Citation(

@@ -8,7 +8,7 @@ import sympy as sp
 from sympy.printing.conventions import split_super_sub
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
-from rigidsym.derive.derivation import Argument, Markup
+from rigidsym.mechanics.derivation import Argument, Markup
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
 

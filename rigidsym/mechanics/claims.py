@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidsym.derive.derivation import Markup
+from rigidsym.mechanics.derivation import Markup
 
 
 def fill(latex: str, text: str, *symbols: Markup) -> Markup:

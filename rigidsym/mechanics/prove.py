@@ -8,8 +8,8 @@ import sympy as sp
 
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.derive.derivation import Markup, Proof
 from rigidsym.errors import DerivationError, NotARotation
+from rigidsym.mechanics.derivation import Markup, Proof
 from rigidsym.models.rotation import RotationModel
 
 _DIGITS = 40

@@ -14,7 +14,7 @@ from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.matrix import RingMatrix, Row, cross
 from rigidsym.algebra.present import Presenter
 from rigidsym.algebra.shorten import shortest
-from rigidsym.derive.derivation import Singularities, Singularity
+from rigidsym.mechanics.derivation import Singularities, Singularity
 
 Zero = tuple[sp.Expr, sp.Expr, dict[int, int]]  # coordinate, value, what the generators become
 

@@ -1,0 +1,1 @@
+"""What rigidsym costs and how exact it is, beside SymPy: `python benchmarks/run.py`."""

@@ -1,0 +1,110 @@
+"""Times and memory: interleaved repeats, pair by pair ratios, each with its spread."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tracemalloc
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+from typing import TypeVar
+
+T = TypeVar("T")
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """Least, middle and largest of some repeats."""
+
+    least: float
+    middle: float
+    most: float
+
+    @classmethod
+    def of(cls, values: Sequence[float]) -> Spread:
+        return cls(min(values), median(values), max(values))
+
+    def in_order(self, scale: float = 1.0) -> tuple[float, float, float]:
+        """The three for a row of a table, in another unit where `scale` says so."""
+        return self.least * scale, self.middle * scale, self.most * scale
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What the command line may change."""
+
+    repeats: int | None = None  # None: each benchmark's own
+    size: int = 1_000_000  # orientations in a batch of the kernels
+    samples: int = 40  # orientations of each kind whose errors are taken
+    fresh: bool = False  # survey SymPy's forms anew
+
+
+def interleaved(
+    actions: Mapping[str, Callable[[], T]], repeats: int, *, warm_up: int = 1
+) -> dict[str, list[T]]:
+    """Each action in turn, `repeats` times over: the results, mostly times, of each.
+
+    Taking turns spreads what else the machine does over all of them alike. The first `warm_up`
+    rounds fill caches and are left out.
+    """
+    results: dict[str, list[T]] = {name: [] for name in actions}
+    for turn in range(warm_up + repeats):
+        for name, action in actions.items():
+            progress(f"{turn + 1} of {warm_up + repeats}: {name}")
+            result = action()
+            if turn >= warm_up:
+                results[name].append(result)
+    progress()
+    return results
+
+
+def ratios(above: Sequence[float], below: Sequence[float]) -> Spread:
+    """above / below, turn by turn."""
+    return Spread.of([a / b for a, b in zip(above, below, strict=True)])
+
+
+def timed(function: Callable[[], object]) -> float:
+    """Seconds of one call."""
+    start = perf_counter()
+    function()
+    return perf_counter() - start
+
+
+def peak_memory(function: Callable[[], object]) -> int:
+    """Bytes held at the worst moment of one call, results included."""
+    tracemalloc.start()
+    try:
+        kept = function()
+        _, peak = tracemalloc.get_traced_memory()
+        del kept
+    finally:
+        tracemalloc.stop()
+    return peak
+
+
+def run_process(command: Sequence[str]) -> str:
+    """Standard output of a fresh process that finds this checkout; raises where it fails."""
+    done = subprocess.run(
+        command, env=environment(), capture_output=True, text=True, check=False, cwd=ROOT
+    )
+    if done.returncode:
+        raise RuntimeError(f"{' '.join(command)} failed:\n{done.stderr}")
+    return done.stdout
+
+
+def environment() -> dict[str, str]:
+    """This process's environment, with the checkout first among the places for modules."""
+    places = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(places)}
+
+
+def progress(text: str = "") -> None:
+    """One line that is written over by the next; in a terminal alone."""
+    if sys.stderr.isatty():
+        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)
