@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import cached_property, lru_cache
+from itertools import permutations
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -79,6 +80,7 @@ class Codec:
     ) -> None:
         """Give the ring its relations and derivatives, now that expressions can be read."""
         relations = [r for e, kind in found if (r := self._relation(e, kind)) is not None]
+        relations += self._between_roots(found)
         self._set_relations(relations)
         self.ring.set_derivatives(
             {
@@ -121,6 +123,17 @@ class Codec:
             cosine = ring.generator(ring.index[sp.cos(expression.args[0])])
             return gen**2 + cosine**2 - 1
         return None
+
+    def _between_roots(self, found: Sequence[tuple[sp.Expr, Kind]]) -> list[PolyElement]:
+        """What vanishes between roots of one base: (2^(1/4))² = 2^(1/2)."""
+        ring = self.ring
+        roots = [e for e, kind in found if kind is Kind.RADICAL and e.is_Pow]
+        return [
+            ring.generator(ring.index[deep]) ** int(deep.exp.q // shallow.exp.q)
+            - ring.generator(ring.index[shallow])
+            for deep, shallow in permutations(roots, 2)
+            if deep.base == shallow.base and deep.exp.q % shallow.exp.q == 0
+        ]
 
     @cached_property
     def angle_pairs(self) -> tuple[tuple[int, int], ...]:

@@ -157,6 +157,7 @@ class _Kinematics:
             self.prove.vanishes(
                 matrix @ adjugate - self.one.scale(determinant),
                 claims.inverse_of(frame.matrix, frame.inverse),
+                divided_by=determinant,
             ),
         )
         symbols = self.arguments[f"omega_{frame.name}"].symbols
@@ -169,6 +170,7 @@ class _Kinematics:
             self.prove.vanishes(
                 matrix @ rates - given.scale(determinant),
                 claims.solves(frame.matrix, frame.inverse, frame.omega),
+                divided_by=determinant,
             ),
         )
 
@@ -210,8 +212,9 @@ class _Kinematics:
         return RingMatrix.column(self.ring, entries)
 
     def _jacobian(self, omega: RingMatrix) -> RingMatrix:
-        """∂Ω/∂q̇."""
-        rates = [self.codec.encode(symbol) for symbol in self.arguments["q_dot"].symbols]
+        """∂Ω/∂q̇, by the generators of the rates themselves: a constraint may relate them."""
+        ring = self.ring
+        rates = [ring.generator(ring.index[rate]) for rate in self.arguments["q_dot"].symbols]
         return RingMatrix.of(self.ring, [[o.diff(rate) for rate in rates] for o in omega.entries])
 
     def _add(self, name: str, expression: sp.ImmutableMatrix, because: str, *proofs: Proof) -> None:

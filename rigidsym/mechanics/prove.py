@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.matrix import RingMatrix
@@ -12,7 +13,7 @@ from rigidsym.errors import DerivationError, NotARotation
 from rigidsym.mechanics.derivation import Markup, Proof
 from rigidsym.models.rotation import RotationModel
 
-_DIGITS = 40
+_DIGITS = 100  # of values at random points; what is below half of them counts as zero
 _POINTS = 3
 
 
@@ -23,18 +24,28 @@ class Prover:
         self.model = model
         self.codec = codec
 
-    def vanishes(self, residual: RingMatrix, claim: Markup) -> Proof:
-        """The proof that a matrix is zero.
+    def vanishes(
+        self, residual: RingMatrix, claim: Markup, *, divided_by: PolyElement | None = None
+    ) -> Proof:
+        """The proof that a matrix is zero, and that what was divided by is not.
 
-        Raises DerivationError where it is shown not to be zero; where the ring does not know
-        enough to tell, the proof says *unproved* and holds what is left.
+        Raises DerivationError where the matrix is shown not to be zero; where the ring does not
+        know enough to tell, the proof says *unproved* and holds what is left.
         """
         if residual.is_zero():
-            return Proof(claim=claim, status="exact")
+            return self._unless_zero(divided_by, claim)
         left = self._decoded(residual)
         if self._is_refuted(left):
             raise DerivationError(f"{self.model.name}: {claim.text} is false; left over: {left}")
         return Proof(claim=claim, status="unproved", residual=left)
+
+    def _unless_zero(self, divisor: PolyElement | None, claim: Markup) -> Proof:
+        """Exact, unless the divisor may be zero everywhere; it is then what is left over."""
+        if divisor is not None:
+            left = sp.ImmutableMatrix([[self.codec.decode(divisor)]])
+            if not self._is_refuted(left):
+                return Proof(claim=claim, status="unproved", residual=left)
+        return Proof(claim=claim, status="exact")
 
     def is_rotation(self, residual: RingMatrix, claim: Markup) -> Proof:
         """As `vanishes`, for the claims that make a matrix a rotation; raises NotARotation."""
@@ -53,11 +64,13 @@ class Prover:
     def _is_refuted(self, left: sp.ImmutableMatrix) -> bool:
         """Whether what is left is certainly not zero.
 
-        With constraints no free point can be tried, and only a ring that knows every relation
-        can tell; without them a value at a random point tells as well.
+        A ring that knows every relation can tell. Where it does not, a value at a random point
+        tells as well, unless there are constraints, which no free point would obey.
         """
+        if self.codec.ring.complete:
+            return True
         if self.model.constraints:
-            return self.codec.ring.complete
+            return False
         return any(self._is_nonzero_at_random(entry) for entry in left if entry != 0)
 
     def _is_nonzero_at_random(self, entry: sp.Expr) -> bool:
