@@ -74,7 +74,7 @@ def _compare(record: Path) -> Iterator[Finding]:
     if version != SCHEMA_VERSION:
         yield Finding(path=record, problem=f"schema version {version}, expected {SCHEMA_VERSION}")
         return
-    fresh = product(DerivationSpec.from_data(content["request"]))
+    fresh = product(DerivationSpec.from_data(content.get("request"), source=str(record)))
     for name, text in fresh.files.items():
         yield _finding(record.parent / name, text)
 

@@ -20,9 +20,7 @@ import sympy as sp
 
 from rigidsym.bounded import FUNCTIONS, Sized, apply, operate
 from rigidsym.errors import ExpressionError
-from rigidsym.names import GREEK_LETTERS, check_name, offer, spelled
-
-__all__ = ["check_name", "parse_expression", "parse_turns"]
+from rigidsym.names import GREEK_LETTERS, offer, spelled
 
 MOST_CHARACTERS = 2000
 _DEEPEST = 50  # brackets one inside the other

@@ -13,12 +13,12 @@ from typing import Any
 
 from rigidsym import resources
 from rigidsym.errors import ExpressionError, Fault, ModelError, SpecError
-from rigidsym.expression import check_name, parse_turns
+from rigidsym.expression import parse_turns
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities import QUANTITY_NAMES
 from rigidsym.models.catalogue import DEFAULT_ANGLES, EulerAngles, euler_sequence
 from rigidsym.models.rotation import RotationModel
-from rigidsym.names import offer
+from rigidsym.names import check_name, offer
 from rigidsym.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
 from rigidsym.toml_lines import Path as Place
 
@@ -286,11 +286,14 @@ def _rotation_data(model: RotationModel) -> dict[str, Any]:
 
 
 def _repeated(models: Iterable[RotationModel]) -> dict[int, str]:
-    """{place: fault} of the models whose folder an earlier one writes already."""
+    """{place: fault} of the models whose folder an earlier one writes already.
+
+    A model's name has no capitals, so that names which differ are different folders everywhere.
+    """
     first: dict[str, int] = {}
     faults: dict[int, str] = {}
     for place, model in enumerate(models):
-        earlier = first.setdefault(model.name.casefold(), place)
+        earlier = first.setdefault(model.name, place)
         if earlier != place:
             faults[place] = f"writes the folder {model.name}, as entry {earlier} does"
     return faults

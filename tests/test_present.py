@@ -157,7 +157,8 @@ def test_matrix_is_presented_entry_by_entry():
 
 
 def test_presenter_is_shared_like_its_ring():
-    assert presenter_for(CODEC) is PRESENTER
+    codec = codec_for(GENERATORS)
+    assert presenter_for(codec) is presenter_for(codec)
 
 
 def forgetful(_ring, element):

@@ -185,12 +185,15 @@ def test_exponentials_are_never_passed_in_silence(matrix):
 
 
 def test_an_inverse_is_not_claimed_where_the_determinant_may_vanish():
-    """The middle angle is zero in disguise, so that W has no inverse anywhere."""
-    hidden = theta * cosh(u) ** 2 - theta * sinh(u) ** 2 - theta
-    motion = derive(model(chain(("z", phi), ("x", hidden), ("z", psi)), phi, theta, psi))
+    """The middle turn is none, in a disguise that the ring does not see through."""
+    hidden = theta * (cosh(u) ** 2 - sinh(u) ** 2 - 1)
+    middle = sp.Matrix([[1, 0, 0], [0, 1, -hidden], [0, hidden, 1]])
+    matrix = elementary("z", phi) * middle * elementary("z", psi)
+    motion = derive(model(matrix, phi, theta, psi))
     for step in motion.steps:
         if step.quantity.name.startswith(("inverse", "rates_from")):
             assert not all(proof.is_exact for proof in step.proofs)
+    assert motion.singularities is None or not motion.singularities.is_solved
 
 
 class TestSingularAngles:
@@ -221,3 +224,8 @@ class TestSingularAngles:
         found = self.singular(("z", phi), ("x", theta + alpha), ("z", psi))
         assert not found.is_solved
         assert found.determinant.has(alpha)
+
+    def test_a_double_zero_is_one_point(self):
+        found = self.singular(("z", phi), ("x", theta), ("z", psi * sin(theta)))
+        assert found.determinant == -(sin(theta) ** 2)
+        assert {(point.value, point.rank) for point in found.points} == {(0, 2), (pi, 2)}

@@ -68,14 +68,13 @@ def rotation(convention: str, angles: Iterable[Any]) -> Matrix:
 
 
 def unhat(skew: Matrix) -> Matrix:
-    """The vector u of a matrix with M v = u × v, from the columns e_k -> u × e_k."""
-    return (
-        mp.matrix([skew[2, 1] - skew[1, 2], skew[0, 2] - skew[2, 0], skew[1, 0] - skew[0, 1]]) / 2
-    )
+    """The vector u of a matrix with M v = u × v, from both halves of the matrix."""
+    pairs = ((2, 1), (0, 2), (1, 0))
+    return mp.matrix([(skew[i, j] - skew[j, i]) / 2 for i, j in pairs])
 
 
 def hat(vector: Matrix) -> Matrix:
-    """The matrix of u ×, column by column."""
+    """The matrix of u ×."""
     a, b, c = vector
     return mp.matrix([[0, -c, b], [c, 0, -a], [-b, a, 0]])
 

@@ -23,6 +23,7 @@ from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.ring import Generator, Ring
 from rigidsym.errors import AlgebraError
 
+_HIGHEST_MULTIPLE = 100  # cos nθ has n terms in cos θ, and products of such polynomials follow
 Pair = tuple[PolyElement, PolyElement]  # cosine and sine of one angle
 
 
@@ -233,6 +234,11 @@ class Codec:
         times = coefficient / fraction if fraction else sp.nan
         if not times.is_Integer:
             raise self._foreign(sp.sin(coefficient * atom))
+        if abs(times) > _HIGHEST_MULTIPLE:
+            raise AlgebraError(
+                f"sin and cos of {coefficient * atom} beside those of {fraction * atom}: "
+                f"multiples up to {_HIGHEST_MULTIPLE} are expanded"
+            )
         index, ring = self.ring.index, self.ring
         cosine = ring.generator(index[sp.cos(fraction * atom)])
         sine = ring.generator(index[sp.sin(fraction * atom)])

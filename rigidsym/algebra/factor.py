@@ -41,15 +41,21 @@ def collect(terms: Terms, weights: Sequence[int]) -> tuple[Product, ...]:
 
 
 def _best_factor(terms: Terms, weights: Sequence[int]) -> tuple[int, int] | None:
-    """(generator, sign of its power) that saves most, of those that occur in several terms."""
-    savings: dict[tuple[int, int], int] = {}
+    """(generator, sign of its power) that saves most, of those that occur in several terms.
+
+    A term saves the factor where its lowest power takes all of it; what is taken out is written
+    once. Ties go to the generator that comes first.
+    """
+    powers: dict[tuple[int, int], list[int]] = {}
     for monomial in terms:
         for place, power in enumerate(monomial):
             if power:
-                key = place, 1 if power > 0 else -1
-                savings[key] = savings.get(key, -1) + 1
-    savings = {key: times * (weights[key[0]] + 1) for key, times in savings.items() if times}
-    return max(savings, key=lambda key: (savings[key], -key[0])) if savings else None
+                powers.setdefault((place, 1 if power > 0 else -1), []).append(abs(power))
+    savings = {
+        key: (found.count(min(found)) - 1) * (weights[key[0]] + 1) for key, found in powers.items()
+    }
+    best = max(savings, key=lambda key: (savings[key], -key[0]), default=None)
+    return best if best and savings[best] else None
 
 
 def _take_out(terms: Terms, weights: Sequence[int]) -> Product:

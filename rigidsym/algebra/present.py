@@ -51,7 +51,7 @@ class Presenter:
 
     def element(self, element: PolyElement) -> sp.Expr:
         """The textbook form of one element."""
-        return self.quotient(Quotient.whole(self.ring, element))
+        return self.quotient(Quotient.whole(self.ring, self.ring.reduce(element)))
 
     def quotient(self, value: Quotient) -> sp.Expr:
         """The textbook form of a quotient."""

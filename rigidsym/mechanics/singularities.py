@@ -31,8 +31,8 @@ def singularities_of(
     Solved where every factor of the determinant is a number, or the sine or cosine of a rational
     multiple of one coordinate; otherwise the determinant is reported and nothing is guessed.
     """
-    determinant = shortest(codec.ring, matrix.det())
-    zeros, is_solved = _zeros(determinant, codec, coordinates)
+    determinant = matrix.det()
+    zeros, is_solved = _zeros(shortest(codec.ring, determinant), codec, coordinates)
     return Singularities(
         determinant=presenter.element(determinant),
         points=tuple(_at(zero, matrix, rotation, presenter) for zero in zeros),
