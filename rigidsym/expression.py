@@ -49,7 +49,7 @@ _HINTS = {
     "°": "an angle is in radians: write pi/180 times degrees",
 }
 
-_TURN = re.compile(r"([xyz])\s*\(")
+_TURN = re.compile(r"([xyz]|\[[^\[\]()]*\])\s*\(")
 _BETWEEN_TURNS = re.compile(r"\s*(\*?)\s*")
 
 
@@ -74,9 +74,10 @@ def parse_expression(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
 
 
 def parse_turns(text: str) -> tuple[tuple[str, str], ...]:
-    """(axis, text of the angle) of each turn in `z(phi) x(theta) z(psi)`, left to right.
+    """(axis, text of the angle) of each turn in `z(phi) x(theta) [1,1,0](psi)`, left to right.
 
-    Turns stand side by side or with `*` between them. Raises ExpressionError with the column.
+    Turns stand side by side or with `*` between them; an axis is x, y, z, or its components in
+    square brackets. Raises ExpressionError with the column.
     """
     _check_length(text)
     turns: list[tuple[str, str]] = []
@@ -84,7 +85,7 @@ def parse_turns(text: str) -> tuple[tuple[str, str], ...]:
     while place < len(text) or not turns:
         turn = _TURN.match(text, place)
         if turn is None:
-            raise _expected("a turn: x(...), y(...) or z(...)", text, place)
+            raise _expected("a turn: x(...), y(...), z(...) or [1,1,0](...)", text, place)
         end = _closing(text, turn.end())
         angle = text[turn.end() : end].strip()
         if not angle:
@@ -95,6 +96,13 @@ def parse_turns(text: str) -> tuple[tuple[str, str], ...]:
         if between and between[1] and place == len(text):
             raise _expected("a turn after *", text, place)
     return tuple(turns)
+
+
+def names_in(text: str) -> tuple[str, ...]:
+    """The plain names in an expression that are not functions or pi, in order, each once."""
+    _check_length(text)
+    found = (spelled(token.text) for token in _tokens(text) if token.kind == "name")
+    return tuple(dict.fromkeys(name for name in found if name not in (*FUNCTIONS, "pi")))
 
 
 class _Token(NamedTuple):

@@ -160,6 +160,16 @@ WRONG = {
         "R Rᵀ = 1",
         "3",
     ),
+    "quaternion times a root": (
+        model(sqrt(2) * QUATERNION, w, x, y, z, constraints=(w**2 + SQUARE - 1,)),
+        "R Rᵀ = 1",
+        "1",
+    ),
+    "quaternion with an opaque factor": (
+        model(sp.diag(cosh(u), 1, 1) * QUATERNION, w, x, y, z, u, constraints=(w**2 + SQUARE - 1,)),
+        "R Rᵀ = 1",
+        "cosh(u(t))**2 - 1",
+    ),
     "masses": (model(about_z(m, length), phi), "R Rᵀ = 1", "m**2"),
     "nothing": (model(sp.zeros(3, 3), phi), "R Rᵀ = 1", "-1"),
 }

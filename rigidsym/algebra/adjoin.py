@@ -37,9 +37,6 @@ class Kind(IntEnum):
     CONSTANT = 6
 
 
-# Generators whose relations to the others may not all be known: √6 and √(x² + 1) may depend on
-# what else there is, and a function that the ring does not know depends on anything.
-UNCERTAIN = frozenset({Kind.RADICAL, Kind.OPAQUE})
 _MONIC = frozenset({Kind.SINE, Kind.COSINE, Kind.TIME_FUNCTION, Kind.CONSTANT})
 
 
@@ -160,6 +157,19 @@ def roots_of(base: sp.Expr, degree: int) -> list[sp.Expr]:
     if base.is_Integer:
         return [sp.Integer(prime) ** sp.Rational(1, degree) for prime in sp.factorint(base)]
     return [base ** sp.Rational(1, degree)]
+
+
+def is_uncertain(expression: sp.Expr, kind: Kind) -> bool:
+    """Whether relations of a generator to the others may be missing.
+
+    √6 and √(x² + 1) may depend on what else there is, and so may the cosine of such a thing; a
+    function that the ring does not know depends on anything.
+    """
+    if kind in (Kind.RADICAL, Kind.OPAQUE):
+        return True
+    angle = expression.args[0] if kind in (Kind.SINE, Kind.COSINE) else sp.S.Zero
+    roots = any(not power.exp.is_Integer for power in angle.atoms(sp.Pow))
+    return roots or any(not is_time_function(f) for f in angle.atoms(sp.Function))
 
 
 def is_highest(expression: sp.Expr, order: int) -> bool:

@@ -10,11 +10,11 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.adjoin import (
-    UNCERTAIN,
     Kind,
     Request,
     as_sine_cosine,
     is_highest,
+    is_uncertain,
     rate_of,
     roots_of,
 )
@@ -58,7 +58,7 @@ def _shared(
     order: int,
     has_fractions: bool,
 ) -> Codec:
-    generators = [Generator(expression=e, opaque=kind in UNCERTAIN) for e, kind in found]
+    generators = [Generator(expression=e, opaque=is_uncertain(e, kind)) for e, kind in found]
     codec = Codec(Ring(generators, has_fractions=has_fractions), dict(fractions))
     codec.settle(found, constraints, order)
     return codec

@@ -89,15 +89,31 @@ class RingMatrix:
         return not any(self.entries)
 
     def det(self) -> PolyElement:
-        """The determinant of a 3x3 matrix, the triple product of its rows."""
-        first, second, third = self.rows
-        return self.ring.dot(zip(first, cross(self.ring, second, third), strict=True))
+        """The determinant: of three rows their triple product, else by the first row."""
+        if len(self.rows) == 3:
+            first, second, third = self.rows
+            return self.ring.dot(zip(first, cross(self.ring, second, third), strict=True))
+        if len(self.rows) == 1:
+            return self.rows[0][0]
+        signed = ((-1) ** j * self._minor(0, j).det() for j in range(len(self.rows)))
+        return self.ring.dot(zip(self.rows[0], signed, strict=True))
 
     def adjugate(self) -> RingMatrix:
-        """adj(M) of a 3x3 matrix, with M adj(M) = det(M) 1; its columns are normal to rows."""
-        a, b, c = self.rows
-        columns = (cross(self.ring, b, c), cross(self.ring, c, a), cross(self.ring, a, b))
-        return RingMatrix(self.ring, columns).T
+        """adj(M), with M adj(M) = det(M) 1."""
+        if len(self.rows) == 3:  # its columns are normal to rows
+            a, b, c = self.rows
+            columns = (cross(self.ring, b, c), cross(self.ring, c, a), cross(self.ring, a, b))
+            return RingMatrix(self.ring, columns).T
+        places = range(len(self.rows))
+        return RingMatrix(
+            self.ring,
+            tuple(tuple((-1) ** (i + j) * self._minor(j, i).det() for j in places) for i in places),
+        )
+
+    def _minor(self, row: int, column: int) -> RingMatrix:
+        """What is left without one row and one column."""
+        kept = [entries for place, entries in enumerate(self.rows) if place != row]
+        return RingMatrix(self.ring, tuple(e[:column] + e[column + 1 :] for e in kept))
 
 
 def cross(ring: Ring, u: Row, v: Row) -> Row:

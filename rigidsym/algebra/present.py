@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
+from math import gcd, lcm
 from typing import Any
 
 import sympy as sp
@@ -74,7 +75,9 @@ class Presenter:
         if len(below) > 1:
             _, above, below = above.cofactors(below)
         if len(below) > 1:
-            return self._terms(above) / self._terms(below)
+            over, under = _leading_number(above), _leading_number(below)
+            number = sp.Rational(*(over / under).as_integer_ratio())
+            return sp.Mul(number, self._terms(above, over), 1 / self._terms(below, under))
         ((divisor, scale),) = below.items()
         return self._terms({_divide(m, divisor): c for m, c in above.items()}, _fraction(scale))
 
@@ -114,6 +117,20 @@ class Presenter:
 
 def _divide(monomial: Monomial, divisor: Monomial) -> Monomial:
     return tuple(a - b for a, b in zip(monomial, divisor, strict=True))
+
+
+def _leading_number(element: PolyElement) -> Fraction:
+    """What a sum is freed from: the common factor of its numbers, and a leading minus.
+
+    The term of the lowest degree leads, so that 1 − cos θ is left and not cos θ − 1.
+    """
+    lowest = element[min(element, key=lambda monomial: (sum(monomial), monomial))]
+    numbers = [_fraction(coefficient) for coefficient in element.values()]
+    size = Fraction(
+        gcd(*(number.numerator for number in numbers)),
+        lcm(*(number.denominator for number in numbers)),
+    )
+    return -size if lowest < 0 else size
 
 
 def _fraction(coefficient: Any) -> Fraction:

@@ -65,6 +65,24 @@ class Argument:
     about: str  # "coordinates", "space components of the angular velocity"
 
 
+@dataclass(frozen=True, slots=True)
+class VectorTerm:
+    """coefficient · vector."""
+
+    coefficient: sp.Expr
+    vector: Markup  # v̇, v × v̇, ...
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class VectorForm:
+    """A vector quantity in terms of the vector v of the coordinates, proved equal to it."""
+
+    terms: tuple[VectorTerm, ...]
+    components: tuple[sp.Expr, ...]  # of v, which coordinates they are
+    length: sp.Symbol  # stands for |v| in the coefficients
+    proof: Proof
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Step:
     """One quantity, derived: its textbook form, how it follows, and what was proved of it."""
@@ -74,6 +92,7 @@ class Step:
     expression: sp.ImmutableMatrix
     because: str  # a sentence: how it follows from the steps before
     proofs: tuple[Proof, ...]
+    vector_form: VectorForm | None = None  # where the coordinates form a vector
 
     @property
     def shape(self) -> tuple[int, ...]:

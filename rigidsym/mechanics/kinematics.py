@@ -5,17 +5,18 @@ One algorithm for every rotation model, in the model's ring (lecture, eq. 15 and
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
 
 import sympy as sp
-from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
-from rigidsym.mechanics import claims
-from rigidsym.mechanics.arguments import arguments_of
-from rigidsym.mechanics.derivation import Derivation, Proof, Singularities, Step
+from rigidsym.errors import QuantityError
+from rigidsym.mechanics import claims, composition
+from rigidsym.mechanics.composition import hat
+from rigidsym.mechanics.derivation import Derivation, Markup, Proof, Singularities, Step, VectorForm
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import (
     ALPHA,
@@ -28,220 +29,262 @@ from rigidsym.mechanics.quantities import (
     Frame,
     quantities,
 )
+from rigidsym.mechanics.rates import Inverse
 from rigidsym.mechanics.singularities import singularities_of
+from rigidsym.mechanics.values import Values
+from rigidsym.mechanics.vectors import vector_form
 from rigidsym.models.rotation import RotationModel
 
 
-def derive(model: RotationModel) -> Derivation:
+def derive(model: RotationModel, only: Collection[str] = ()) -> Derivation:
     """The kinematics of a rotation model, each step proved.
 
-    Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over, and
-    AlgebraError for expressions that the ring cannot hold.
+    `only` names the quantities to derive; all that the model has where it is empty.
+
+    Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over,
+    AlgebraError for expressions that the ring cannot hold, and QuantityError for unknown names.
     """
-    work = _Kinematics(model)
-    work.rotation()
-    work.angular_velocity()
-    for frame, omega in ((SPACE, work.omega), (BODY, work.omega_body)):
-        work.rates(frame, omega)
-    work.accelerations()
+    unknown = ", ".join(name for name in only if name not in _STEPS)
+    if unknown:
+        raise QuantityError(f"no quantity {unknown}; there are {', '.join(_STEPS)}")
+    work = _Kinematics(Values(model))
     return Derivation(
         name=model.name,
         title=model.title,
         model=model,
-        arguments=tuple(work.arguments.values()),
-        steps=tuple(work.steps),
-        singularities=work.singularities(),
+        arguments=tuple(work.values.arguments.values()),
+        steps=tuple(_numbered(work, only)),
+        singularities=None if only and not _RATE_NAMES & set(only) else work.singularities(),
     )
 
 
+def _numbered(work: _Kinematics, only: Collection[str]) -> Iterator[Step]:
+    """The steps that are wanted and that the model has."""
+    table = quantities(passive=work.model.passive, coordinates=len(work.model.coordinates))
+    rotation = work.rotation_matrix()  # in any case: all else rests on its being a rotation
+    number = 0
+    for name, find in _STEPS.items():
+        if only and name not in only:
+            continue
+        found = rotation if name == "rotation_matrix" else find(work)
+        if found is not None:
+            number += 1
+            yield Step(
+                number=number,
+                quantity=table[name],
+                expression=found.expression,
+                because=found.because,
+                proofs=found.proofs,
+                vector_form=found.vector_form,
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """What one step comes to."""
+
+    expression: sp.ImmutableMatrix
+    because: str
+    proofs: tuple[Proof, ...]
+    vector_form: VectorForm | None = None
+
+
 class _Kinematics:
-    """The derivation under way: ring values so far, and the steps that were taken."""
+    """The steps of one derivation; each is worked out by its own method."""
 
-    def __init__(self, model: RotationModel) -> None:
-        self.model = model
-        self.arguments = {argument.name: argument for argument in arguments_of(model)}
-        inputs = [s for name, a in self.arguments.items() if name != "q" for s in a.symbols]
-        self.codec = codec_for([*model.matrix, *inputs], constraints=model.constraints, order=2)
-        self.ring = self.codec.ring
-        self.present = presenter_for(self.codec)
-        self.prove = Prover(model, self.codec)
-        self.quantities = quantities(passive=model.passive)
-        self.steps: list[Step] = []
-        self.one = RingMatrix.identity(self.ring, 3)
-        self.R = self._encoded(model.matrix)
-        self.R_dot = self.R.dt()
-        self.spin = self.R_dot @ self.R.T
-        self.shown_spin = self.R_dot.T @ self.R if model.passive else self.spin
-        self.omega = _unhat(self.spin)
-        self.omega_body = self.R.T @ self.omega
+    def __init__(self, values: Values) -> None:
+        self.values = values
+        self.model = values.model
+        self.present = presenter_for(values.codec)
+        self.prove = Prover(values.model, values.codec)
 
-    def rotation(self) -> None:
-        """R, or its transpose A, and its derivative."""
-        passive = self.model.passive
-        symbol = COSINES if passive else ROTATION
-        shown, shown_dot = (self.R.T, self.R_dot.T) if passive else (self.R, self.R_dot)
-        self._add(
-            "rotation_matrix",
-            self.present.matrix(shown),
-            _first_sentence(self.model),
-            self.prove.is_rotation(shown @ shown.T - self.one, claims.orthogonal(symbol)),
-            self.prove.is_rotation(self._column([shown.det() - 1]), claims.proper(symbol)),
+    def rotation_matrix(self) -> _Found:
+        values, symbol = self.values, self._shown_symbol
+        if values.factors:
+            residual = composition.orthogonality(values.factors)
+            determinant = composition.determinants(values.factors)
+        else:
+            residual = self._shown(values.R) @ self._shown(values.R).T - values.one
+            determinant = values.column([values.R.det() - 1])
+        return _Found(
+            self.present.matrix(self._shown(values.R)),
+            "The turns are multiplied from left to right."
+            if self.model.turns
+            else "The rotation is given.",
+            (
+                self.prove.is_rotation(residual, claims.orthogonal(symbol)),
+                self.prove.is_rotation(determinant, claims.proper(symbol)),
+            ),
         )
-        self._add(
-            "rotation_rate",
-            self.present.matrix(shown_dot),
+
+    def rotation_rate(self) -> _Found:
+        spin = self._shown_spin
+        return _Found(
+            self.present.matrix(self._shown(self.values.R_dot)),
             "The matrix is differentiated entry by entry, by the chain rule.",
-            self.prove.vanishes(
-                self.shown_spin + self.shown_spin.T, claims.stays_orthogonal(symbol)
-            ),
+            (self.prove.vanishes(spin + spin.T, claims.stays_orthogonal(self._shown_symbol)),),
         )
 
-    def angular_velocity(self) -> None:
-        """The spin matrix, Ω read off from it, and Ω′ = RᵀΩ (lecture, eq. 7 and 16)."""
-        self._spin_step()
-        self._add(
-            "angular_velocity_space",
-            self.present.matrix(self.omega),
-            "The vector of a skew matrix stands in its entries (3,2), (1,3) and (2,1).",
-            self.prove.vanishes(
-                self.spin - _hat(self.omega),
-                claims.is_operator(SPACE.omega, claims.spin_of(ROTATION)),
-            ),
-        )
-        self._add(
-            "angular_velocity_body",
-            self.present.matrix(self.omega_body),
+    def spin_matrix(self) -> _Found:
+        spin, symbol = self._shown_spin, claims.spin_of(self._shown_symbol)
+        proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol))]
+        because = "The derivative is multiplied by the transpose; the product is skew"
+        if self.model.passive:
+            operator = claims.is_operator(BODY.omega, symbol, "-")
+            proofs.append(self.prove.vanishes(spin + hat(self.values.omega_body), operator))
+            because += ", and it is the operator of −Ω′, not of Ω"
+        return _Found(self.present.matrix(spin), f"{because}.", tuple(proofs))
+
+    def angular_velocity_space(self) -> _Found:
+        values = self.values
+        if values.factors:
+            residual = composition.operators(values.factors, values.argument("omega_space"))
+            because = (
+                "Each turn adds its own axis, as the turns before it have moved it; for so many "
+                "turns the product is not multiplied out."
+            )
+        else:
+            residual = values.spin - hat(values.omega_space)
+            because = "The vector of a skew matrix stands in its entries (3,2), (1,3) and (2,1)."
+        claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
+        proof = self.prove.vanishes(residual, claim)
+        return self._vector(SPACE, values.omega_space, because, proof)
+
+    def angular_velocity_body(self) -> _Found:
+        values = self.values
+        return self._vector(
+            BODY,
+            values.omega_body,
             "The components along the axes of the body follow by the transposed rotation.",
             self.prove.vanishes(
-                self.R @ self.omega_body - self.omega,
+                values.R @ values.omega_body - values.omega_space,
                 claims.rotates(ROTATION, BODY.omega, SPACE.omega),
             ),
         )
 
-    def _spin_step(self) -> None:
-        spin, passive = self.shown_spin, self.model.passive
-        symbol = claims.spin_of(COSINES if passive else ROTATION)
-        proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol))]
-        if passive:
-            operator = claims.is_operator(BODY.omega, symbol, "-")
-            proofs.append(self.prove.vanishes(spin + _hat(self.omega_body), operator))
-        self._add(
-            "spin_matrix",
-            self.present.matrix(spin),
-            "The derivative is multiplied by the transpose; the product is skew"
-            + (", and it is the operator of −Ω′, not of Ω." if passive else "."),
-            *proofs,
-        )
-
-    def rates(self, frame: Frame, omega: RingMatrix) -> None:
-        """W with Ω = W q̇ in one frame and, where W is square, its inverse and q̇ from Ω."""
-        q_dot = self._column(map(self.codec.encode, self.arguments["q_dot"].symbols))
-        matrix = self._jacobian(omega)
-        self._add(
-            f"rate_matrix_{frame.name}",
+    def rate_matrix(self, frame: Frame, matrix: RingMatrix, omega: RingMatrix) -> _Found:
+        residual = matrix @ self.values.argument("q_dot") - omega
+        claim = claims.maps_rates(frame.matrix, RATES, frame.omega)
+        return _Found(
             self.present.matrix(matrix),
             "The angular velocity is linear in the rates; their coefficients are the columns.",
-            self.prove.vanishes(
-                matrix @ q_dot - omega, claims.maps_rates(frame.matrix, RATES, frame.omega)
-            ),
+            (self.prove.vanishes(residual, claim),),
         )
-        if matrix.shape == (3, 3) and matrix.det():
-            self._solve(frame, matrix)
 
-    def _solve(self, frame: Frame, matrix: RingMatrix) -> None:
-        adjugate, determinant = matrix.adjugate(), matrix.det()
-        self._add(
-            f"inverse_rate_matrix_{frame.name}",
-            self.present.matrix(adjugate, determinant),
-            "The adjugate is divided by the determinant.",
-            self.prove.vanishes(
-                matrix @ adjugate - self.one.scale(determinant),
-                claims.inverse_of(frame.matrix, frame.inverse),
-                divided_by=determinant,
+    def inverse(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> _Found | None:
+        if inverse is None:
+            return None
+        above, below = inverse
+        return _Found(
+            self.present.matrix(above, below),
+            "The adjugate is divided by the determinant."
+            if matrix.shape == (3, 3)
+            else "Of all rates that give an angular velocity, these are the smallest, or those "
+            "that keep to the constraints.",
+            (
+                self.prove.vanishes(
+                    matrix @ above - self.values.one.scale(below),
+                    claims.inverse_of(frame.matrix, self._inverse_symbol(frame)),
+                    divided_by=below,
+                ),
             ),
         )
-        symbols = self.arguments[f"omega_{frame.name}"].symbols
-        given = self._column(map(self.codec.encode, symbols))
-        rates = adjugate @ given
-        self._add(
-            f"rates_from_angular_velocity_{frame.name}",
-            self.present.matrix(rates, determinant),
+
+    def rates(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> _Found | None:
+        if inverse is None:
+            return None
+        above, below = inverse
+        given = self.values.argument(f"omega_{frame.name}")
+        rates = above @ given
+        return _Found(
+            self.present.matrix(rates, below),
             "The inverse rate matrix is applied to a given angular velocity.",
-            self.prove.vanishes(
-                matrix @ rates - given.scale(determinant),
-                claims.solves(frame.matrix, frame.inverse, frame.omega),
-                divided_by=determinant,
+            (
+                self.prove.vanishes(
+                    matrix @ rates - given.scale(below),
+                    claims.solves(frame.matrix, self._inverse_symbol(frame), frame.omega),
+                    divided_by=below,
+                ),
             ),
         )
 
-    def accelerations(self) -> None:
-        """dΩ/dt, and its body components, which are the derivatives of those of Ω′."""
-        space = self.omega.dt()
-        body = self.omega_body.dt()
-        self._add(
-            "angular_acceleration_space",
+    def angular_acceleration_space(self) -> _Found:
+        space = self.values.omega_space.dt()
+        claim = claims.is_operator(ALPHA, claims.rate_of_whole(claims.spin_of(ROTATION)))
+        return _Found(
             self.present.matrix(space),
             "The space components of the angular velocity are differentiated.",
-            self.prove.vanishes(
-                self.spin.dt() - _hat(space),
-                claims.is_operator(ALPHA, claims.rate_of_whole(claims.spin_of(ROTATION))),
-            ),
+            (self.prove.vanishes(self.values.spin.dt() - hat(space), claim),),
         )
-        self._add(
-            "angular_acceleration_body",
+
+    def angular_acceleration_body(self) -> _Found:
+        values = self.values
+        body = values.omega_body.dt()
+        residual = values.R @ body - values.omega_space.dt()
+        claim = claims.rotates(ROTATION, ALPHA_BODY, ALPHA)
+        return _Found(
             self.present.matrix(body),
             "Its body components are the derivatives of those of the angular velocity, since "
             "Ω × Ω vanishes.",
-            self.prove.vanishes(self.R @ body - space, claims.rotates(ROTATION, ALPHA_BODY, ALPHA)),
+            (self.prove.vanishes(residual, claim),),
         )
 
     def singularities(self) -> Singularities | None:
         """Where the rate matrix loses rank; None where it is not square or never has full rank."""
-        matrix = self._jacobian(self.omega)
-        if matrix.shape != (3, 3) or not matrix.det():
+        values = self.values
+        matrix = values.rate_matrix_space
+        if matrix.shape != (3, 3) or values.inverse_space is None:
             return None
-        return singularities_of(
-            matrix, self.R, self.present, self.codec, self.arguments["q"].symbols
-        )
+        coordinates = values.arguments["q"].symbols
+        return singularities_of(matrix, values.R, self.present, values.codec, coordinates)
 
-    def _encoded(self, matrix: sp.MatrixBase) -> RingMatrix:
-        rows = matrix.tolist()
-        return RingMatrix.of(self.ring, [[self.codec.encode(e) for e in row] for row in rows])
+    def _vector(self, frame: Frame, omega: RingMatrix, because: str, proof: Proof) -> _Found:
+        form = vector_form(self.model, omega, self.values.codec, frame.omega)
+        proofs = (proof,) if form is None else (proof, form.proof)
+        return _Found(self.present.matrix(omega), because, proofs, form)
 
-    def _column(self, entries: Iterable[PolyElement]) -> RingMatrix:
-        return RingMatrix.column(self.ring, entries)
+    @property
+    def _shown_symbol(self) -> Markup:
+        return COSINES if self.model.passive else ROTATION
 
-    def _jacobian(self, omega: RingMatrix) -> RingMatrix:
-        """∂Ω/∂q̇, by the generators of the rates themselves: a constraint may relate them."""
-        ring = self.ring
-        rates = [ring.generator(ring.index[rate]) for rate in self.arguments["q_dot"].symbols]
-        return RingMatrix.of(self.ring, [[o.diff(rate) for rate in rates] for o in omega.entries])
+    def _shown(self, matrix: RingMatrix) -> RingMatrix:
+        return matrix.T if self.model.passive else matrix
 
-    def _add(self, name: str, expression: sp.ImmutableMatrix, because: str, *proofs: Proof) -> None:
-        self.steps.append(
-            Step(
-                number=len(self.steps) + 1,
-                quantity=self.quantities[name],
-                expression=expression,
-                because=because,
-                proofs=proofs,
-            )
-        )
+    @property
+    def _shown_spin(self) -> RingMatrix:
+        return self.values.spin_of_transpose if self.model.passive else self.values.spin
+
+    def _inverse_symbol(self, frame: Frame) -> Markup:
+        return frame.inverse if len(self.model.coordinates) == 3 else frame.right_inverse
 
 
-def _unhat(skew: RingMatrix) -> RingMatrix:
-    """C⁻¹: the vector of a skew matrix, from its entries below the diagonal (lecture, 3.2)."""
-    return RingMatrix.column(skew.ring, [skew[2, 1], skew[0, 2], skew[1, 0]])
-
-
-def _hat(vector: RingMatrix) -> RingMatrix:
-    """C(u), the matrix of u ×, over the ring (lecture, section 3.2)."""
-    x, y, z = vector.entries
-    zero = vector.ring.zero
-    return RingMatrix.of(vector.ring, [[zero, -z, y], [z, zero, -x], [-y, x, zero]])
-
-
-def _first_sentence(model: RotationModel) -> str:
-    if model.turns:
-        return "The turns are multiplied from left to right."
-    return "The rotation is given."
+_STEPS: Mapping[str, Callable[[_Kinematics], _Found | None]] = MappingProxyType(
+    {
+        "rotation_matrix": _Kinematics.rotation_matrix,
+        "rotation_rate": _Kinematics.rotation_rate,
+        "spin_matrix": _Kinematics.spin_matrix,
+        "angular_velocity_space": _Kinematics.angular_velocity_space,
+        "angular_velocity_body": _Kinematics.angular_velocity_body,
+        "rate_matrix_space": lambda work: work.rate_matrix(
+            SPACE, work.values.rate_matrix_space, work.values.omega_space
+        ),
+        "inverse_rate_matrix_space": lambda work: work.inverse(
+            SPACE, work.values.rate_matrix_space, work.values.inverse_space
+        ),
+        "rates_from_angular_velocity_space": lambda work: work.rates(
+            SPACE, work.values.rate_matrix_space, work.values.inverse_space
+        ),
+        "rate_matrix_body": lambda work: work.rate_matrix(
+            BODY, work.values.rate_matrix_body, work.values.omega_body
+        ),
+        "inverse_rate_matrix_body": lambda work: work.inverse(
+            BODY, work.values.rate_matrix_body, work.values.inverse_body
+        ),
+        "rates_from_angular_velocity_body": lambda work: work.rates(
+            BODY, work.values.rate_matrix_body, work.values.inverse_body
+        ),
+        "angular_acceleration_space": _Kinematics.angular_acceleration_space,
+        "angular_acceleration_body": _Kinematics.angular_acceleration_body,
+    }
+)
+_RATE_NAMES = frozenset(name for name in _STEPS if "rate" in name and name != "rotation_rate")

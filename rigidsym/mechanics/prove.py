@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import random
-
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
@@ -11,10 +9,8 @@ from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import DerivationError, NotARotation
 from rigidsym.mechanics.derivation import Markup, Proof
+from rigidsym.mechanics.points import is_nonzero_somewhere
 from rigidsym.models.rotation import RotationModel
-
-_DIGITS = 100  # of values at random points; what is below half of them counts as zero
-_POINTS = 3
 
 
 class Prover:
@@ -64,24 +60,9 @@ class Prover:
     def _is_refuted(self, left: sp.ImmutableMatrix) -> bool:
         """Whether what is left is certainly not zero.
 
-        A ring that knows every relation can tell. Where it does not, a value at a random point
-        tells as well, unless there are constraints, which no free point would obey.
+        A ring that knows every relation can tell; where it does not, a value at a point tells.
         """
         if self.codec.ring.complete:
             return True
-        if self.model.constraints:
-            return False
-        return any(self._is_nonzero_at_random(entry) for entry in left if entry != 0)
-
-    def _is_nonzero_at_random(self, entry: sp.Expr) -> bool:
-        unknowns = sorted(
-            entry.atoms(sp.Symbol, sp.Derivative, sp.core.function.AppliedUndef), key=str
-        )
-        generator = random.Random(20)
-        for _ in range(_POINTS):
-            point = {u: sp.Rational(generator.randint(1, 999), 1000) for u in unknowns}
-            derivatives = {u: value for u, value in point.items() if u.is_Derivative}
-            value = entry.subs(derivatives).subs(point).evalf(_DIGITS)
-            if value.is_number and abs(value) > sp.Float(10) ** -(_DIGITS // 2):
-                return True
-        return False
+        constraints = self.model.constraints
+        return any(is_nonzero_somewhere(entry, constraints) for entry in left if entry != 0)

@@ -36,6 +36,7 @@ class Frame:
     omega: Markup
     matrix: Markup
     inverse: Markup
+    right_inverse: Markup  # where there are more coordinates than dimensions
 
 
 SPACE = Frame(
@@ -43,12 +44,14 @@ SPACE = Frame(
     omega=Markup(r"\boldsymbol{\Omega}", "Ω"),
     matrix=Markup(r"\mathbf{W}", "W"),
     inverse=Markup(r"\mathbf{W}^{-1}", "W⁻¹"),
+    right_inverse=Markup(r"\mathbf{W}^{+}", "W⁺"),
 )
 BODY = Frame(
     name="body",
     omega=Markup(r"\boldsymbol{\Omega}'", "Ω′"),
     matrix=Markup(r"\mathbf{W}'", "W′"),
     inverse=Markup(r"\mathbf{W}'^{-1}", "W′⁻¹"),
+    right_inverse=Markup(r"\mathbf{W}'^{+}", "W′⁺"),
 )
 
 _NONE = Markup("", "")
@@ -156,8 +159,10 @@ def _omega_body(definition: Markup) -> Quantity:
     )
 
 
-def _rates(frame: Frame) -> tuple[Quantity, ...]:
+def _rates(frame: Frame, *, is_square: bool) -> tuple[Quantity, ...]:
     """The rate matrix of one frame, its inverse, and the rates that follow from it."""
+    inverse = frame.inverse if is_square else frame.right_inverse
+    kind = "inverse" if is_square else "right inverse of the"
     return (
         Quantity(
             name=f"rate_matrix_{frame.name}",
@@ -172,9 +177,9 @@ def _rates(frame: Frame) -> tuple[Quantity, ...]:
         ),
         Quantity(
             name=f"inverse_rate_matrix_{frame.name}",
-            symbol=frame.inverse,
+            symbol=inverse,
             definition=_NONE,
-            about=f"inverse rate matrix from {frame.name} components",
+            about=f"{kind} rate matrix from {frame.name} components",
             unit="",
             inputs=_Q,
             source=_DIEBEL,
@@ -182,7 +187,7 @@ def _rates(frame: Frame) -> tuple[Quantity, ...]:
         Quantity(
             name=f"rates_from_angular_velocity_{frame.name}",
             symbol=RATES,
-            definition=fill(r"{0}{1}", "{0} {1}", frame.inverse, frame.omega),
+            definition=fill(r"{0}{1}", "{0} {1}", inverse, frame.omega),
             about=f"rates of the coordinates from {frame.name} components of the angular velocity",
             unit="rad/s",
             inputs=("q", f"omega_{frame.name}"),
@@ -218,12 +223,12 @@ def _accelerations() -> tuple[Quantity, ...]:
 
 
 @cache
-def quantities(*, passive: bool) -> Mapping[str, Quantity]:
-    """All quantities by name, in the order of the derivation."""
+def quantities(*, passive: bool, coordinates: int = 3) -> Mapping[str, Quantity]:
+    """All quantities by name, in the order of the derivation, for a number of coordinates."""
     table = (
         *(_passive() if passive else _active()),
-        *_rates(SPACE),
-        *_rates(BODY),
+        *_rates(SPACE, is_square=coordinates == 3),
+        *_rates(BODY, is_square=coordinates == 3),
         *_accelerations(),
     )
     return MappingProxyType({quantity.name: quantity for quantity in table})

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.errors import ModelError
-from rigidsym.models.so3 import TIME
+from rigidsym.models.so3 import AXES, TIME, elementary, rodrigues
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 
@@ -35,13 +38,42 @@ def lecture(equation: str = "", section: str = "") -> Citation:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Turn:
-    """One turn of a product of turns: right-handed, by `angle` about the coordinate `axis`."""
+    """One turn of a product of turns: right-handed, by `angle` about a constant axis.
 
-    axis: str  # x, y or z
+    The axis is a coordinate axis (x, y, z), or anything with `components` of its own.
+    """
+
+    axis: str  # x, y, z, or how the axis is printed
     angle: sp.Expr  # radians
+    components: tuple[sp.Expr, ...] = ()  # of the axis, where it is not a coordinate axis
+
+    def __post_init__(self) -> None:
+        if not self.components and self.axis not in AXES:
+            raise ModelError(f"{self.axis!r} is not an axis: expected x, y, z or components")
+        if self.components and len(self.components) != 3:
+            raise ModelError(f"an axis has three components, got {len(self.components)}")
+
+    @property
+    def direction(self) -> tuple[sp.Expr, ...]:
+        """The components of the axis along x, y, z."""
+        return self.components or tuple(sp.Integer(self.axis == name) for name in AXES)
+
+    @property
+    def matrix(self) -> sp.ImmutableMatrix:
+        """The turn as a matrix, (3, 3), taking components after the turn to those before it."""
+        if self.components:
+            return rodrigues(self.components, self.angle)
+        return elementary(self.axis, self.angle)
+
+    @property
+    def angle_text(self) -> str:
+        """The angle in plain text."""
+        names = {f: sp.Symbol(f.func.__name__) for f in self.angle.atoms(AppliedUndef)}
+        plain = self.angle.xreplace(names)
+        return pretty_symbol(plain.name) if plain.is_Symbol else str(plain)
 
     def __str__(self) -> str:
-        return f"R{self.axis}({pretty_symbol(self.angle.func.__name__)})"
+        return f"R{self.axis}({self.angle_text})"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -62,6 +94,10 @@ class RotationModel:
     constraints: tuple[sp.Expr, ...] = ()  # each vanishes for all time
     units: tuple[str, ...] = ()  # of the coordinates; radians where nothing is said
     passive: bool = False
+    vector: tuple[sp.Expr, ...] = ()  # the three coordinates that are components of one vector
+    request: Mapping[str, Any] = field(
+        default_factory=dict, hash=False
+    )  # what asks for it in a file
 
     def __post_init__(self) -> None:
         if not _MODULE_NAME.fullmatch(self.name):

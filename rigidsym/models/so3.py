@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import sympy as sp
@@ -33,3 +34,12 @@ def elementary(axis: str, angle: sp.Expr) -> sp.ImmutableMatrix:
     entries = {(first, first): 1, (second, second): cosine, (third, third): cosine}
     entries |= {(second, third): -sine, (third, second): sine}
     return sp.ImmutableMatrix(3, 3, lambda row, column: entries.get((row, column), 0))
+
+
+def rodrigues(axis: Sequence[sp.Expr], angle: sp.Expr) -> sp.ImmutableMatrix:
+    """Right-handed active turn by `angle` (radians) about a unit axis (3,), Rodrigues' formula.
+
+    1 + sin β C(e) + (1 − cos β) C(e)², which is a rotation where e·e = 1 and not otherwise.
+    """
+    skew = hat(sp.Matrix(axis))
+    return sp.ImmutableMatrix(sp.eye(3) + sp.sin(angle) * skew + (1 - sp.cos(angle)) * skew * skew)

@@ -1,0 +1,243 @@
+"""Parametrisations whose quaternion has a closed form, and how they follow from one.
+
+A model is known by its matrix and its constraints, not by its name: your own R(q) that is a
+rotation vector converts as one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.models.matrices import DirectionCosines
+from rigidsym.models.quaternions import AxisAngle, CayleyKlein, Quaternion, UnitQuaternion
+from rigidsym.models.rotation import RotationModel
+from rigidsym.models.vectors import GibbsVector, ModifiedRodrigues, RotationVector
+
+Claim = tuple[tuple[sp.Expr, ...], Markup]  # what vanishes, and how it is written
+Parts = tuple[sp.Expr, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ClosedForm:
+    """One parametrisation in given coordinates."""
+
+    rule: str  # how the coordinates follow, by name: "quaternion", "rotation_vector", ...
+    quaternion: Parts  # scalar first, of length one; empty where it is read off from R
+    order: tuple[int, ...]  # place, among the model's coordinates, of each that the rule gives
+    because: str  # a sentence
+    back_because: str
+    branch: str  # sentences: which of the possible coordinates are given
+    claims: tuple[Claim, ...]
+
+
+def closed_form(model: RotationModel) -> ClosedForm | None:
+    """The form of a model that is one of the parametrisations; None where it is none."""
+    for build, form in _FORMS:
+        for order in _orders(len(model.coordinates)):
+            names = [model.coordinates[place].func.__name__ for place in order]
+            if _matches(model, build, names):
+                return form([model.coordinates[place] for place in order], order)
+    return None
+
+
+def _orders(count: int) -> Iterator[tuple[int, ...]]:
+    """The coordinates as they stand, and with the last of four first."""
+    yield tuple(range(count))
+    if count == 4:
+        yield (3, 0, 1, 2)
+
+
+def _matches(
+    model: RotationModel, build: Callable[..., RotationModel], names: Sequence[str]
+) -> bool:
+    if len(names) != _COUNTS[build]:
+        return False
+    candidate = build(names)
+    return candidate.matrix == model.matrix and candidate.constraints == model.constraints
+
+
+def _square(vector: Sequence[sp.Expr]) -> sp.Expr:
+    return sp.Add(*(part**2 for part in vector))
+
+
+def _along(factor: sp.Expr, vector: Sequence[sp.Expr]) -> Parts:
+    return tuple(factor * part for part in vector)
+
+
+def _differences(first: Sequence[sp.Expr], second: Sequence[sp.Expr]) -> Parts:
+    return tuple(a - b for a, b in zip(first, second, strict=True))
+
+
+_KEPT = "The sign of the quaternion is kept; from a matrix, the scalar is not negative."
+_SHORT = "The quaternion and its negative give the same, the turn by at most π."
+
+
+def _quaternion(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
+    length = sp.sqrt(_square(q))
+    parts = _along(1 / length, q)
+    return ClosedForm(
+        rule="quaternion",
+        quaternion=parts,
+        order=order,
+        because="The quaternion is divided by its length.",
+        back_because="The unit quaternion is one of its multiples.",
+        branch=f"The length is 1. {_KEPT}",
+        claims=(
+            (
+                _differences(_along(length, parts), q),
+                Markup(r"|\mathbf{q}|\,\mathbf{p} = \mathbf{q}", "|q| p = q"),
+            ),
+        ),
+    )
+
+
+def _unit(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
+    return ClosedForm(
+        rule="quaternion",
+        quaternion=tuple(q),
+        order=order,
+        because="The coordinates are the unit quaternion.",
+        back_because="The coordinates are the unit quaternion.",
+        branch=f"The length is 1. {_KEPT}",
+        claims=(((_square(q) - 1,), Markup(r"\mathbf{q}\cdot\mathbf{q} = 1", "q·q = 1")),),
+    )
+
+
+def _cayley_klein(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
+    a, b, c, d = q
+    return ClosedForm(
+        rule="cayley_klein",
+        quaternion=(a, d, c, b),
+        order=order,
+        because="α = w + i z and β = y + i x are the entries of the matrix of the quaternion.",
+        back_because="α = w + i z and β = y + i x are the entries of the matrix of the quaternion.",
+        branch=f"|α|² + |β|² = 1. {_KEPT}",
+        claims=(((_square(q) - 1,), Markup(r"|\alpha|^2 + |\beta|^2 = 1", "|α|² + |β|² = 1")),),
+    )
+
+
+def _axis_angle(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
+    *axis, angle = q
+    half = sp.sin(angle / 2)
+    parts = (sp.cos(angle / 2), *_along(half, axis))
+    return ClosedForm(
+        rule="axis_angle",
+        quaternion=parts,
+        order=order,
+        because="A turn by φ about e is the quaternion cos φ/2 + e sin φ/2.",
+        back_because="The vector part points along the axis, and its length is sin φ/2.",
+        branch="The angle is in [0, π]; without a turn, the axis is x.",
+        claims=(
+            (
+                _differences(parts[1:], _along(half, axis)),
+                Markup(r"\mathbf{p}_v = \sin\tfrac{\varphi}{2}\,\mathbf{e}", "p_v = sin φ/2 e"),
+            ),
+            (
+                (_square(parts[1:]) - half**2,),
+                Markup(
+                    r"|\mathbf{p}_v|^2 = \sin^2\tfrac{\varphi}{2}",
+                    "|p_v|² = sin² φ/2",
+                ),
+            ),
+        ),
+    )
+
+
+def _rotation_vector(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
+    angle = sp.sqrt(_square(q))
+    half = sp.sin(angle / 2)
+    parts = (sp.cos(angle / 2), *_along(half / angle, q))
+    return ClosedForm(
+        rule="rotation_vector",
+        quaternion=parts,
+        order=order,
+        because="With n = |v|, the turn by n about v/n is the quaternion cos n/2 + v/n sin n/2.",
+        back_because="The vector part points along v, and its length is sin n/2.",
+        branch=f"The length is in [0, π]. {_SHORT}",
+        claims=(
+            (
+                _differences(_along(angle, parts[1:]), _along(half, q)),
+                Markup(r"n\,\mathbf{p}_v = \sin\tfrac{n}{2}\,\mathbf{v}", "n p_v = sin n/2 v"),
+            ),
+            (
+                (_square(parts[1:]) - half**2,),
+                Markup(r"|\mathbf{p}_v|^2 = \sin^2\tfrac{n}{2}", "|p_v|² = sin² n/2"),
+            ),
+        ),
+    )
+
+
+def _gibbs(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
+    length = sp.sqrt(1 + _square(q))
+    parts = (1 / length, *_along(1 / length, q))
+    return ClosedForm(
+        rule="gibbs_vector",
+        quaternion=parts,
+        order=order,
+        because="The quaternion 1 + g is divided by its length.",
+        back_because="The vector part is divided by the scalar.",
+        branch="Every rotation has one vector. A half turn gives inf, and 0 where its axis has 0.",
+        claims=(
+            (
+                _differences(_along(parts[0], q), parts[1:]),
+                Markup(r"p_w\,\mathbf{g} = \mathbf{p}_v", "p_w g = p_v"),
+            ),
+        ),
+    )
+
+
+def _modified(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
+    square = _square(q)
+    parts = ((1 - square) / (1 + square), *_along(2 / (1 + square), q))
+    return ClosedForm(
+        rule="modified_rodrigues",
+        quaternion=parts,
+        order=order,
+        because="cos n/2 and sin n/2 are rational in s = tan n/4 e.",
+        back_because="The vector part is divided by one plus the scalar.",
+        branch="Of the two sets, the one with s·s ≤ 1, the turn by at most π.",
+        claims=(
+            (
+                _differences(_along(1 + parts[0], q), parts[1:]),
+                Markup(r"(1 + p_w)\,\mathbf{s} = \mathbf{p}_v", "(1 + p_w) s = p_v"),
+            ),
+        ),
+    )
+
+
+def _cosines(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:  # noqa: ARG001
+    return ClosedForm(
+        rule="direction_cosines",
+        quaternion=(),
+        order=order,
+        because="The quaternion is read off from R.",
+        back_because="The coordinates are the entries of R.",
+        branch="Every rotation has one matrix.",
+        claims=(),
+    )
+
+
+_FORMS = (
+    (Quaternion, _quaternion),
+    (UnitQuaternion, _unit),
+    (CayleyKlein, _cayley_klein),
+    (AxisAngle, _axis_angle),
+    (RotationVector, _rotation_vector),
+    (GibbsVector, _gibbs),
+    (ModifiedRodrigues, _modified),
+    (DirectionCosines, _cosines),
+)
+_COUNTS = {
+    Quaternion: 4,
+    UnitQuaternion: 4,
+    CayleyKlein: 4,
+    AxisAngle: 4,
+    RotationVector: 3,
+    GibbsVector: 3,
+    ModifiedRodrigues: 3,
+    DirectionCosines: 9,
+}

@@ -1,0 +1,242 @@
+"""Coordinates to the unit quaternion and back, and to R: what converts, how, and its proofs.
+
+A quaternion p is scalar first here, (p_w, p_x, p_y, p_z), whatever the order of a model's own, and
+it is that of R, which turns the body, also where a model presents the transpose.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache, reduce
+
+import sympy as sp
+
+from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.present import presenter_for
+from rigidsym.errors import AlgebraError
+from rigidsym.mechanics.conversion_forms import ClosedForm, closed_form
+from rigidsym.mechanics.conversion_turns import ThreeTurns, three_turns, turns_claims
+from rigidsym.mechanics.derivation import Markup, Proof, Quantity, Step
+from rigidsym.mechanics.prove import Prover
+from rigidsym.models.quaternions import UnitQuaternion
+from rigidsym.models.rotation import Citation, RotationModel
+from rigidsym.models.so3 import hat
+
+Parts = tuple[sp.Expr, ...]  # of a quaternion, scalar first
+
+LONGEST_CHAIN = 6  # turns whose product is written out: its terms double with each
+P = Markup(r"\mathbf{p}", "p")
+_SHEPPERD = Citation(
+    text="S. Shepperd, Quaternion from Rotation Matrix, Journal of Guidance and Control 1 (1978)"
+)
+_RODRIGUES = Citation(
+    text="M. Shuster, A Survey of Attitude Representations, Journal of the Astronautical "
+    "Sciences 41 (1993)"
+)
+QUATERNION = Quantity(
+    name="quaternion",
+    symbol=P,
+    definition=Markup("", ""),
+    about="unit quaternion of the rotation, scalar first",
+    unit="",
+    inputs=("q",),
+    is_vector=True,
+    source=_RODRIGUES,
+)
+_TURNS = Markup(r"\mathbf{R}(\mathbf{p}) = \mathbf{R}", "R(p) = R")
+_UNIT = Markup(r"\mathbf{p}\cdot\mathbf{p} = 1", "p·p = 1")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Backward:
+    """How the coordinates follow from a quaternion of any length but zero."""
+
+    rule: ThreeTurns | ClosedForm
+    because: str  # a sentence: how it follows
+    branch: str  # sentences: which of the possible coordinates are given
+    proofs: tuple[Proof, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Conversions:
+    """What converts between a model's coordinates, its unit quaternion and its matrix.
+
+    Where the quaternion has no formula of its own it is taken from R; where the coordinates do
+    not follow from a rotation, `without` says why.
+    """
+
+    model: RotationModel
+    quaternion: Step | None
+    backward: Backward | None
+    without: str  # a sentence; empty where there is `backward`
+    from_matrix: Proof  # that 4 p pᵀ can be read off from R
+
+    @property
+    def proofs(self) -> tuple[Proof, ...]:
+        forward = self.quaternion.proofs if self.quaternion else ()
+        return (*forward, *(self.backward.proofs if self.backward else ()), self.from_matrix)
+
+
+def conversions_of(model: RotationModel) -> Conversions:
+    """The conversions of one model, each proved in its ring."""
+    form = closed_form(model)
+    turns = three_turns(model) if model.turns else "its coordinates are entries or formulas of R"
+    backward, without = None, ""
+    if form is not None:
+        backward = _by_form(model, form)
+    elif isinstance(turns, ThreeTurns):
+        backward = _by_turns(model, turns)
+    else:
+        without = f"The coordinates do not follow from a rotation: {turns}."
+    return Conversions(
+        model=model,
+        quaternion=_forward(model, form),
+        backward=backward,
+        without=without,
+        from_matrix=_read_off(),
+    )
+
+
+def rotation_of(parts: Sequence[sp.Expr]) -> sp.Matrix:
+    """The matrix (3, 3) of a quaternion, times the square of its length."""
+    w, *vector = parts
+    v = sp.Matrix(vector)
+    return (w**2 - v.dot(v)) * sp.eye(3) + 2 * v * v.T + 2 * w * hat(v)
+
+
+def _forward(model: RotationModel, form: ClosedForm | None) -> Step | None:
+    """The unit quaternion as a formula in the coordinates; None where R has to be taken apart."""
+    if form is not None:
+        return _step(model, form.quaternion, form.because) if form.quaternion else None
+    if not model.turns or len(model.turns) > LONGEST_CHAIN:
+        return None
+    try:
+        return _step_of_turns(model)
+    except AlgebraError:  # half of a fixed angle need not have a sine that is a root
+        return None
+
+
+def _step_of_turns(model: RotationModel) -> Step:
+    """The product of cos(β/2) + sin(β/2) e over all turns, in the form of textbooks."""
+    factors = [half_turn(turn.direction, turn.angle) for turn in model.turns]
+    codec = codec_for(
+        [*model.matrix, *(part for factor in factors for part in factor)],
+        constraints=model.constraints,
+        order=0,
+    )
+    product = reduce(lambda a, b: _product(codec, a, b), (_encoded(codec, f) for f in factors))
+    shown = presenter_for(codec).matrix(product)
+    return _proved_step(
+        model,
+        codec,
+        shown,
+        "Each turn by β about e is the quaternion cos β/2 + e sin β/2; they are multiplied from "
+        "left to right.",
+    )
+
+
+def half_turn(direction: Sequence[sp.Expr], angle: sp.Expr) -> Parts:
+    """cos(β/2) + sin(β/2) e, the unit quaternion of the turn by β about the unit axis e."""
+    return (sp.cos(angle / 2), *(sp.sin(angle / 2) * part for part in direction))
+
+
+def _step(model: RotationModel, parts: Parts, because: str) -> Step:
+    codec = codec_for([*model.matrix, *parts], constraints=model.constraints, order=0)
+    return _proved_step(model, codec, sp.ImmutableMatrix(parts), because)
+
+
+def _proved_step(
+    model: RotationModel, codec: Codec, shown: sp.ImmutableMatrix, because: str
+) -> Step:
+    prove = Prover(model, codec)
+    residual = [codec.encode(e) for e in rotation_of(list(shown)) - model.matrix]
+    length = codec.encode(shown.dot(shown) - 1)
+    return Step(
+        number=1,
+        quantity=QUATERNION,
+        expression=shown,
+        because=because,
+        proofs=(
+            prove.vanishes(RingMatrix.column(codec.ring, residual), _TURNS),
+            prove.vanishes(RingMatrix.column(codec.ring, [length]), _UNIT),
+        ),
+    )
+
+
+def _encoded(codec: Codec, parts: Parts) -> RingMatrix:
+    return RingMatrix.column(codec.ring, [codec.encode(part) for part in parts])
+
+
+def _product(codec: Codec, first: RingMatrix, second: RingMatrix) -> RingMatrix:
+    """The product of two quaternions, as columns (4, 1)."""
+    w, x, y, z = first.entries
+    left = RingMatrix.of(codec.ring, [[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]])
+    return left @ second
+
+
+def _by_turns(model: RotationModel, rule: ThreeTurns) -> Backward:
+    return Backward(
+        rule=rule,
+        because="In the frame of the first two axes, p (1 + C) has the components "
+        "κ cos β/2 (cos σ, sin σ) and κ sin β/2 (cos δ, sin δ), with σ and δ half the sum and half "
+        "the difference of the outer angles; the arctangents of their quotients are the angles.",
+        branch=rule.branch,
+        proofs=_vanishing(model, turns_claims(model, rule)),
+    )
+
+
+def _by_form(model: RotationModel, form: ClosedForm) -> Backward:
+    return Backward(
+        rule=form,
+        because=form.back_because,
+        branch=form.branch,
+        proofs=_vanishing(model, form.claims),
+    )
+
+
+def _vanishing(
+    model: RotationModel, claims: Sequence[tuple[tuple[sp.Expr, ...], Markup]]
+) -> tuple[Proof, ...]:
+    """Proofs that the residuals of each claim reduce to zero."""
+    residuals = [residual for claim, _ in claims for residual in claim]
+    codec = codec_for([*model.matrix, *residuals], constraints=model.constraints, order=0)
+    prove = Prover(model, codec)
+    return tuple(
+        prove.vanishes(RingMatrix.column(codec.ring, map(codec.encode, claim)), text)
+        for claim, text in claims
+    )
+
+
+@cache
+def _read_off() -> Proof:
+    """4 p pᵀ = K(R): sums and differences of the entries of R, for every unit quaternion p."""
+    model = UnitQuaternion()
+    column = sp.Matrix(model.coordinates)
+    residual = tuple(outer_product(model.matrix) - 4 * column * column.T)
+    claim = Markup(
+        r"4\,\mathbf{p}\mathbf{p}^{\mathsf T} = \mathbf{K}(\mathbf{R})", "4 p pᵀ = K(R)"
+    )
+    return _vanishing(model, [(residual, claim)])[0]
+
+
+def outer_product(matrix: sp.MatrixBase) -> sp.Matrix:
+    """K(R) = 4 p pᵀ, (4, 4), of a rotation matrix (Shepperd, 1978)."""
+    r = matrix
+    trace = r[0, 0] + r[1, 1] + r[2, 2]
+    diagonal = [1 + trace, *(1 + 2 * r[k, k] - trace for k in range(3))]
+    above = {
+        (0, 1): r[2, 1] - r[1, 2],
+        (0, 2): r[0, 2] - r[2, 0],
+        (0, 3): r[1, 0] - r[0, 1],
+        (1, 2): r[1, 0] + r[0, 1],
+        (1, 3): r[0, 2] + r[2, 0],
+        (2, 3): r[2, 1] + r[1, 2],
+    }
+    return sp.Matrix(
+        4, 4, lambda i, j: diagonal[i] if i == j else above[min(i, j), max(i, j)]
+    )
+
+
+FROM_MATRIX_SOURCE = _SHEPPERD

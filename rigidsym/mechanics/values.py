@@ -1,0 +1,121 @@
+"""What a derivation works with: the matrices and vectors of one model, over its ring."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import cached_property
+
+import sympy as sp
+from sympy.polys.rings import PolyElement
+
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.mechanics import composition
+from rigidsym.mechanics.arguments import arguments_of
+from rigidsym.mechanics.composition import Factor, hat, unhat
+from rigidsym.mechanics.rates import Inverse, bound_on_rates, right_inverse
+from rigidsym.models.rotation import RotationModel, Turn
+from rigidsym.models.so3 import TIME
+
+_FEW_TURNS = 4  # up to here the product is multiplied out; the proof by turns is as exact
+
+
+class Values:
+    """R, dR/dt, Ω, Ω′, W, W′ and the inverses of one model, each worked out when asked for."""
+
+    def __init__(self, model: RotationModel) -> None:
+        self.model = model
+        self.arguments = {argument.name: argument for argument in arguments_of(model)}
+        inputs = [s for name, a in self.arguments.items() if name != "q" for s in a.symbols]
+        turns = self._many_turns
+        held = [e for turn in turns for e in turn.matrix] or [*model.matrix]
+        self.codec = codec_for([*held, *inputs], constraints=model.constraints, order=2)
+        self.ring = self.codec.ring
+        self.one = RingMatrix.identity(self.ring, 3)
+
+    @property
+    def _many_turns(self) -> tuple[Turn, ...]:
+        return self.model.turns if len(self.model.turns) > _FEW_TURNS else ()
+
+    @cached_property
+    def factors(self) -> tuple[Factor, ...]:
+        """The turns, where there are too many to multiply R Rᵀ and dR/dt Rᵀ out; else none."""
+        return tuple(
+            Factor(self.encoded(turn.matrix), self._turning(turn)) for turn in self._many_turns
+        )
+
+    def _turning(self, turn: Turn) -> RingMatrix:
+        """The angular velocity of one turn: its axis, times the rate of its angle."""
+        rate = sp.diff(turn.angle, TIME)
+        return self.encoded(sp.Matrix([part * rate for part in turn.direction]))
+
+    @cached_property
+    def R(self) -> RingMatrix:
+        if self.factors:
+            return composition.product(self.factors)
+        return self.encoded(self.model.matrix)
+
+    @cached_property
+    def R_dot(self) -> RingMatrix:
+        return self.R.dt()
+
+    @cached_property
+    def spin(self) -> RingMatrix:
+        """dR/dt Rᵀ."""
+        if self.factors:
+            return hat(composition.omega_space(self.factors))
+        return self.R_dot @ self.R.T
+
+    @cached_property
+    def spin_of_transpose(self) -> RingMatrix:
+        """dA/dt Aᵀ of A = Rᵀ."""
+        if self.factors:
+            return hat(self.omega_body).map(lambda entry: -entry)
+        return self.R_dot.T @ self.R
+
+    @cached_property
+    def omega_space(self) -> RingMatrix:
+        return unhat(self.spin)
+
+    @cached_property
+    def omega_body(self) -> RingMatrix:
+        if self.factors:
+            return composition.omega_body(self.factors)
+        return self.R.T @ self.omega_space
+
+    @cached_property
+    def rate_matrix_space(self) -> RingMatrix:
+        return self._jacobian(self.omega_space)
+
+    @cached_property
+    def rate_matrix_body(self) -> RingMatrix:
+        return self._jacobian(self.omega_body)
+
+    @cached_property
+    def inverse_space(self) -> Inverse | None:
+        return right_inverse(self.rate_matrix_space, self._bound)
+
+    @cached_property
+    def inverse_body(self) -> Inverse | None:
+        return right_inverse(self.rate_matrix_body, self._bound)
+
+    @cached_property
+    def _bound(self) -> RingMatrix | None:
+        return bound_on_rates(self.model.constraints, self.model.coordinates, self.codec)
+
+    def _jacobian(self, omega: RingMatrix) -> RingMatrix:
+        """∂Ω/∂q̇, by the generators of the rates themselves: a constraint may relate them."""
+        ring = self.ring
+        rates = [ring.generator(ring.index[rate]) for rate in self.arguments["q_dot"].symbols]
+        return RingMatrix.of(ring, [[o.diff(rate) for rate in rates] for o in omega.entries])
+
+    def argument(self, name: str) -> RingMatrix:
+        """The components of an argument as a column."""
+        return self.column(map(self.codec.encode, self.arguments[name].symbols))
+
+    def column(self, entries: Iterable[PolyElement]) -> RingMatrix:
+        return RingMatrix.column(self.ring, entries)
+
+    def encoded(self, matrix: sp.MatrixBase) -> RingMatrix:
+        rows = matrix.tolist()
+        return RingMatrix.of(self.ring, [[self.codec.encode(e) for e in row] for row in rows])

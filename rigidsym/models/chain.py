@@ -1,0 +1,109 @@
+"""Products of turns of any length, about any constant axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import reduce
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from rigidsym.errors import ModelError
+from rigidsym.models.rotation import Citation, RotationModel, Turn
+from rigidsym.models.so3 import AXES
+
+_SOURCE = Citation(text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002), section 4.4")
+
+
+def chain(
+    turns: Sequence[Turn],
+    *,
+    name: str = "",
+    title: str = "",
+    source: Citation = _SOURCE,
+    passive: bool = False,
+) -> RotationModel:
+    """R as a product of turns, left to right as given: R = R_1 R_2 ... R_n.
+
+    The coordinates are the functions of time in the angles, in the order in which they come up; an
+    angle may be a constant, or any combination of coordinates and constants. Components of an axis
+    that are symbols bring the condition that the axis is a unit vector.
+
+    Raises ModelError where there is no turn, or none with a coordinate.
+    """
+    if not turns:
+        raise ModelError("a chain needs at least one turn, such as z(phi)")
+    coordinates = _coordinates(turns)
+    if not coordinates:
+        raise ModelError(
+            f"{' '.join(map(str, turns))} does not move: expected an angle that is a function "
+            "of time"
+        )
+    letters = "".join(turn.axis if turn.axis in AXES else "u" for turn in turns)
+    product = " ".join(map(str, turns))
+    return RotationModel(
+        name=name or f"chain_{letters}" + ("_passive" if passive else ""),
+        title=title or f"Chain of turns {product}" + (", passive" if passive else ""),
+        convention=(_in_words(turns),),
+        coordinates=coordinates,
+        matrix=reduce(lambda a, b: a * b, (turn.matrix for turn in turns)),
+        turns=tuple(turns),
+        constraints=_unit_axes(turns),
+        source=source,
+        passive=passive,
+    )
+
+
+def _coordinates(turns: Iterable[Turn]) -> tuple[sp.Expr, ...]:
+    found: dict[sp.Expr, None] = {}
+    for turn in turns:
+        for atom in sp.ordered(turn.angle.atoms(AppliedUndef)):
+            found[atom] = None
+    return tuple(found)
+
+
+def _unit_axes(turns: Iterable[Turn]) -> tuple[sp.Expr, ...]:
+    """x² + y² + z² − 1 for each axis that is not already known to be a unit vector."""
+    conditions = (sum(part**2 for part in turn.direction) - 1 for turn in turns)
+    return tuple(dict.fromkeys(c for c in conditions if sp.expand(c) != 0))
+
+
+def _in_words(turns: Sequence[Turn]) -> str:
+    steps = [f"{turn.angle_text} about {turn.axis}" for turn in turns]
+    if len(steps) == 1:
+        return f"One turn: {steps[0]}."
+    return (
+        f"{len(steps)} turns, each about an axis that the turns before it have moved: first "
+        + ", then ".join(steps)
+        + "."
+    )
+
+
+def axis_turn(axis: Sequence[sp.Expr], angle: sp.Expr) -> Turn:
+    """The turn about a constant axis that is given by its components along x, y and z.
+
+    Raises ModelError for a zero axis and for numbers that are not a unit vector.
+    """
+    parts = tuple(sp.sympify(part) for part in axis)
+    square = sum(part**2 for part in parts)
+    if all(part.is_number for part in parts) and sp.expand(square) != 1:
+        raise ModelError(
+            f"the axis ({', '.join(map(str, parts))}) has the length {sp.sqrt(square)}; expected a "
+            "unit vector"
+        )
+    label = f"[{', '.join(map(str, parts))}]"
+    return Turn(axis=label, angle=angle, components=parts)
+
+
+def direction(parts: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
+    """The unit vector along a direction, as crystallographers write them: [1, 1, 0].
+
+    Symbols are left as they are, for the unit condition to bind. Raises ModelError for [0, 0, 0].
+    """
+    exact = tuple(sp.sympify(part) for part in parts)
+    if not all(part.is_number for part in exact):
+        return exact
+    length = sp.sqrt(sum(part**2 for part in exact))
+    if length == 0:
+        raise ModelError("the direction [0, 0, 0] has no axis")
+    return tuple(part / length for part in exact)

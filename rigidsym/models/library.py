@@ -1,0 +1,126 @@
+"""The rotations by name: other parametrisations, and the Euler angles of well-known texts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+from rigidsym.models.matrices import DirectionCosines
+from rigidsym.models.quaternions import AxisAngle, CayleyKlein, Quaternion, UnitQuaternion
+from rigidsym.models.rotation import Citation, RotationModel, lecture
+from rigidsym.models.vectors import GibbsVector, ModifiedRodrigues, RotationVector
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Entry:
+    """One parametrisation: how it is built, and R written out."""
+
+    build: Callable[..., RotationModel]  # names of the coordinates, passive
+    product: str
+    has_scalar: bool = False  # whether its scalar may stand last
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Preset:
+    """The Euler angles, or another rotation, of one text."""
+
+    rotation: str  # a sequence, turns, or the name of a parametrisation
+    about: str
+    source: Citation
+    names: tuple[str, ...] = ()
+    passive: bool = False
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+
+PARAMETRISATIONS: Mapping[str, Entry] = MappingProxyType(
+    {
+        "quaternion": Entry(
+            build=Quaternion,
+            product="((w² − v·v) 1 + 2 v vᵀ + 2 w C(v))/(w² + v·v)",
+            has_scalar=True,
+        ),
+        "unit_quaternion": Entry(
+            build=UnitQuaternion,
+            product="(w² − v·v) 1 + 2 v vᵀ + 2 w C(v), w² + v·v = 1",
+            has_scalar=True,
+        ),
+        "axis_angle": Entry(build=AxisAngle, product="1 + sin φ C(e) + (1 − cos φ) C(e)², e·e = 1"),
+        "rotation_vector": Entry(
+            build=RotationVector, product="exp C(v) = 1 + sin n/n C(v) + (1 − cos n)/n² C(v)²"
+        ),
+        "gibbs_vector": Entry(build=GibbsVector, product="1 + 2/(1 + g·g) (C(g) + C(g)²)"),
+        "modified_rodrigues": Entry(
+            build=ModifiedRodrigues, product="1 + (8 C(s)² + 4 (1 − s·s) C(s))/(1 + s·s)²"
+        ),
+        "cayley_klein": Entry(
+            build=CayleyKlein, product="the unit quaternion (a, d, c, b), α = a + i b, β = c + i d"
+        ),
+        "direction_cosines": Entry(
+            build=DirectionCosines, product="the nine entries, R Rᵀ = 1, det R = 1"
+        ),
+    }
+)
+
+PRESETS: Mapping[str, Preset] = MappingProxyType(
+    {
+        "lecture": Preset(
+            rotation="ZXZ",
+            about="the Euler angles of the lecture",
+            source=lecture("17", "section 3.2"),
+        ),
+        "goldstein": Preset(
+            rotation="ZXZ",
+            about="Goldstein's Euler angles, his matrix A from space to body axes",
+            source=Citation(
+                text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002), section 4.4",
+                equation="4.46",
+            ),
+            passive=True,
+        ),
+        "landau_lifshitz": Preset(
+            rotation="ZXZ",
+            about="the Euler angles of Landau and Lifshitz",
+            source=Citation(text="L. Landau, E. Lifshitz, Mechanics (1976), section 35"),
+        ),
+        "aerospace": Preset(
+            rotation="ZYX",
+            about="yaw, pitch, roll; from the reference frame to the axes of the aircraft",
+            source=Citation(
+                text="B. Stevens, F. Lewis, Aircraft Control and Simulation (2003), section 1.3"
+            ),
+            names=("psi", "theta", "phi"),
+            passive=True,
+        ),
+        "wertz": Preset(
+            rotation="ZXZ",
+            about="3-1-3 of spacecraft attitude, the direction cosine matrix",
+            source=Citation(
+                text="J. Wertz (ed.), Spacecraft Attitude Determination and Control (1978), "
+                "appendix E"
+            ),
+            passive=True,
+        ),
+        "rpy": Preset(
+            rotation="xyz",
+            about="roll, pitch, yaw about fixed axes, as in robotics",
+            source=Citation(text="J. Craig, Introduction to Robotics (2005), section 2.8"),
+            names=("roll", "pitch", "yaw"),
+        ),
+        "davenport": Preset(
+            rotation="z(phi) x(theta) [0,b,c](psi)",
+            about="three turns, the second axis at right angles to the others",
+            source=Citation(
+                text="P. Davenport, Rotations about nonorthogonal axes, AIAA Journal 11 (1973)"
+            ),
+        ),
+        "bunge": Preset(
+            rotation="ZXZ",
+            about="Bunge's angles of texture analysis, from the sample to the crystal",
+            source=Citation(text="H.-J. Bunge, Texture Analysis in Materials Science (1982)"),
+            names=("phi_1", "Phi", "phi_2"),
+            passive=True,
+        ),
+    }
+)

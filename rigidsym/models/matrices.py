@@ -1,0 +1,72 @@
+"""Rotations given entry by entry: direction cosines, and matrices of your own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from rigidsym.models.rotation import Citation, RotationModel, lecture
+from rigidsym.models.so3 import time_function
+from rigidsym.models.vectors import distinct_names
+
+_NAMES = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
+
+
+def DirectionCosines(names: Sequence[str] = _NAMES, *, passive: bool = False) -> RotationModel:
+    """The nine entries of R, row by row, bound by R Rᵀ = 1 and by the cross products of its rows.
+
+    dR/dt = C(Ω) R are Poisson's equations. Raises ModelError for bad names.
+    """
+    entries = [time_function(name) for name in distinct_names(names, 9)]
+    matrix = sp.ImmutableMatrix(3, 3, entries)
+    return RotationModel(
+        name="direction_cosines" + ("_passive" if passive else ""),
+        title="Direction cosines" + (", passive" if passive else ""),
+        convention=("The coordinates are the nine entries of R, row by row.",),
+        coordinates=tuple(entries),
+        matrix=matrix,
+        constraints=_conditions(matrix),
+        source=lecture("15", "section 3.2"),
+        units=("",) * 9,
+        passive=passive,
+    )
+
+
+def _conditions(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, ...]:
+    """R Rᵀ = 1 = RᵀR, and each row the cross product of the others, which makes det R = +1."""
+    one = sp.eye(3)
+    products = [*(matrix * matrix.T - one), *(matrix.T * matrix - one)]
+    cofactors = [*(matrix.adjugate().T - matrix)]
+    return tuple(dict.fromkeys(sp.expand(condition) for condition in [*products, *cofactors]))
+
+
+def given(
+    matrix: sp.MatrixBase,
+    *,
+    name: str,
+    title: str = "",
+    coordinates: Sequence[sp.Expr] = (),
+    constraints: Sequence[sp.Expr] = (),
+    source: str = "given by the user",
+    passive: bool = False,
+) -> RotationModel:
+    """Your own R(q), 3x3, in functions of time; it is proved to be a rotation when derived.
+
+    Without `coordinates` they are the functions of time in the matrix, in alphabetical order.
+    Raises ModelError for a matrix that is not 3x3 or has no coordinate.
+    """
+    found = tuple(sp.ordered(sp.Matrix(matrix).atoms(AppliedUndef)))
+    used = tuple(coordinates) or found
+    return RotationModel(
+        name=name,
+        title=title or name,
+        convention=("The rotation is given entry by entry.",),
+        coordinates=used,
+        matrix=sp.ImmutableMatrix(matrix),
+        constraints=tuple(constraints),
+        units=("",) * len(used),
+        source=Citation(text=source),
+        passive=passive,
+    )
