@@ -7,14 +7,21 @@ import tomllib
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities import quantities
 from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.notes.measure import columns
 from rigidsym.resources import names, text
+from rigidsym.rotations import rotation_from
+
+_TURNS = 'such as "z(phi) x(theta) [1,1,0](psi) y(pi/4)"; a name that ends in 0 is a constant'
 
 
 def inventory() -> str:
     """The whole list, as text."""
     sections = (
         ("Rotations (upper case: about turning axes; lower case: about fixed axes)", _rotations()),
+        ("Other parametrisations", _parametrisations()),
+        ("Presets", _presets()),
+        ("Turns of any number, about any axes", [_TURNS]),
         ("Quantities", _quantities()),
         (
             "Targets of the kernels",
@@ -29,6 +36,20 @@ def inventory() -> str:
 def _rotations() -> list[str]:
     models = [(sequence, EulerAngles(sequence)) for sequence in EULER_SEQUENCES]
     return [f"{sequence}  R = {model.product}" for sequence, model in models]
+
+
+def _parametrisations() -> list[str]:
+    return [f"{name:<20} R = {entry.product}" for name, entry in PARAMETRISATIONS.items()]
+
+
+def _presets() -> list[str]:
+    lines = []
+    for name, preset in PRESETS.items():
+        model = rotation_from(name)
+        shown = "A = Rᵀ, " if model.passive else ""
+        lines.append(f"{name:<16} {shown}R = {model.product}: {preset.about}")
+        lines.append(f"{'':<16} {preset.source}")
+    return lines
 
 
 def _quantities() -> list[str]:

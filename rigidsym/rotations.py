@@ -14,11 +14,12 @@ from rigidsym.expression import names_in, parse_expression, parse_turns
 from rigidsym.models.catalogue import DEFAULT_ANGLES, EULER_SEQUENCES, EulerAngles, euler_sequence
 from rigidsym.models.chain import axis_turn, chain, direction
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.models.matrices import given
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.models.so3 import AXES, time_function
 from rigidsym.names import check_name, offer
 
-LONGEST = 400  # characters of a sequence or of turns
+LONGEST = 200  # characters of a sequence or of turns
 _A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name from the list'
 
 
@@ -48,21 +49,51 @@ def rotation_from(
     elif name in PRESETS:
         model = _preset(name, names, passive)
     else:
-        model = EulerAngles(_sequence(text), names or DEFAULT_ANGLES, passive=passive)
+        model = EulerAngles(
+            _sequence(text), DEFAULT_ANGLES if names is None else names, passive=passive
+        )
     if scalar_last and not (name in PARAMETRISATIONS and PARAMETRISATIONS[name].has_scalar):
         raise ModelError(f"{text} has no scalar that could stand last")
+    if model.request and name not in PRESETS:
+        return model  # Euler angles know what asks for them
     kept = {key: value for key, value in asked.items() if value or key == "sequence"}
     return replace(model, request=kept)
+
+
+def rotation_given(
+    rows: Sequence[Sequence[str]],
+    *,
+    name: str,
+    coordinates: Sequence[str],
+    constraints: Sequence[str] = (),
+    passive: bool = False,
+) -> RotationModel:
+    """Your own R(q): nine expressions by rows, in the coordinates; other names are constants.
+
+    `constraints` are expressions that vanish for all time. Raises ModelError or ExpressionError.
+    """
+    if len(rows) != 3 or any(len(row) != 3 for row in rows):
+        raise ModelError("a rotation matrix has three rows of three expressions")
+    functions = {check_name(q): time_function(check_name(q)) for q in coordinates}
+    texts = [*(entry for row in rows for entry in row), *constraints]
+    used = {n: functions.get(n) or sp.Symbol(check_name(n)) for t in texts for n in names_in(t)}
+    entries = [parse_expression(text, used) for text in texts]
+    model = given(
+        sp.Matrix(3, 3, entries[:9]),
+        name=name,
+        coordinates=tuple(functions.values()),
+        constraints=tuple(entries[9:]),
+        passive=passive,
+    )
+    asked = {"matrix": [list(row) for row in rows], "coordinates": list(functions)}
+    asked |= {"constraints": list(constraints), "passive": passive}
+    return replace(model, request={key: value for key, value in asked.items() if value})
 
 
 def request_of(model: RotationModel) -> Mapping[str, Any]:
     """What asks for the model again; raises ModelError for one that no text asks for."""
     if model.request:
         return model.request
-    for sequence in EULER_SEQUENCES:
-        names = [coordinate.func.__name__ for coordinate in model.coordinates]
-        if len(names) == 3 and model == EulerAngles(sequence, names, passive=model.passive):
-            return {"sequence": sequence, "angles": names, "passive": model.passive}
     raise ModelError(f"{model.name} was made in Python; no derivation file can ask for it")
 
 

@@ -6,38 +6,33 @@ import errno
 import keyword
 import re
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from rigidsym import resources
-from rigidsym.errors import ExpressionError, Fault, ModelError, SpecError
-from rigidsym.expression import parse_turns
+from rigidsym.errors import Fault, SpecError
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities import QUANTITY_NAMES
-from rigidsym.models.catalogue import DEFAULT_ANGLES, EulerAngles, euler_sequence
 from rigidsym.models.rotation import RotationModel
-from rigidsym.names import check_name, offer
+from rigidsym.names import offer
+from rigidsym.rotation_table import KEYS, read_rotation, repeated
+from rigidsym.rotations import request_of, rotation_from
 from rigidsym.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
-from rigidsym.toml_lines import Path as Place
 
-NOTE_FORMATS = ("tex", "pdf")
+NOTE_FORMATS = ("tex", "html", "md", "ipynb", "pdf")
 
 _OUTPUT = {"quantities": QUANTITY_NAMES, "kernels": tuple(TARGETS), "note": NOTE_FORMATS}
 _FILE = ("title", "rotation", "output")
-_ROTATION = ("sequence", "angles", "passive")
 _HINTS = {
     **dict.fromkeys(
         ("parameters", "body", "potential"), f"not read yet (known: {', '.join(_FILE)})"
     ),
     **dict.fromkeys(_FILE, "it belongs at the top of the file, outside the tables"),
-    **dict.fromkeys(_ROTATION, "it belongs in [rotation]"),
+    **dict.fromkeys(KEYS, "it belongs in [rotation]"),
     **dict.fromkeys(_OUTPUT, "it belongs in [output]"),
 }
-_A_SEQUENCE = 'a sequence such as "ZXZ", or a list of sequences'
-_THREE_NAMES = 'a list of three names such as ["phi", "theta", "psi"]'
-_LONGEST_SEQUENCE = 200
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _DEVICES = re.compile(r"con|prn|aux|nul|com[1-9]|lpt[1-9]")  # no files on Windows
@@ -57,7 +52,7 @@ class DerivationSpec:
     models: tuple[RotationModel, ...]
     quantities: tuple[str, ...] = ()  # empty: all
     kernels: tuple[str, ...] = ("numpy",)
-    note: tuple[str, ...] = ("tex",)
+    note: tuple[str, ...] = ("tex", "html")
 
     def __post_init__(self) -> None:
         faults = Faults(self.name)
@@ -69,7 +64,7 @@ class DerivationSpec:
         _read_output(table)
         if not self.models:
             faults.add(("models",), "expected at least one rotation")
-        for message in _repeated(self.models).values():
+        for message in repeated(self.models).values():
             faults.add(("models",), message)
         if len(self.models) == 1 and (message := _fault_of_name(self.name)):
             faults.add(("name",), message)
@@ -86,12 +81,12 @@ class DerivationSpec:
     def to_data(self) -> dict[str, Any]:
         """All of it as dictionaries, lists, strings and booleans, which `from_data` reads back.
 
-        Raises ModelError for a rotation that is not a sequence of Euler angles.
+        Raises ModelError for a rotation that was made in Python, which no text asks for.
         """
         return {
             "name": self.name,
             "title": self.title,
-            "rotations": [_rotation_data(model) for model in self.models],
+            "rotations": [dict(request_of(model)) for model in self.models],
             "quantities": list(self.quantities) or None,
             "kernels": list(self.kernels),
             "note": list(self.note),
@@ -106,8 +101,8 @@ class DerivationSpec:
         table = Table(data, (), faults)
         table.refuse_others(("name", "title", "rotations", *_OUTPUT))
         rotations = table.tables("rotations", "a list of objects with sequence and angles")
-        models = [model for rotation in rotations for model in _read_rotation(rotation)]
         name, title, output = table.text("name"), _read_title(table), _read_output(table)
+        models = [m for rotation in rotations for m in _read_rotation(rotation, name or "")]
         if table.value("name") is None:
             table.fault("missing; expected the name of the derivation", "name")
         faults.raise_if_any()
@@ -115,18 +110,20 @@ class DerivationSpec:
 
 
 def spec_for(
-    sequence: str, *, angles: Sequence[str] | None = None, passive: bool = False
+    rotation: str,
+    *,
+    angles: Sequence[str] | None = None,
+    constants: Sequence[str] = (),
+    scalar_last: bool = False,
+    passive: bool = False,
 ) -> DerivationSpec:
     """The specification of one rotation and all that follows from it, named after it.
 
-    Raises ModelError for a wrong sequence or a wrong name of an angle, ExpressionError for turns
-    that cannot be read.
+    Raises ModelError and ExpressionError as `rotation_from` does.
     """
-    letters, own_angles = _turns(sequence)
-    if own_angles and angles is not None:
-        raise ModelError(f"{sequence} names its angles itself; leave the other names out")
-    names = own_angles or (DEFAULT_ANGLES if angles is None else angles)
-    model = EulerAngles(letters, names, passive=passive)
+    model = rotation_from(
+        rotation, names=angles, constants=constants, scalar_last=scalar_last, passive=passive
+    )
     return DerivationSpec(name=model.name, models=(model,))
 
 
@@ -161,7 +158,7 @@ def read_spec(text: str, *, source: str, name: str) -> DerivationSpec:
     rotation, output = table.table("rotation"), table.table("output")
     if table.value("rotation") is None:
         table.fault('missing; expected [rotation] with sequence = "ZXZ" or another', "rotation")
-    models = _read_rotation(rotation) if rotation else []
+    models = _read_rotation(rotation, name) if rotation else []
     if output:
         output.refuse_others(tuple(_OUTPUT), _HINTS)
     choices = _read_output(output) if output else {}
@@ -171,6 +168,11 @@ def read_spec(text: str, *, source: str, name: str) -> DerivationSpec:
     faults.raise_if_any()
     name = models[0].name if is_list and len(models) == 1 else name
     return DerivationSpec(name=name, title=title, models=tuple(models), **choices)
+
+
+def _read_rotation(table: Table, name: str) -> list[RotationModel]:
+    table.refuse_others(KEYS, _HINTS)
+    return read_rotation(table, name)
 
 
 def _read_title(table: Table) -> str | None:
@@ -185,118 +187,6 @@ def _read_title(table: Table) -> str | None:
 def _read_output(table: Table) -> dict[str, tuple[str, ...]]:
     chosen = {key: table.choices(key, known) for key, known in _OUTPUT.items()}
     return {key: choice for key, choice in chosen.items() if choice is not None}
-
-
-def _read_rotation(table: Table) -> list[RotationModel]:
-    """The models of a table with sequence, angles and passive."""
-    table.refuse_others(_ROTATION, _HINTS)
-    passive = bool(table.flag("passive"))
-    angles = _read_angles(table)
-    names_itself = False
-    models: dict[Place, RotationModel] = {}
-    for at, text in _read_sequences(table):
-        try:
-            letters, own_angles = _turns(text)
-            names_itself = names_itself or bool(own_angles)
-            models[at] = EulerAngles(
-                letters, own_angles or angles or DEFAULT_ANGLES, passive=passive
-            )
-        except (ModelError, ExpressionError) as error:
-            table.fault(str(error), *at)
-    if names_itself and table.value("angles") is not None:
-        table.fault("the sequence names its angles itself; leave this key out", "angles")
-    for place, message in _repeated(models.values()).items():
-        table.fault(message, *list(models)[place])
-    return list(models.values())
-
-
-def _read_sequences(table: Table) -> list[tuple[Place, str]]:
-    """(path, text) of each sequence that is a text."""
-    value = table.value("sequence")
-    if isinstance(value, list):
-        texts = table.texts("sequence", _A_SEQUENCE) or []
-        return [(("sequence", k), text) for k, text in enumerate(texts) if text is not None]
-    if isinstance(value, str):
-        return [(("sequence",), value)]
-    if value is None:
-        table.fault(f"missing; expected {_A_SEQUENCE}", "sequence")
-    else:
-        table.mistyped(value, _A_SEQUENCE, "sequence")
-    return []
-
-
-def _read_angles(table: Table) -> list[str] | None:
-    """Three different names; None where there are none, or a fault is noted."""
-    texts = table.texts("angles", _THREE_NAMES)
-    if not texts:
-        return None
-    names = [_read_angle(table, place, text) for place, text in enumerate(texts)]
-    for place, name in enumerate(names):
-        if name and name in names[:place]:
-            table.fault(f"{name} is named twice", "angles", place)
-    if len(names) != len(DEFAULT_ANGLES):
-        table.fault(f"expected {_THREE_NAMES}, got {len(names)}", "angles")
-    found = [name for name in dict.fromkeys(names) if name]
-    return found if len(found) == len(names) == len(DEFAULT_ANGLES) else None
-
-
-def _read_angle(table: Table, place: int, text: str | None) -> str | None:
-    try:
-        return check_name(text) if text is not None else None
-    except ExpressionError as error:
-        table.fault(error.message, "angles", place)
-        return None
-
-
-def _turns(text: str) -> tuple[str, tuple[str, ...]]:
-    """The Euler sequence that a text writes, and the angles where it names them.
-
-    Turns `z(phi) x(theta) z(psi)` are multiplied as they are written, left to right, and so they
-    are the intrinsic sequence ZXZ.
-    """
-    if len(text) > _LONGEST_SEQUENCE:
-        raise ModelError(f"expected {_A_SEQUENCE}, got {len(text)} characters")
-    if "(" not in text:
-        return euler_sequence(text), ()
-    try:
-        turns = parse_turns(text)
-    except ExpressionError as error:
-        raise ExpressionError(f"column {error.column}: {error.message}") from None
-    axes = "".join(axis for axis, _ in turns)
-    return euler_sequence(axes.upper()), tuple(angle for _, angle in turns)
-
-
-def _sequence_of(model: RotationModel) -> str:
-    """The Euler sequence of a model, read off its turns: reversed turns are extrinsic."""
-    axes = "".join(turn.axis for turn in model.turns)
-    angles = tuple(turn.angle for turn in model.turns)
-    if angles == model.coordinates:
-        return euler_sequence(axes.upper())
-    if angles == model.coordinates[::-1]:
-        return euler_sequence(axes[::-1])
-    raise ModelError(f"{model.name} is not a sequence of Euler angles, and no file can name it")
-
-
-def _rotation_data(model: RotationModel) -> dict[str, Any]:
-    return {
-        "sequence": _sequence_of(model),
-        "angles": [coordinate.func.__name__ for coordinate in model.coordinates],
-        "passive": model.passive,
-    }
-
-
-def _repeated(models: Iterable[RotationModel]) -> dict[int, str]:
-    """{place: fault} of the models whose folder an earlier one writes already.
-
-    A model's name has no capitals, so that names which differ are different folders everywhere.
-    """
-    first: dict[str, int] = {}
-    faults: dict[int, str] = {}
-    for place, model in enumerate(models):
-        earlier = first.setdefault(model.name, place)
-        if earlier != place:
-            faults[place] = f"writes the folder {model.name}, as entry {earlier} does"
-    return faults
 
 
 def _fault_of_name(name: str) -> str:

@@ -33,7 +33,7 @@ def test_a_small_file_asks_for_everything():
         models=(EulerAngles("ZXZ"),),
         quantities=(),
         kernels=("numpy",),
-        note=("tex",),
+        note=("tex", "html"),
     )
 
 
@@ -228,7 +228,7 @@ def test_the_form_of_the_data():
         ],
         "quantities": ["spin_matrix"],
         "kernels": ["numpy"],
-        "note": ["tex"],
+        "note": ["tex", "html"],
     }
 
 
@@ -254,7 +254,6 @@ def test_data_that_is_no_object(data):
 
 
 def test_a_rotation_that_no_file_can_name_has_no_data():
-    model = EulerAngles("ZXZ")
-    chain = replace(model, name="chain", turns=(model.turns[1], model.turns[0], model.turns[2]))
-    with pytest.raises(ModelError, match="chain is not a sequence of Euler angles"):
-        DerivationSpec(name="chain", models=(chain,)).to_data()
+    model = replace(EulerAngles("ZXZ"), name="mine", request={})
+    with pytest.raises(ModelError, match="mine was made in Python; no derivation file"):
+        DerivationSpec(name="mine", models=(model,)).to_data()

@@ -65,7 +65,7 @@ class ThreeTurns:
         square = along**2 + across**2
         skew = hat(self.frame[:, 1])
         lean = sp.eye(3) + (2 * along * across * skew + 2 * across**2 * skew**2) / square
-        return self.frame.T, sp.ImmutableMatrix((lean * self.frame).applyfunc(sp.nsimplify))
+        return self.frame.T, sp.ImmutableMatrix((lean * self.frame).applyfunc(sp.expand))
 
     @property
     def branch(self) -> str:

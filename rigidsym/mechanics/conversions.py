@@ -7,7 +7,7 @@ it is that of R, which turns the body, also where a model presents the transpose
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, reduce
 
 import sympy as sp
@@ -19,6 +19,7 @@ from rigidsym.errors import AlgebraError
 from rigidsym.mechanics.conversion_forms import ClosedForm, closed_form
 from rigidsym.mechanics.conversion_turns import ThreeTurns, three_turns, turns_claims
 from rigidsym.mechanics.derivation import Markup, Proof, Quantity, Step
+from rigidsym.mechanics.kinematics import derive
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.quaternions import UnitQuaternion
 from rigidsym.models.rotation import Citation, RotationModel
@@ -28,7 +29,7 @@ Parts = tuple[sp.Expr, ...]  # of a quaternion, scalar first
 
 LONGEST_CHAIN = 6  # turns whose product is written out: its terms double with each
 P = Markup(r"\mathbf{p}", "p")
-_SHEPPERD = Citation(
+SHEPPERD = Citation(
     text="S. Shepperd, Quaternion from Rotation Matrix, Journal of Guidance and Control 1 (1978)"
 )
 _RODRIGUES = Citation(
@@ -45,6 +46,7 @@ QUATERNION = Quantity(
     is_vector=True,
     source=_RODRIGUES,
 )
+_OF_UNIT_LENGTH = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
 _TURNS = Markup(r"\mathbf{R}(\mathbf{p}) = \mathbf{R}", "R(p) = R")
 _UNIT = Markup(r"\mathbf{p}\cdot\mathbf{p} = 1", "p·p = 1")
 
@@ -72,6 +74,7 @@ class Conversions:
     backward: Backward | None
     without: str  # a sentence; empty where there is `backward`
     from_matrix: Proof  # that 4 p pᵀ can be read off from R
+    variants: tuple[Step, ...] = ()  # quantities in a shorter form, for coordinates that obey more
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
@@ -96,6 +99,27 @@ def conversions_of(model: RotationModel) -> Conversions:
         backward=backward,
         without=without,
         from_matrix=_read_off(),
+        variants=_unit_variants(model, form),
+    )
+
+
+def _unit_variants(model: RotationModel, form: ClosedForm | None) -> tuple[Step, ...]:
+    """What a quaternion of any length is good for, for those who know that its length is one."""
+    if form is None or form.rule != "quaternion" or model.constraints:
+        return ()
+    names = [model.coordinates[place].func.__name__ for place in form.order]
+    unit = UnitQuaternion(names, scalar_last=form.order[0] != 0, passive=model.passive)
+    steps = (derive(unit).step(name) for name in _OF_UNIT_LENGTH)
+    return tuple(
+        replace(step, number=0, quantity=_of_unit_length(step.quantity)) for step in steps
+    )
+
+
+def _of_unit_length(quantity: Quantity) -> Quantity:
+    return replace(
+        quantity,
+        name=f"{quantity.name}_unit",
+        about=f"{quantity.about}, for a quaternion of length one",
     )
 
 
@@ -113,9 +137,11 @@ def _forward(model: RotationModel, form: ClosedForm | None) -> Step | None:
     if not model.turns or len(model.turns) > LONGEST_CHAIN:
         return None
     try:
-        return _step_of_turns(model)
+        step = _step_of_turns(model)
     except AlgebraError:  # half of a fixed angle need not have a sine that is a root
         return None
+    # Where it is a root of a root, the ring may not know that: R, which is proved, is taken apart.
+    return step if all(proof.is_exact for proof in step.proofs) else None
 
 
 def _step_of_turns(model: RotationModel) -> Step:
@@ -154,7 +180,7 @@ def _proved_step(
     residual = [codec.encode(e) for e in rotation_of(list(shown)) - model.matrix]
     length = codec.encode(shown.dot(shown) - 1)
     return Step(
-        number=1,
+        number=0,
         quantity=QUATERNION,
         expression=shown,
         because=because,
@@ -200,6 +226,8 @@ def _vanishing(
     model: RotationModel, claims: Sequence[tuple[tuple[sp.Expr, ...], Markup]]
 ) -> tuple[Proof, ...]:
     """Proofs that the residuals of each claim reduce to zero."""
+    if not claims:
+        return ()
     residuals = [residual for claim, _ in claims for residual in claim]
     codec = codec_for([*model.matrix, *residuals], constraints=model.constraints, order=0)
     prove = Prover(model, codec)
@@ -215,9 +243,7 @@ def _read_off() -> Proof:
     model = UnitQuaternion()
     column = sp.Matrix(model.coordinates)
     residual = tuple(outer_product(model.matrix) - 4 * column * column.T)
-    claim = Markup(
-        r"4\,\mathbf{p}\mathbf{p}^{\mathsf T} = \mathbf{K}(\mathbf{R})", "4 p pᵀ = K(R)"
-    )
+    claim = Markup(r"4\,\mathbf{p}\mathbf{p}^{\mathsf T} = \mathbf{K}(\mathbf{R})", "4 p pᵀ = K(R)")
     return _vanishing(model, [(residual, claim)])[0]
 
 
@@ -234,9 +260,4 @@ def outer_product(matrix: sp.MatrixBase) -> sp.Matrix:
         (1, 3): r[0, 2] + r[2, 0],
         (2, 3): r[2, 1] + r[1, 2],
     }
-    return sp.Matrix(
-        4, 4, lambda i, j: diagonal[i] if i == j else above[min(i, j), max(i, j)]
-    )
-
-
-FROM_MATRIX_SOURCE = _SHEPPERD
+    return sp.Matrix(4, 4, lambda i, j: diagonal[i] if i == j else above[min(i, j), max(i, j)])

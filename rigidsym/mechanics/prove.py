@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.codec import Codec
+from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import DerivationError, NotARotation
 from rigidsym.mechanics.derivation import Markup, Proof
 from rigidsym.mechanics.points import is_nonzero_somewhere
 from rigidsym.models.rotation import RotationModel
+from rigidsym.models.so3 import TIME
 
 
 class Prover:
@@ -31,9 +34,30 @@ class Prover:
         if residual.is_zero():
             return self._unless_zero(divided_by, claim)
         left = self._decoded(residual)
+        if self.model.pullback is not None and self._pulled_back(left).is_zero():
+            return self._unless_zero(divided_by, claim)
         if self._is_refuted(left):
             raise DerivationError(f"{self.model.name}: {claim.text} is false; left over: {left}")
         return Proof(claim=claim, status="unproved", residual=left)
+
+    def _pulled_back(self, left: sp.ImmutableMatrix) -> RingMatrix:
+        """What is left, in the ring of the functions that stand for the coordinates."""
+        codec, values = self._pullback
+        rows = [[codec.encode(entry.xreplace(values)) for entry in row] for row in left.tolist()]
+        return RingMatrix.of(codec.ring, rows)
+
+    @cached_property
+    def _pullback(self) -> tuple[Codec, dict[sp.Expr, sp.Expr]]:
+        """The ring of the pullback, and what the coordinates and their rates become in it."""
+        assert self.model.pullback is not None
+        values: dict[sp.Expr, sp.Expr] = {}
+        pairs = zip(self.model.coordinates, self.model.pullback.coordinates, strict=True)
+        for coordinate, value in pairs:
+            for order in range(3):
+                values[sp.diff(coordinate, TIME, order)] = sp.diff(value, TIME, order)
+        given = [gen.expression for gen in self.codec.ring.generators if gen.expression.is_Symbol]
+        inputs = [*self.model.pullback.coordinates, *given]
+        return codec_for(inputs, constraints=self.model.pullback.constraints), values
 
     def _unless_zero(self, divisor: PolyElement | None, claim: Markup) -> Proof:
         """Exact, unless the divisor may be zero everywhere; it is then what is left over."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 
 import sympy as sp
@@ -81,6 +81,8 @@ class Values:
     def omega_body(self) -> RingMatrix:
         if self.factors:
             return composition.omega_body(self.factors)
+        if self.model.pullback is not None:  # RᵀΩ would not become shorter in this ring
+            return unhat(self.R.T @ self.R_dot)
         return self.R.T @ self.omega_space
 
     @cached_property
@@ -93,11 +95,21 @@ class Values:
 
     @cached_property
     def inverse_space(self) -> Inverse | None:
-        return right_inverse(self.rate_matrix_space, self._bound)
+        entries = self._entry_rates(lambda skew: skew @ self.R)
+        return entries or right_inverse(self.rate_matrix_space, self._bound)
 
     @cached_property
     def inverse_body(self) -> Inverse | None:
-        return right_inverse(self.rate_matrix_body, self._bound)
+        entries = self._entry_rates(lambda skew: self.R @ skew)
+        return entries or right_inverse(self.rate_matrix_body, self._bound)
+
+    def _entry_rates(self, rate_of: Callable[[RingMatrix], RingMatrix]) -> Inverse | None:
+        """The columns dR/dt of unit angular velocities, where the coordinates are R's entries."""
+        if tuple(self.model.matrix) != self.model.coordinates:
+            return None
+        units = [self.column(row) for row in self.one.rows]
+        columns = [rate_of(hat(unit)).entries for unit in units]
+        return RingMatrix(self.ring, tuple(columns)).T, self.ring.one
 
     @cached_property
     def _bound(self) -> RingMatrix | None:

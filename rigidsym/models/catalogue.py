@@ -60,6 +60,11 @@ def EulerAngles(
         turns=turns,
         source=_ZXZ_SOURCE if letters == "ZXZ" else _SOURCE,
         passive=passive,
+        request={
+            "sequence": letters,
+            "angles": [coordinate.func.__name__ for coordinate in coordinates],
+            "passive": passive,
+        },
     )
 
 

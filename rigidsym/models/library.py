@@ -58,7 +58,7 @@ PARAMETRISATIONS: Mapping[str, Entry] = MappingProxyType(
             build=CayleyKlein, product="the unit quaternion (a, d, c, b), α = a + i b, β = c + i d"
         ),
         "direction_cosines": Entry(
-            build=DirectionCosines, product="the nine entries, R Rᵀ = 1, det R = 1"
+            build=DirectionCosines, product="its nine entries, with R Rᵀ = 1 and det R = 1"
         ),
     }
 )

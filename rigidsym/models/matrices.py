@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.models.rotation import Citation, RotationModel, lecture
+from rigidsym.models.quaternions import UnitQuaternion
+from rigidsym.models.rotation import Citation, Pullback, RotationModel, lecture
 from rigidsym.models.so3 import time_function
 from rigidsym.models.vectors import distinct_names
 
@@ -15,31 +16,24 @@ _NAMES = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
 
 
 def DirectionCosines(names: Sequence[str] = _NAMES, *, passive: bool = False) -> RotationModel:
-    """The nine entries of R, row by row, bound by R Rᵀ = 1 and by the cross products of its rows.
+    """The nine entries of R, row by row; dR/dt = C(Ω) R are Poisson's equations.
 
-    dR/dt = C(Ω) R are Poisson's equations. Raises ModelError for bad names.
+    Every rotation is that of a unit quaternion, so that claims are proved after R is written as
+    one; the forms that are shown stay in the entries. Raises ModelError for bad names.
     """
-    entries = [time_function(name) for name in distinct_names(names, 9)]
-    matrix = sp.ImmutableMatrix(3, 3, entries)
+    entries = tuple(time_function(name) for name in distinct_names(names, 9))
+    quaternion = UnitQuaternion(names=[f"{names[0]}_quaternion_{k}" for k in "wxyz"])
     return RotationModel(
         name="direction_cosines" + ("_passive" if passive else ""),
         title="Direction cosines" + (", passive" if passive else ""),
         convention=("The coordinates are the nine entries of R, row by row.",),
-        coordinates=tuple(entries),
-        matrix=matrix,
-        constraints=_conditions(matrix),
+        coordinates=entries,
+        matrix=sp.ImmutableMatrix(3, 3, entries),
+        pullback=Pullback(coordinates=tuple(quaternion.matrix), constraints=quaternion.constraints),
         source=lecture("15", "section 3.2"),
         units=("",) * 9,
         passive=passive,
     )
-
-
-def _conditions(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, ...]:
-    """R Rᵀ = 1 = RᵀR, and each row the cross product of the others, which makes det R = +1."""
-    one = sp.eye(3)
-    products = [*(matrix * matrix.T - one), *(matrix.T * matrix - one)]
-    cofactors = [*(matrix.adjugate().T - matrix)]
-    return tuple(dict.fromkeys(sp.expand(condition) for condition in [*products, *cofactors]))
 
 
 def given(

@@ -77,6 +77,18 @@ class Turn:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Pullback:
+    """Bound coordinates as functions of others that reach every allowed value of them.
+
+    What vanishes after the substitution vanishes wherever the coordinates are allowed to be, and
+    nothing else does: a proof where the relations between the coordinates themselves are many.
+    """
+
+    coordinates: tuple[sp.Expr, ...]  # the coordinates of the model, in terms of the others
+    constraints: tuple[sp.Expr, ...]  # on the others
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class RotationModel:
     """Coordinates q(t) and the rotation R(q) they stand for.
 
@@ -94,6 +106,7 @@ class RotationModel:
     constraints: tuple[sp.Expr, ...] = ()  # each vanishes for all time
     units: tuple[str, ...] = ()  # of the coordinates; radians where nothing is said
     passive: bool = False
+    pullback: Pullback | None = None  # where the coordinates are bound, in place of constraints
     vector: tuple[sp.Expr, ...] = ()  # the three coordinates that are components of one vector
     request: Mapping[str, Any] = field(
         default_factory=dict, hash=False
