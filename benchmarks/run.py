@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from benchmarks.measure import Settings
     from benchmarks.report import Report
 
-NAMES = ("derivation", "form", "cold_start", "kernels", "accuracy")
+NAMES = ("derivation", "form", "catalogue", "cold_start", "kernels", "accuracy", "identify")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

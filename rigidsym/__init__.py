@@ -17,10 +17,24 @@ __version__ = "0.1.0"
 
 _HOMES = {
     "derive": "rigidsym.api",
+    "identify": "rigidsym.detective.identify",
+    "Identification": "rigidsym.detective.identify",
     "Motion": "rigidsym.api",
     "EulerAngles": "rigidsym.models.catalogue",
     "EULER_SEQUENCES": "rigidsym.models.catalogue",
     "RotationModel": "rigidsym.models.rotation",
+    "Turn": "rigidsym.models.rotation",
+    "chain": "rigidsym.models.chain",
+    "Quaternion": "rigidsym.models.quaternions",
+    "UnitQuaternion": "rigidsym.models.quaternions",
+    "CayleyKlein": "rigidsym.models.quaternions",
+    "AxisAngle": "rigidsym.models.quaternions",
+    "RotationVector": "rigidsym.models.vectors",
+    "GibbsVector": "rigidsym.models.vectors",
+    "ModifiedRodrigues": "rigidsym.models.vectors",
+    "DirectionCosines": "rigidsym.models.matrices",
+    "given": "rigidsym.models.matrices",
+    "rotation_from": "rigidsym.rotations",
     "Citation": "rigidsym.models.rotation",
     "Derivation": "rigidsym.mechanics.derivation",
     "RigidsymError": "rigidsym.errors",
@@ -29,22 +43,42 @@ _HOMES = {
 
 __all__ = [
     "EULER_SEQUENCES",
+    "AxisAngle",
+    "CayleyKlein",
     "Citation",
     "Derivation",
+    "DirectionCosines",
     "EulerAngles",
+    "GibbsVector",
+    "Identification",
+    "ModifiedRodrigues",
     "Motion",
     "NotARotation",
+    "Quaternion",
     "RigidsymError",
     "RotationModel",
+    "RotationVector",
+    "Turn",
+    "UnitQuaternion",
+    "chain",
     "derive",
+    "given",
+    "identify",
+    "rotation_from",
 ]
 
 if TYPE_CHECKING:
     from rigidsym.api import Motion, derive
+    from rigidsym.detective.identify import Identification, identify
     from rigidsym.errors import NotARotation, RigidsymError
     from rigidsym.mechanics.derivation import Derivation
     from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
-    from rigidsym.models.rotation import Citation, RotationModel
+    from rigidsym.models.chain import chain
+    from rigidsym.models.matrices import DirectionCosines, given
+    from rigidsym.models.quaternions import AxisAngle, CayleyKlein, Quaternion, UnitQuaternion
+    from rigidsym.models.rotation import Citation, RotationModel, Turn
+    from rigidsym.models.vectors import GibbsVector, ModifiedRodrigues, RotationVector
+    from rigidsym.rotations import rotation_from
 
 
 def __getattr__(name: str) -> Any:

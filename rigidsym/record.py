@@ -20,6 +20,7 @@ from rigidsym.mechanics.derivation import (
     Singularities,
     Singularity,
     Step,
+    VectorForm,
 )
 
 SCHEMA = "rigidsym.derivation"
@@ -82,9 +83,24 @@ def _step(step: Step, names: Names) -> dict[str, Any]:
         "inputs": list(quantity.inputs),
         "shape": list(step.shape),
         "expression": _entries(step.expression, names, is_vector=quantity.is_vector),
+        "vector_form": _vector_form(step.vector_form, names),
         "because": step.because,
         "source": str(quantity.source) if quantity.source else None,
         "proofs": [_proof(proof, names) for proof in step.proofs],
+    }
+
+
+def _vector_form(form: VectorForm | None, names: Names) -> dict[str, Any] | None:
+    """Coefficients as expressions in the length n of the vector v; None where there is no form."""
+    if form is None:
+        return None
+    return {
+        "vector": [_plain(part, names) for part in form.components],
+        "length": str(form.length),
+        "terms": [
+            {"coefficient": _plain(term.coefficient, names), "vector": _markup(term.vector)}
+            for term in form.terms
+        ],
     }
 
 
