@@ -7,6 +7,7 @@ from functools import cache
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 import sympy as sp
 from witness import derivative, evaluate, hat, mp, number, paths, rotation, unhat
@@ -206,6 +207,24 @@ def check_rates(motion: Motion, values: dict[sp.Expr, Any], omega: Any, still: A
             free = {symbol for turn in motion.model.turns for symbol in turn.direction}
             if not free - {0, 1} or rates.rows == 3:
                 assert agree(found, rates)
+
+
+@pytest.mark.parametrize("text", [*PARAMETRISATIONS, *PRESETS, *CHAINS])
+def test_kernels_give_what_the_derivation_says(text):
+    motion = motion_of(text)
+    module = motion.kernels().load()
+    size = len(motion.model.coordinates)
+    curve, _ = WITNESSES.get(text) or (nearly_straight(size), chain_witness(motion))
+    values = values_on(motion, curve)
+    for frame in ("omega_space", "omega_body"):
+        values |= dict(zip(motion.argument(frame).symbols, (mp.mpf(1), -2, 3), strict=True))
+    for step in motion.steps:
+        vectors = [motion.argument(name) for name in step.quantity.inputs]
+        given = [np.array([float(values[s]) for s in vector.symbols]) for vector in vectors]
+        found = getattr(module, step.quantity.name)(*[np.stack([g, g]) for g in given])
+        exact = np.array(evaluate(step.expression, values).tolist(), dtype=float)
+        assert found.shape == (2, *step.shape)
+        np.testing.assert_allclose(found[1].reshape(exact.shape), exact, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("text", [name for name in PARAMETRISATIONS if name != "direction_cosines"])

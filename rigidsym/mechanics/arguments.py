@@ -29,6 +29,24 @@ def arguments_of(model: RotationModel) -> tuple[Argument, ...]:
         _coordinates(model, 2, "q_ddot", "their second time derivatives"),
         _angular_velocity("space", _SPACE, r"\Omega_{}", "Ω{}"),
         _angular_velocity("body", _BODY, r"\Omega'_{}", "Ω′{}"),
+        *_parameters(model),
+    )
+
+
+def _parameters(model: RotationModel) -> tuple[Argument, ...]:
+    """The constants of the model, where it has any."""
+    if not model.constants:
+        return ()
+    names = tuple(symbol.name for symbol in model.constants)
+    return (
+        Argument(
+            name="parameters",
+            symbols=model.constants,
+            names=names,
+            notation=tuple(_marked(name, "{}", "") for name in names),
+            units=("",) * len(names),
+            about="constants: angles in radians, components of axes",
+        ),
     )
 
 

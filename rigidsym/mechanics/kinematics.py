@@ -6,7 +6,7 @@ One algorithm for every rotation model, in the model's ring (lecture, eq. 15 and
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import sympy as sp
@@ -16,7 +16,15 @@ from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics import claims, composition
 from rigidsym.mechanics.composition import hat
-from rigidsym.mechanics.derivation import Derivation, Markup, Proof, Singularities, Step, VectorForm
+from rigidsym.mechanics.derivation import (
+    Derivation,
+    Markup,
+    Proof,
+    Quantity,
+    Singularities,
+    Step,
+    VectorForm,
+)
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import (
     ALPHA,
@@ -71,12 +79,21 @@ def _numbered(work: _Kinematics, only: Collection[str]) -> Iterator[Step]:
             number += 1
             yield Step(
                 number=number,
-                quantity=table[name],
+                quantity=_with_parameters(table[name], found.expression, work.model),
                 expression=found.expression,
                 because=found.because,
                 proofs=found.proofs,
                 vector_form=found.vector_form,
             )
+
+
+def _with_parameters(
+    quantity: Quantity, expression: sp.ImmutableMatrix, model: RotationModel
+) -> Quantity:
+    """The quantity, with the constants of the model among its inputs where it has any."""
+    if expression.free_symbols.isdisjoint(model.constants):
+        return quantity
+    return replace(quantity, inputs=(*quantity.inputs, "parameters"))
 
 
 @dataclass(frozen=True, slots=True)

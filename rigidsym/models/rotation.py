@@ -154,6 +154,11 @@ class RotationModel:
         return " ".join(str(turn) for turn in self.turns)
 
     @property
+    def constants(self) -> tuple[sp.Symbol, ...]:
+        """The symbols in R that do not move: fixed angles, components of an axis."""
+        return tuple(sp.ordered(self.matrix.free_symbols - {TIME}))
+
+    @property
     def coordinate_units(self) -> tuple[str, ...]:
         return self.units or ("rad",) * len(self.coordinates)
 
