@@ -37,6 +37,8 @@ IDENTITIES = [
     (sin(a - 2 * b), sin(a) * cos(2 * b) - cos(a) * sin(2 * b)),
     (cos(a / 2 + b / 3) ** 2, (1 + cos(a + 2 * b / 3)) / 2),
     (sin(a + b) * sin(a - b), cos(b) ** 2 - cos(a) ** 2),
+    ((sin(a / 2) ** 2 + cos(a / 2) ** 2) * cos(a / 3), cos(a / 3)),
+    (cos(4 * a / 3), 2 * cos(2 * a / 3) ** 2 - 1),
     (sin(k * a) ** 2 + cos(k * a) ** 2, 1),
     (cos(k) * cos(k / 5), (cos(6 * k / 5) + cos(4 * k / 5)) / 2),
     (sin(a + k), sin(a) * cos(k) + cos(a) * sin(k)),

@@ -184,3 +184,20 @@ def test_a_factor_lost_on_the_way_is_seen(monkeypatch):
     monkeypatch.setattr(present, "collect", without_bracket)
     with pytest.raises(AlgebraError, match="differs from its normal form"):
         Presenter(CODEC).element(CODEC.encode(m * sin(a) + m * cos(b)))
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        (cos(a) * cos(b) - sin(a) * sin(b), cos(a + b)),
+        (cos(a) * cos(b) + sin(a) * sin(b), cos(a - b)),
+        (sin(a) * cos(b) + cos(a) * sin(b), sin(a + b)),
+        (sin(a) * cos(b) - cos(a) * sin(b), sin(a - b)),
+        (2 * x * (cos(a) * cos(b) - sin(a) * sin(b)), 2 * x * cos(a + b)),
+        (cos(a) * cos(b) - 2 * sin(a) * sin(b), cos(a) * cos(b) - 2 * sin(a) * sin(b)),
+    ],
+    ids=str,
+)
+def test_angle_sums_are_folded(expression, expected):
+    codec = codec_for([expression])
+    assert presenter_for(codec).element(codec.encode(expression)) == expected

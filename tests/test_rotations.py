@@ -154,6 +154,12 @@ def test_dependent_roots_do_not_refute_a_rotation():
         assert not motion.is_proved
 
 
+def test_a_double_constraint_does_not_refute_a_rotation():
+    """(u − 1)² = 0 says u = 1, which is not in the ideal that it spans."""
+    motion = derive(model(u * elementary("z", phi), phi, u, constraints=((u - 1) ** 2,)))
+    assert not motion.is_proved
+
+
 def test_dependent_angles_do_not_refute_a_rotation():
     """cos(2 atan u) is (1 − u²)/(1 + u²), which the ring does not know."""
     motion = derive(model(about_z(cos(2 * sp.atan(u)), 2 * u / (1 + u**2)), u))

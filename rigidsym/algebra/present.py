@@ -18,6 +18,7 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.factor import Product, collect
+from rigidsym.algebra.fold import folded, rules
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.ring import Monomial
@@ -37,7 +38,9 @@ class Presenter:
     def __init__(self, codec: Codec) -> None:
         self.codec = codec
         self.ring = codec.ring
-        self._expressions = [gen.expression for gen in self.ring.generators]
+        generators = [gen.expression for gen in self.ring.generators]
+        self._sums = rules(codec.angle_pairs, generators)
+        self._expressions = [*generators, *(rule.folded for rule in self._sums)]
         self._weights = [int(sp.count_ops(expression)) for expression in self._expressions]
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
 
@@ -83,7 +86,7 @@ class Presenter:
 
     def _terms(self, terms: Mapping[Monomial, Any], scale: Fraction = Fraction(1)) -> sp.Expr:
         fractions = {monomial: _fraction(c) / scale for monomial, c in terms.items()}
-        return self._sum(collect(fractions, self._weights))
+        return self._sum(collect(folded(fractions, self._sums), self._weights))
 
     def _sum(self, products: Sequence[Product]) -> sp.Expr:
         return sp.Add(*(self._product(product) for product in products))

@@ -84,9 +84,10 @@ class Prover:
     def _is_refuted(self, left: sp.ImmutableMatrix) -> bool:
         """Whether what is left is certainly not zero.
 
-        A ring that knows every relation can tell; where it does not, a value at a point tells.
+        A ring that knows every relation can tell. Where it does not, and under constraints, whose
+        ideal need not hold all that vanishes with them, a value at a point tells.
         """
-        if self.codec.ring.complete:
-            return True
         constraints = self.model.constraints
+        if self.codec.ring.complete and not constraints:
+            return True
         return any(is_nonzero_somewhere(entry, constraints) for entry in left if entry != 0)
