@@ -109,7 +109,7 @@ def test_turns_are_read_left_to_right(text, turns):
     assert parse_turns(text) == turns
 
 
-A_TURN = "expected a turn: x(...), y(...) or z(...), found"
+A_TURN = "expected a turn: x(...), y(...), z(...) or [1,1,0](...), found"
 
 
 @pytest.mark.parametrize(
