@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from collections.abc import Collection
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any
 
 from rigidsym.mechanics import kinematics
-from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
+from rigidsym.notes.manner import DEFAULT, Manner
 
 if TYPE_CHECKING:
     from rigidsym.kernels.module import KernelModule
+    from rigidsym.mechanics.conversions import Conversions
     from rigidsym.notes.note import Note
 
 
@@ -19,33 +22,92 @@ class Motion(Derivation):
     """A derivation with its two ways out: functions and a document.
 
     It stands above kernels and notes, so that neither has to know of the other, and the
-    derivation of neither.
+    derivation of neither. `manner` is the notation in which it is printed.
     """
 
-    def kernels(self, target: str = "numpy") -> KernelModule:
+    manner: Manner = DEFAULT
+
+    def kernels(self, target: str = "numpy", *, conversions: bool = False) -> KernelModule:
         """The module of functions for one target: `.source`, `.load()`, `.write(path)`.
 
-        Raises KernelError for an unknown target.
+        `conversions` adds the functions to and from the unit quaternion and the matrix, and
+        `unwrap`. Raises KernelError for an unknown target.
         """
         from rigidsym.kernels.module import generate
 
-        return generate(self, target)
+        return generate(self, target, conversions=conversions)
 
-    def note(self, *, with_kernels: bool = True) -> Note:
-        """The document that shows the derivation: `.latex()`.
+    @property
+    def conversions(self) -> Conversions:
+        """What converts between the coordinates, the unit quaternion and R, with its proofs."""
+        from rigidsym.mechanics.conversions import conversions_of
 
-        `with_kernels` names the functions of the NumPy module beside their equations.
+        return conversions_of(self.model)
+
+    def note(self, *, with_kernels: bool = True, conversions: bool = False) -> Note:
+        """The document that shows the derivation: `.latex()`, `.html()`, `.markdown()`,
+        `.notebook()`.
+
+        `with_kernels` names the functions of the NumPy module beside their equations;
+        `conversions` adds a section on the unit quaternion and the matrix.
         """
         from rigidsym.notes.note import note
 
-        return note(self, module=f"{self.name}.py" if with_kernels else None)
+        converting = self.conversions if conversions else None
+        module = f"{self.name}.py" if with_kernels else None
+        return note(self, module=module, manner=self.manner, conversions=converting)
+
+    def written(self, **choices: str) -> Motion:
+        """The same in another notation: `rates`, `vectors`, `body`, `angular_velocity`.
+
+        Raises ModelError for a choice that is not one of those in `rigidsym.notes.manner`.
+        """
+        manner = replace(self.manner, **choices)
+        steps = tuple(
+            replace(step, manner=manner) if isinstance(step, MotionStep) else step
+            for step in self.steps
+        )
+        return replace(self, manner=manner, steps=steps)
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        """What Jupyter shows: the note, the equations alone, or what a terminal shows."""
+        from rigidsym.notes.jupyter import bundle_of
+
+        return bundle_of(self, self.note(with_kernels=False), self.manner)
+
+    def _repr_latex_(self) -> str:
+        return self._repr_mimebundle_()["text/latex"]
 
 
-def derive(model: RotationModel) -> Motion:
-    """The proved kinematics of a rotation model.
+@dataclass(frozen=True, kw_only=True)
+class MotionStep(Step):
+    """A step that can show itself."""
+
+    arguments: tuple[Argument, ...] = field(repr=False)
+    manner: Manner = DEFAULT
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        """What Jupyter shows: the equation with its number, or plain text."""
+        from rigidsym.notes.jupyter import step_bundle_of
+
+        return step_bundle_of(self, self.arguments, self.manner)
+
+    def _repr_latex_(self) -> str:
+        return self._repr_mimebundle_()["text/latex"]
+
+
+def derive(model: RotationModel, only: Collection[str] = ()) -> Motion:
+    """The proved kinematics of a rotation model; `only` names the quantities that are wanted.
 
     Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over, and
     AlgebraError for expressions that the ring cannot hold.
     """
-    derivation = kinematics.derive(model)
-    return Motion(**{field.name: getattr(derivation, field.name) for field in fields(derivation)})
+    derivation = kinematics.derive(model, only)
+    steps = tuple(
+        MotionStep(**_values(step), arguments=derivation.arguments) for step in derivation.steps
+    )
+    return Motion(**(_values(derivation) | {"steps": steps}))
+
+
+def _values(data: Derivation | Step) -> dict[str, Any]:
+    return {field.name: getattr(data, field.name) for field in fields(data)}

@@ -6,10 +6,12 @@ the functions that need them, so that `rigidsym --help` imports neither SymPy no
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,6 +35,64 @@ _OUT = click.option(
 )
 _PDF = click.option("--pdf", is_flag=True, help="Typeset the note too; needs TeX.")
 _JSON = click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
+
+
+def _use_templates(context: click.Context, _: click.Parameter, own: Path | None) -> None:
+    """Let the templates of a folder stand in for the shipped ones until the command is done."""
+    from rigidsym.resources import overridden_by
+
+    if own is not None:
+        context.with_resource(overridden_by(own))
+
+
+_TEMPLATES = click.option(
+    "--templates",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    metavar="DIR",
+    expose_value=False,
+    callback=_use_templates,
+    help="Templates of your own; `rigidsym templates DIR` copies the shipped ones.",
+)
+
+
+_NOTATION = {  # written out here, so that --help loads nothing; a test compares
+    "rates": ("dot", "fraction"),
+    "vectors": ("bold", "arrow"),
+    "body": ("prime", "superscript"),
+    "angular_velocity": ("Omega", "omega"),
+}
+
+
+def _keep_choice(context: click.Context, option: click.Parameter, value: str | None) -> None:
+    if value is not None:
+        context.meta.setdefault(__name__, {})[option.name] = value
+
+
+def _in_notation(command: Callable[..., None]) -> Callable[..., None]:
+    """Options for the notation of the note and the terminal; they go before those of a file."""
+    for name, known in reversed(_NOTATION.items()):
+        command = click.option(
+            f"--{name.replace('_', '-')}",
+            type=click.Choice(known),
+            expose_value=False,
+            callback=_keep_choice,
+            help=f"Notation: {known[0]}, where nothing is said.",
+        )(command)
+    return command
+
+
+def _keep_conversions(context: click.Context, _: click.Parameter, is_wanted: bool) -> None:
+    context.meta[_CONVERSIONS] = is_wanted
+
+
+_CONVERSIONS = f"{__name__}.conversions"
+_WITH_CONVERSIONS = click.option(
+    "--conversions",
+    is_flag=True,
+    expose_value=False,
+    callback=_keep_conversions,
+    help="Functions to and from the unit quaternion and the matrix, and unwrap.",
+)
 
 
 def main() -> None:
@@ -68,28 +128,51 @@ def commands(context: click.Context) -> None:
 
 
 @commands.command()
-@click.argument("sequence")
-@click.option("--angles", metavar="A,B,C", help="Names of the angles, in the order of the turns.")
+@click.argument("rotation")
+@click.option(
+    "--angles", "--names", metavar="A,B,C", help="Names of the coordinates, in their order."
+)
+@click.option("--constants", metavar="A,B", help="Names in turns that are constants.")
+@click.option("--scalar-last", is_flag=True, help="Quaternions as (x, y, z, w).")
 @click.option("--passive", is_flag=True, help="Present the direction cosine matrix A = Rᵀ.")
+@_WITH_CONVERSIONS
+@_in_notation
+@_TEMPLATES
 @_OUT
 @_PDF
 @_JSON
 def derive(
-    sequence: str, angles: str | None, passive: bool, out: Path, pdf: bool, as_json: bool
+    rotation: str,
+    angles: str | None,
+    constants: str | None,
+    scalar_last: bool,
+    passive: bool,
+    out: Path,
+    pdf: bool,
+    as_json: bool,
 ) -> None:
     """Derive one rotation, show it, and write its module and note.
 
-    SEQUENCE is ZXZ or 313 (intrinsic: about the turning axes) or zxz (extrinsic: about the
-    fixed axes); `rigidsym list` shows all 24.
+    ROTATION is ZXZ or 313 (intrinsic: about the turning axes), zxz (extrinsic: about the fixed
+    axes), turns such as "z(phi) x(theta) [1,1,0](psi)", or a name: `rigidsym list` has them all.
     """
     from rigidsym.spec import spec_for
 
-    names = None if angles is None else [name.strip() for name in angles.split(",")]
-    _produce([spec_for(sequence, angles=names, passive=passive)], out, pdf=pdf, as_json=as_json)
+    spec = spec_for(
+        rotation,
+        angles=_names(angles),
+        constants=_names(constants) or (),
+        scalar_last=scalar_last,
+        passive=passive,
+    )
+    _produce([spec], out, pdf=pdf, as_json=as_json)
 
 
 @commands.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@_WITH_CONVERSIONS
+@_in_notation
+@_TEMPLATES
 @_OUT
 @_PDF
 @_JSON
@@ -110,6 +193,21 @@ def list_() -> None:
 
 
 @commands.command()
+@click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
+def templates(folder: Path) -> None:
+    """Copy the shipped templates into DIR, to change them; see --templates."""
+    from rigidsym import resources
+    from rigidsym.writing import write_text
+
+    shipped = [f"{name}.jinja" for name in resources.names("templates", ".jinja")]
+    taken = [name for name in shipped if (folder / name).exists()]
+    if taken:
+        raise click.ClickException(f"{folder} has {', '.join(taken)} already; nothing is copied")
+    for name in shipped:
+        click.echo(write_text(folder / name, resources.text("templates", name)))
+
+
+@commands.command()
 @click.argument(
     "paths",
     nargs=-1,
@@ -117,6 +215,7 @@ def list_() -> None:
     metavar="PATH...",
     type=click.Path(exists=True, path_type=Path),
 )
+@_TEMPLATES
 @click.pass_context
 def check(context: click.Context, paths: tuple[Path, ...]) -> None:
     """Compare generated files with a fresh derivation.
@@ -131,6 +230,57 @@ def check(context: click.Context, paths: tuple[Path, ...]) -> None:
         click.echo(str(finding))
     if not all(finding.is_fine for finding in results):
         context.exit(1)
+
+
+@commands.command()
+@click.argument(
+    "file",
+    required=False,
+    metavar="[FILE]",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+)
+@click.option(
+    "--angles", multiple=True, metavar="A,B,C", help="In your order; roll=A,... names them."
+)
+@click.option("--matrix", multiple=True, metavar="R11,R12,...", help="Nine numbers, row by row.")
+@click.option("--quaternion", multiple=True, metavar="A,B,C,D", help="Scalar first or last.")
+@click.option("--rates", multiple=True, metavar="A,B,C", help="Of the angles, with --omega.")
+@click.option("--omega", multiple=True, metavar="X,Y,Z", help="The angular velocity.")
+@click.option("--columns", metavar="NAME,...", help="Names of the columns of FILE; - skips one.")
+@click.option("--tolerance", type=float, metavar="RADIANS", help="Else from the digits given.")
+@click.option("--all", "everything", is_flag=True, help="Show all readings, with all calls.")
+@_JSON
+@click.pass_context
+def identify(
+    context: click.Context,
+    file: Path | None,
+    columns: str | None,
+    tolerance: float | None,
+    everything: bool,
+    as_json: bool,
+    **texts: tuple[str, ...],
+) -> None:
+    """Name the convention that angles and a matrix or quaternion follow.
+
+    Samples are given as options, each as often as there are samples, or in FILE: NPY with 3
+    angles and 9 or 4 numbers a row (then 3 rates and 3 of the angular velocity), or text with
+    named columns: roll,pitch,yaw or phi,theta,psi or a1,a2,a3; r11,...,r33 or q1,...,q4 or
+    qw,qx,qy,qz; a1_dot,... or rate1,...; omega1,omega2,omega3. Exit code 1 where nothing fits.
+    """
+    from rigidsym.detective.command import identified
+
+    found = identified(file, texts, columns=columns, tolerance=tolerance)
+    if as_json:
+        click.echo(json.dumps(found.record(), indent=1, ensure_ascii=False))
+    else:
+        head, _, rest = found.text(everything=everything).partition("\n")
+        click.echo(f"{click.style(head, bold=True)}\n{rest}")
+    if not found.fits:
+        context.exit(1)
+
+
+def _names(text: str | None) -> list[str] | None:
+    return None if text is None else [name.strip() for name in text.split(",")]
 
 
 def _read_all(files: Iterable[str]) -> list[DerivationSpec]:
@@ -154,7 +304,7 @@ def _read_all(files: Iterable[str]) -> list[DerivationSpec]:
 
 def _produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool) -> None:
     """Derive, write, and show what was asked for."""
-    singles = [single for spec in specs for single in spec.singles()]
+    singles = [single for spec in map(_in_chosen_notation, specs) for single in spec.singles()]
     shown_in_full = len(singles) == 1
     missing: RigidsymError | None = None
     for product in _with_progress(singles):
@@ -168,6 +318,17 @@ def _produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool
             click.echo(_summary(product, written))
     if missing:
         raise missing
+
+
+def _in_chosen_notation(spec: DerivationSpec) -> DerivationSpec:
+    """The specification with the choices of the command line in place of its own."""
+    kept = click.get_current_context().meta
+    chosen, converts = kept.get(__name__, {}), kept.get(_CONVERSIONS, False)
+    return replace(
+        spec,
+        manner=replace(spec.manner, **chosen),
+        conversions=spec.conversions or converts,
+    )
 
 
 def _with_progress(singles: list[DerivationSpec]) -> Iterator[Product]:
@@ -200,7 +361,8 @@ def _write(product: Product, out: Path, *, pdf: bool) -> tuple[list[Path], Rigid
     from rigidsym.typeset import typeset
 
     try:
-        made = typeset(product.motion.note().latex())
+        tex = product.files.get(f"{product.name}.tex") or product.motion.note().latex()
+        made = typeset(tex)
     except RigidsymError as error:
         return written, error
     return [*written, write_bytes(folder / f"{product.name}.pdf", made.pdf)], None
@@ -210,7 +372,7 @@ def _show(product: Product, written: list[Path]) -> None:
     from rigidsym.notes.terminal import show
 
     width = shutil.get_terminal_size((88, 24)).columns
-    click.echo(show(product.motion, width=min(width, 120)))
+    click.echo(show(product.motion, width=min(width, 120), manner=product.motion.manner))
     click.echo("\nWritten: " + "\n         ".join(str(path) for path in written))
 
 

@@ -89,6 +89,21 @@ class MissingTool(RigidsymError):
     exit_code: ClassVar[int] = 4
 
 
+class MissingExtra(RigidsymError):
+    """A Python package that an extra brings; the message says how to install it."""
+
+    exit_code: ClassVar[int] = 4
+
+    def __init__(self, what: str, extra: str) -> None:
+        super().__init__(f"{what} needs an extra that is missing: pip install 'rigidsym[{extra}]'")
+
+
+class TemplateFault(RigidsymError):
+    """A template that cannot be filled: the message says which, where, and what names it has."""
+
+    exit_code: ClassVar[int] = 3
+
+
 class ToolFailed(RigidsymError):
     """A program outside Python that ran and failed; the message holds the end of its log."""
 

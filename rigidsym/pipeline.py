@@ -7,13 +7,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 from rigidsym.api import Motion, derive
+from rigidsym.notes.note import Note
 from rigidsym.record import record
 from rigidsym.spec import DerivationSpec
 
-PDF = "pdf"
+PDF = "pdf"  # made from the LaTeX, which is written beside it
+
+_PRINTERS = {"tex": Note.latex, "html": Note.html, "md": Note.markdown, "ipynb": Note.notebook}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -44,6 +47,7 @@ def product(spec: DerivationSpec) -> Product:
     (model,) = spec.models
     motion = derive(model)
     motion = replace(motion, name=spec.name, title=spec.title or motion.title)
+    motion = motion.written(**asdict(spec.manner))
     if spec.quantities:
         motion = motion.select(spec.quantities)
     return Product(
@@ -56,8 +60,12 @@ def product(spec: DerivationSpec) -> Product:
 def _texts(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
     """(ending, content) of each text file, the record last, since it speaks for the others."""
     for target in spec.kernels:
-        module = motion.kernels(target)
+        module = motion.kernels(target, conversions=spec.conversions)
         yield module.ending, module.source
-    if spec.note:
-        yield "tex", motion.note(with_kernels="numpy" in spec.kernels).latex()
-    yield "json", json.dumps(record(motion, spec.to_data()), indent=1, ensure_ascii=False) + "\n"
+    note = motion.note(with_kernels="numpy" in spec.kernels, conversions=spec.conversions)
+    for ending, printed in _PRINTERS.items():
+        if ending in spec.note or (ending == "tex" and PDF in spec.note):
+            yield ending, printed(note)
+    converting = motion.conversions if spec.conversions else None
+    data = record(motion, spec.to_data(), converting)
+    yield "json", json.dumps(data, indent=1, ensure_ascii=False) + "\n"

@@ -12,6 +12,7 @@ from typing import Any
 import sympy as sp
 
 from rigidsym import __version__
+from rigidsym.mechanics.conversions import Conversions
 from rigidsym.mechanics.derivation import (
     Argument,
     Derivation,
@@ -29,10 +30,13 @@ SCHEMA_VERSION = 1
 Names = Mapping[sp.Expr, sp.Symbol]
 
 
-def record(derivation: Derivation, request: Mapping[str, Any]) -> dict[str, Any]:
+def record(
+    derivation: Derivation, request: Mapping[str, Any], conversions: Conversions | None = None
+) -> dict[str, Any]:
     """All of a derivation as dictionaries, lists, strings, numbers and booleans.
 
-    `request` is the data that asked for it, from which `rigidsym check` derives it again.
+    `request` is the data that asked for it, from which `rigidsym check` derives it again;
+    `conversions` stand in it where they were asked for.
     """
     names = _plain_names(derivation.arguments)
     return {
@@ -49,6 +53,24 @@ def record(derivation: Derivation, request: Mapping[str, Any]) -> dict[str, Any]
         "arguments": [_argument(argument) for argument in derivation.arguments],
         "quantities": [_step(step, names) for step in derivation.steps],
         "singularities": _singularities(derivation.singularities, names),
+        **({"conversions": _conversions(conversions, names)} if conversions else {}),
+    }
+
+
+def _conversions(found: Conversions, names: Names) -> dict[str, Any]:
+    """How the coordinates go over into the unit quaternion, and come back from it and from R."""
+    back, forward = found.backward, found.quaternion
+    return {
+        "quaternion": _step(forward, names) if forward else None,
+        "quaternion_from_matrix": _proof(found.from_matrix, names),
+        "coordinates": {
+            "because": back.because,
+            "branch": back.branch,
+            "proofs": [_proof(proof, names) for proof in back.proofs],
+        }
+        if back
+        else None,
+        "without": found.without or None,
     }
 
 
@@ -132,6 +154,7 @@ def _point(point: Singularity, names: Names) -> dict[str, Any]:
         "lost_direction_space": _vector(point.lost_space, names),
         "lost_direction_body": _vector(point.lost_body, names),
         "undetermined_rates": _vector(point.undetermined, names),
+        "reached_direction_space": _vector(point.reached, names),
     }
 
 

@@ -6,13 +6,19 @@ folders stand beside the package.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from rigidsym.errors import TemplateFault
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
 _PACKAGE = Path(__file__).resolve().parent
+_OWN: ContextVar[Path | None] = ContextVar("own templates", default=None)
 _HOMES = (_PACKAGE / "_data", _PACKAGE.parent)
 
 
@@ -39,25 +45,40 @@ def names(kind: str, suffix: str) -> tuple[str, ...]:
     return tuple(sorted(f.name.removesuffix(suffix) for f in files if f.name.endswith(suffix)))
 
 
+@contextmanager
+def overridden_by(own: Path) -> Iterator[None]:
+    """Inside, templates in a folder of the user's stand in for those of the same name.
+
+    Raises TemplateFault where the folder holds none of the templates, naming them.
+    """
+    known = names("templates", ".jinja")
+    if not any((own / f"{name}.jinja").is_file() for name in known):
+        listed = ", ".join(f"{name}.jinja" for name in known)
+        raise TemplateFault(f"{own} holds none of the templates: {listed}")
+    token = _OWN.set(own)
+    try:
+        yield
+    finally:
+        _OWN.reset(token)
+
+
 def environment(**options: Any) -> Environment:
     """A Jinja2 environment over the templates; `options` are Jinja2's, delimiters for instance.
 
-    An undefined variable is an error, and what is printed stands in the output as it is: each
-    kind of document escapes its own text before it reaches a template.
+    Templates are sandboxed, and what is printed stands in the output as it is: each kind of
+    document escapes its own text before it reaches a template. An undefined name, bad syntax or
+    a forbidden access raises TemplateFault with the template, the line and the names there are.
     """
-    from jinja2 import Environment, FunctionLoader, StrictUndefined
+    from rigidsym.templates import SandboxedTemplates
 
-    settings: dict[str, Any] = {
-        "loader": FunctionLoader(_template),
-        "undefined": StrictUndefined,
-        "autoescape": False,
-        "keep_trailing_newline": True,
-        "trim_blocks": True,
-        "lstrip_blocks": True,
-    }
-    return Environment(**(settings | options))
+    return SandboxedTemplates(template, **options)
 
 
-def _template(name: str) -> str | None:
-    path = folder("templates") / name
-    return path.read_text(encoding="utf-8") if path.is_file() else None
+def template(name: str) -> tuple[str, str]:
+    """(text, file) of one template: the user's own, or else the shipped one.
+
+    Raises FileNotFoundError where there is none.
+    """
+    own = _OWN.get()
+    path = own / name if own is not None and (own / name).is_file() else folder("templates") / name
+    return path.read_text(encoding="utf-8"), str(path)

@@ -7,16 +7,17 @@ import keyword
 import re
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from rigidsym import resources
-from rigidsym.errors import Fault, SpecError
+from rigidsym.errors import Fault, ModelError, SpecError
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities import QUANTITY_NAMES
 from rigidsym.models.rotation import RotationModel
 from rigidsym.names import offer
+from rigidsym.notes.manner import CHOICES, DEFAULT, Manner
 from rigidsym.rotation_table import KEYS, read_rotation, repeated
 from rigidsym.rotations import request_of, rotation_from
 from rigidsym.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
@@ -24,14 +25,15 @@ from rigidsym.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
 NOTE_FORMATS = ("tex", "html", "md", "ipynb", "pdf")
 
 _OUTPUT = {"quantities": QUANTITY_NAMES, "kernels": tuple(TARGETS), "note": NOTE_FORMATS}
-_FILE = ("title", "rotation", "output")
+_FILE = ("title", "rotation", "notation", "output")
 _HINTS = {
+    **dict.fromkeys(CHOICES, "it belongs in [notation]"),
     **dict.fromkeys(
         ("parameters", "body", "potential"), f"not read yet (known: {', '.join(_FILE)})"
     ),
     **dict.fromkeys(_FILE, "it belongs at the top of the file, outside the tables"),
     **dict.fromkeys(KEYS, "it belongs in [rotation]"),
-    **dict.fromkeys(_OUTPUT, "it belongs in [output]"),
+    **dict.fromkeys((*_OUTPUT, "conversions"), "it belongs in [output]"),
 }
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
@@ -53,6 +55,8 @@ class DerivationSpec:
     quantities: tuple[str, ...] = ()  # empty: all
     kernels: tuple[str, ...] = ("numpy",)
     note: tuple[str, ...] = ("tex", "html")
+    conversions: bool = False  # whether to and from quaternion and matrix, too
+    manner: Manner = DEFAULT  # the notation of notes and terminal
 
     def __post_init__(self) -> None:
         faults = Faults(self.name)
@@ -66,6 +70,8 @@ class DerivationSpec:
             faults.add(("models",), "expected at least one rotation")
         for message in repeated(self.models).values():
             faults.add(("models",), message)
+        for place, model in enumerate(self.models):
+            _check_notation(self.manner, model, faults, place)
         if len(self.models) == 1 and (message := _fault_of_name(self.name)):
             faults.add(("name",), message)
         faults.raise_if_any()
@@ -90,6 +96,8 @@ class DerivationSpec:
             "quantities": list(self.quantities) or None,
             "kernels": list(self.kernels),
             "note": list(self.note),
+            **({"conversions": True} if self.conversions else {}),
+            **({"notation": asdict(self.manner)} if self.manner != DEFAULT else {}),
         }
 
     @classmethod
@@ -99,14 +107,15 @@ class DerivationSpec:
             raise SpecError(source, [Fault(line=0, path="", message="expected an object")])
         faults = Faults(source)
         table = Table(data, (), faults)
-        table.refuse_others(("name", "title", "rotations", *_OUTPUT))
+        table.refuse_others(("name", "title", "rotations", "notation", "conversions", *_OUTPUT))
         rotations = table.tables("rotations", "a list of objects with sequence and angles")
         name, title, output = table.text("name"), _read_title(table), _read_output(table)
         models = [m for rotation in rotations for m in _read_rotation(rotation, name or "")]
         if table.value("name") is None:
             table.fault("missing; expected the name of the derivation", "name")
+        manner = _read_notation(table)
         faults.raise_if_any()
-        return cls(name=name or "", title=title, models=tuple(models), **output)
+        return cls(name=name or "", title=title, models=tuple(models), manner=manner, **output)
 
 
 def spec_for(
@@ -160,14 +169,15 @@ def read_spec(text: str, *, source: str, name: str) -> DerivationSpec:
         table.fault('missing; expected [rotation] with sequence = "ZXZ" or another', "rotation")
     models = _read_rotation(rotation, name) if rotation else []
     if output:
-        output.refuse_others(tuple(_OUTPUT), _HINTS)
+        output.refuse_others((*_OUTPUT, "conversions"), _HINTS)
     choices = _read_output(output) if output else {}
+    manner = _read_notation(table)
     is_list = rotation is not None and isinstance(rotation.value("sequence"), list)
     if not is_list and (message := _fault_of_name(name)):
         table.fault(f"the file's name names the derivation: {message}")
     faults.raise_if_any()
     name = models[0].name if is_list and len(models) == 1 else name
-    return DerivationSpec(name=name, title=title, models=tuple(models), **choices)
+    return DerivationSpec(name=name, title=title, models=tuple(models), manner=manner, **choices)
 
 
 def _read_rotation(table: Table, name: str) -> list[RotationModel]:
@@ -184,8 +194,33 @@ def _read_title(table: Table) -> str | None:
     return title
 
 
-def _read_output(table: Table) -> dict[str, tuple[str, ...]]:
-    chosen = {key: table.choices(key, known) for key, known in _OUTPUT.items()}
+def _read_notation(table: Table) -> Manner:
+    """The choices of [notation]; the default where one is missing, or wrong and noted."""
+    notation = table.table("notation")
+    if notation is None:
+        return DEFAULT
+    notation.refuse_others(tuple(CHOICES))
+    chosen: dict[str, str] = {}
+    for key, known in CHOICES.items():
+        choice = notation.text(key)
+        if choice in known:
+            chosen[key] = choice
+        elif choice is not None:
+            message = f"unknown choice {shortened(choice)}; {offer(choice, known)}"
+            notation.fault(message, key)
+    return Manner(**chosen)
+
+
+def _check_notation(manner: Manner, model: RotationModel, faults: Faults, place: int) -> None:
+    try:
+        manner.check(model)
+    except ModelError as error:
+        faults.add(("models", place), str(error))
+
+
+def _read_output(table: Table) -> dict[str, Any]:
+    chosen: dict[str, Any] = {key: table.choices(key, known) for key, known in _OUTPUT.items()}
+    chosen["conversions"] = table.flag("conversions")
     return {key: choice for key, choice in chosen.items() if choice is not None}
 
 

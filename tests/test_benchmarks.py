@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from benchmarks import accuracy, cold_start, derivation, form, kernels, run, sympy_forms
+from benchmarks import accuracy, cold_start, derivation, form, identify, kernels, run, sympy_forms
 from benchmarks.measure import Spread, interleaved, peak_memory, ratios, run_process
 from benchmarks.report import Column, Figure, Report, Table, summary
 
@@ -161,6 +161,18 @@ def test_errors_are_a_few_eps(sequence):
     found = accuracy.errors(sequence, 3)
     assert {way for way, _, _ in found} == {way.name for way in accuracy.WAYS}
     assert 0 <= max(found.values()) < 20
+
+
+# identify
+
+
+def test_the_files_of_samples_are_identified_in_their_convention(tmp_path):
+    files = identify.measured(tmp_path, 100)
+    assert set(files) == {".npy", ".csv"}
+    seconds = {name: [0.1, 0.2] for name in identify.commands()}
+    report = identify.report(seconds, files, 100)
+    assert [figure.met for figure in report.figures] == [True, True]
+    assert "100 samples" in report.text()
 
 
 # run

@@ -37,7 +37,7 @@ def call(*arguments: str, cwd: Path, status: int = 0, **environment: str):
     return done
 
 
-def test_derive_shows_the_lecture_and_writes_three_files(tmp_path):
+def test_derive_shows_the_lecture_and_writes_its_files(tmp_path):
     shown = call("derive", "ZXZ", cwd=tmp_path).stdout
     for line in ("φ̇ sin θ sin ψ + θ̇ cos ψ", "φ̇ sin θ cos ψ − θ̇ sin ψ", "φ̇ cos θ + ψ̇"):
         assert line in shown
@@ -45,7 +45,7 @@ def test_derive_shows_the_lecture_and_writes_three_files(tmp_path):
     assert "✗" not in shown
     folder = tmp_path / "out" / NAME
     assert {file.name for file in folder.iterdir()} == {
-        f"{NAME}.{e}" for e in ("py", "tex", "json")
+        f"{NAME}.{e}" for e in ("py", "tex", "html", "json")
     }
 
 
@@ -108,7 +108,7 @@ def test_run_takes_a_path_and_the_name_of_a_shipped_file(tmp_path):
     call("run", "euler_zxz", "--out", "a", cwd=tmp_path)
     call("run", str(ROOT / "derivations" / "euler_zxz.toml"), "--out", "b", cwd=tmp_path)
     files = sorted((tmp_path / "a" / "euler_zxz").iterdir())
-    assert [f.suffix for f in files] == [".json", ".py", ".tex"]
+    assert [f.suffix for f in files] == [".html", ".json", ".py", ".tex"]
     for file in files:
         assert file.read_bytes() == (tmp_path / "b" / "euler_zxz" / file.name).read_bytes()
 
@@ -178,7 +178,7 @@ def test_without_tex_all_else_is_written(tmp_path):
     done = call("derive", "ZXZ", "--pdf", cwd=tmp_path, status=4, PATH=str(empty))
     assert "texlive-latex-recommended" in done.stderr
     assert "φ̇ cos θ + ψ̇" in done.stdout
-    assert len(list((tmp_path / "out" / NAME).iterdir())) == 3
+    assert len(list((tmp_path / "out" / NAME).iterdir())) == 4
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path):

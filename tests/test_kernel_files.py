@@ -17,6 +17,7 @@ import rigidsym as rs
 from rigidsym import __version__
 from rigidsym.api import derive
 from rigidsym.errors import KernelError
+from rigidsym.kernels.lower import MARGIN
 from rigidsym.kernels.module import KernelModule, generate
 
 
@@ -94,7 +95,8 @@ def test_generation_does_not_import_numpy():
 
 def test_every_function_is_documented_and_exported(sequence):
     functions = module(sequence)
-    assert functions.__all__ == sorted([*QUANTITIES, *(f"{name}_scalar" for name in QUANTITIES)])
+    names = [*QUANTITIES, MARGIN]
+    assert functions.__all__ == sorted([*names, *(f"{name}_scalar" for name in names)])
     for number, (name, (arguments, shape)) in enumerate(QUANTITIES.items(), start=1):
         function = getattr(functions, name)
         assert list(inspect.signature(function).parameters) == [*arguments, "out"]

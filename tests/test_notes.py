@@ -235,7 +235,7 @@ def test_what_idle_rates_leave_determined():
 
 def test_names_of_entries():
     motion = derived("ZXZ")
-    names = {step.quantity.name: entry_names(step, motion) for step in motion.steps}
+    names = {step.quantity.name: entry_names(step, motion.arguments) for step in motion.steps}
     assert names["rotation_matrix"][1] == Markup("R_{12}", "R₁₂")
     assert names["rotation_rate"][8] == Markup(r"\dot{R}_{33}", "R\u0307₃₃")
     assert names["rate_matrix_body"][0] == Markup("W'_{11}", "W′₁₁")

@@ -27,7 +27,7 @@ def test_the_main_command_gives_equation_18_in_a_fresh_clone(tmp_path):
     for line in ("φ̇ sin θ sin ψ + θ̇ cos ψ", "φ̇ sin θ cos ψ − θ̇ sin ψ", "φ̇ cos θ + ψ̇"):
         assert line in done.stdout
     folder = clone / "out" / "euler_zxz_intrinsic"
-    assert {f.suffix for f in folder.iterdir()} == {".py", ".tex", ".json"}
+    assert {f.suffix for f in folder.iterdir()} == {".py", ".tex", ".html", ".json"}
 
 
 def test_ci_runs_the_test_command_of_the_readme():

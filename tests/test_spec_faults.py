@@ -57,7 +57,7 @@ ALL_OF_THEM = """\
 many.toml: 22 faults, nothing written
   line 1: title: an empty text; expected a title, or no such key
   line 2: sequence: unknown key; it belongs in [rotation]
-  line 3: rotaton: unknown key; did you mean rotation?
+  line 3: rotaton: unknown key; did you mean rotation or notation?
   line 5: rotation.sequence[1]: writes the folder euler_zxz_intrinsic, as entry 0 does
   line 5: rotation.sequence[2]: 'ZZX' is not an Euler sequence: two turns in a row are about one \
 axis; neighbours must differ
@@ -81,7 +81,7 @@ angular_velocity_body or angular_velocity_space?
   line 17: output.kernels: the list is empty; expected a list of names such as ["numpy"]
   line 18: output.note: expected a list of names such as ["tex"], got the text "tex"
   line 19: output.title: unknown key; it belongs at the top of the file, outside the tables
-  line 20: body: unknown key; not read yet (known: title, rotation, output)"""
+  line 20: body: unknown key; not read yet (known: title, rotation, notation, output)"""
 
 
 def test_every_fault_is_reported_at_once():
@@ -184,7 +184,8 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
         ),
         (
             f"{ZXZ}[potential]",
-            "line 3: potential: unknown key; not read yet (known: title, rotation, output)",
+            "line 3: potential: unknown key; not read yet "
+            "(known: title, rotation, notation, output)",
         ),
         (
             "a = 1\nb = \nc = 2",
@@ -220,12 +221,18 @@ def test_the_name_of_the_file_names_folder_and_module(name, fault):
 
 def test_a_wrong_text_does_not_turn_the_message_around():
     (fault,) = faults(f'{ZXZ}[output]\nnote = ["\u202efdp"]')
-    assert fault == 'line 4: output.note[0]: unknown name "\\u202efdp"; known: tex, pdf'
+    assert (
+        fault
+        == 'line 4: output.note[0]: unknown name "\\u202efdp"; known: tex, html, md, ipynb, pdf'
+    )
 
 
 def test_a_long_wrong_text_is_cut():
     (fault,) = faults(f'{ZXZ}[output]\nnote = ["{"x" * 900}"]')
-    assert fault == f'line 4: output.note[0]: unknown name "{"x" * 40}…"; known: tex, pdf'
+    assert (
+        fault
+        == f'line 4: output.note[0]: unknown name "{"x" * 40}…"; known: tex, html, md, ipynb, pdf'
+    )
 
 
 @pytest.mark.parametrize(

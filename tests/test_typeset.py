@@ -7,12 +7,15 @@ from itertools import chain
 from pathlib import Path
 
 import pytest
+from sympy import Rational, pi, symbols
 
 from rigidsym import typeset as typesetting
 from rigidsym.errors import MissingTool, ToolFailed
 from rigidsym.mechanics.kinematics import derive
 from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
-from rigidsym.models.rotation import Citation, RotationModel
+from rigidsym.models.chain import axis_turn
+from rigidsym.models.chain import chain as chain_of
+from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import elementary, time_function
 from rigidsym.notes.formula import latex
 from rigidsym.notes.measure import ems, matrix_ems
@@ -59,6 +62,17 @@ def _page(body: str) -> str:
 def test_all_24_notes_compile_without_a_warning(angles, passive):
     notes = [_note(sequence, angles, passive=passive) for sequence in EULER_SEQUENCES]
     assert typeset(_bound_together(notes)).warnings == ()
+
+
+@pytest.mark.usefixtures("tex")
+@pytest.mark.parametrize(
+    "axis", [(Rational(3, 5), 0, Rational(4, 5)), symbols("e_1 e_2 e_3"), ()], ids=str
+)
+def test_chains_compile_without_a_warning(axis):
+    a, b = time_function("a"), time_function("b")
+    oblique = axis_turn(axis, b) if axis else Turn(axis="y", angle=pi / 6)
+    model = chain_of([oblique, Turn(axis="z", angle=a)])
+    assert typeset(note(derive(model)).latex()).warnings == ()
 
 
 @pytest.mark.usefixtures("tex")

@@ -29,6 +29,7 @@ Rank = tuple[tuple[int, int], ...]
 _NUMBER, _INPUT, _VALUE, _CALL, _SUM = range(5)
 _LONGEST_ARGUMENT = 20  # that the name of its sine repeats
 _ONE = Number(Fraction(1))
+_CALL_ORDER = {function: place for place, function in enumerate(FUNCTIONS)}
 
 
 def write(
@@ -50,18 +51,24 @@ class _Writer:
         self.assignments: list[Assignment] = []
         self._named: dict[int, Expression] = {graph.one: _ONE}
         self._ranks: dict[str, tuple[int, int]] = {}
+        self._arguments: dict[Weighted, Name] = {}
         for place, name in enumerate(inputs):
             self._named[graph.atom(name)] = Name(name)
             self._ranks[name] = (_INPUT, place)
         roots = [node for _, node in outputs]
         self._reachable = graph.reachable(roots)
+        self._sines = {
+            argument: node
+            for node, (function, argument) in graph.calls.items()
+            if function == "sin" and node in self._reachable
+        }
         parts = (part for node in sorted(self._reachable) for part in graph.parts(node))
         self._uses = Counter([*roots, *parts])
 
     def calls_on_inputs(self) -> None:
         """Sines and cosines of inputs come first, angle by angle."""
         calls = [
-            (argument, FUNCTIONS.index(function), node)
+            (argument, _CALL_ORDER.get(function, len(_CALL_ORDER)), node)
             for node, (function, (scale, argument)) in self.graph.calls.items()
             if node in self._reachable and scale == 1 and argument in self._named
         ]
@@ -115,11 +122,20 @@ class _Writer:
             return self.names.numbered(f"{call.function}_")
         return self.names.fresh(f"{call.function}_{call.argument.text}")
 
+    def _argument(self, weighted: Weighted) -> Name:
+        """The name of what functions are called with: half an angle has one for all of them."""
+        if weighted not in self._arguments:
+            value = self.weighted(*weighted)
+            self._arguments[weighted] = value if isinstance(value, Name) else self._assigned(value)
+        return self._arguments[weighted]
+
     def _build(self, node: int) -> Expression:
         if node in self.graph.calls:
             function, argument = self.graph.calls[node]
-            value = self.weighted(*argument)
-            return Call(function, value if isinstance(value, Name) else self._assigned(value))
+            name = self._argument(argument)
+            if function == "cos" and argument in self._sines:
+                self._node(self._sines[argument])  # first, so that both can be taken in one call
+            return Call(function, name)
         if node in self.graph.products:
             return self._product(node)
         if node in self.graph.sums:

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from rigidsym.kernels.ir import Call, Expression, Name, Negative, Number, Product, Sum
+from rigidsym.kernels.ir import Call, Expression, Guarded, Name, Negative, Number, Product, Sum
 
 _SUM, _PRODUCT, _ATOM = range(3)  # how tightly a piece of text holds together
 
 
 def infix(expression: Expression, functions: Mapping[str, str]) -> str:
-    """The expression in one line; `functions` are the target's names for sin, cos and sqrt."""
+    """The expression in one line; `functions` are the target's names for functions.
+
+    A function without a name there keeps its own, and a guard is or_nan(value, scale).
+    """
     return _text(expression, functions)[0]
 
 
@@ -37,7 +40,10 @@ def _text(expression: Expression, functions: Mapping[str, str]) -> tuple[str, in
             text = literal(value)
             return text, _PRODUCT if "/" in text else _ATOM
         case Call(function, argument):
-            return f"{functions[function]}({argument.text})", _ATOM
+            return f"{functions.get(function, function)}({argument.text})", _ATOM
+        case Guarded(value, scale):
+            limit = "None" if scale is None else within(scale, _SUM)
+            return f"or_nan({value.text}, {limit})", _ATOM
         case Negative(operand):
             return f"-{within(operand, _PRODUCT)}", _SUM
         case Sum(terms):

@@ -1,7 +1,8 @@
 """What a kernel computes, in no language yet: single assignment, every name defined before use.
 
-Expressions are trees of the six nodes below, over names. What is shared has a name; a call of a
-function (sine, cosine, square root) always has one, so that it is made once.
+Expressions are trees of the seven nodes below, over names. What is shared has a name; a call of a
+function (sine, cosine, square root) always has one, so that it is made once, and so has a divisor
+that is guarded.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ from math import prod
 
 from rigidsym.errors import KernelError
 
-FUNCTIONS = ("sin", "cos", "sqrt")  # what every target must be able to call
+# What every target must be able to call; and c0, c1, c2, ..., the functions c_k of n² that
+# `algebra.series` derives.
+FUNCTIONS = ("sin", "cos", "sqrt", "abs")
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,11 +65,29 @@ class Product:
 class Call:
     """A function of one name."""
 
-    function: str  # one of FUNCTIONS
+    function: str  # one of FUNCTIONS, or c0, c1, c2, ...
     argument: Name
 
+    @property
+    def order(self) -> int | None:
+        """k, where the function is c_k."""
+        return int(self.function[1:]) if self.function not in FUNCTIONS else None
 
-Expression = Name | Number | Negative | Sum | Product | Call
+
+@dataclass(frozen=True, slots=True)
+class Guarded:
+    """A value that divides, or NaN where rounding leaves no digit of it.
+
+    That is where its size is at most eps^power times the size of `scale`, with the eps of its
+    type; without a scale, where it is at most the smallest normal number over eps.
+    """
+
+    value: Name
+    scale: Name | Number | None
+    power: int = 1
+
+
+Expression = Name | Number | Negative | Sum | Product | Call | Guarded
 
 
 def parts(expression: Expression) -> tuple[Expression, ...]:
@@ -80,6 +101,8 @@ def parts(expression: Expression) -> tuple[Expression, ...]:
             return factors + divisors
         case Call(_, argument):
             return (argument,)
+        case Guarded(value, scale):
+            return (value,) if scale is None else (value, scale)
     return ()
 
 
@@ -99,7 +122,9 @@ class Operations:
     """What one value of a kernel costs; subtractions count as additions."""
 
     trigonometric: int = 0
+    entire: int = 0
     roots: int = 0
+    sizes: int = 0
     multiplications: int = 0
     divisions: int = 0
     additions: int = 0
@@ -112,7 +137,9 @@ class Operations:
     def _table(self) -> tuple[tuple[int, str, str], ...]:
         return (
             (self.trigonometric, "sine or cosine", "sines and cosines"),
+            (self.entire, "function c_k", "functions c_k"),
             (self.roots, "square root", "square roots"),
+            (self.sizes, "absolute value", "absolute values"),
             (self.multiplications, "multiplication", "multiplications"),
             (self.divisions, "division", "divisions"),
             (self.additions, "addition", "additions"),
@@ -125,13 +152,16 @@ class Operations:
         return f"{total}: {', '.join(counts)}" if counts else "no operations"
 
 
+_KINDS = {"sin": "trigonometric", "cos": "trigonometric", "sqrt": "roots", "abs": "sizes"}
+
+
 def count(expressions: Iterable[Expression]) -> Operations:
     """The operations in expressions as they are written."""
     counts: Counter[str] = Counter()
     for node in (node for expression in expressions for node in walk(expression)):
         match node:
             case Call(function):
-                counts["roots" if function == "sqrt" else "trigonometric"] += 1
+                counts[_KINDS.get(function, "entire")] += 1
             case Product(factors, divisors):
                 counts["multiplications"] += len(factors) - 1 + max(len(divisors) - 1, 0)
                 counts["divisions"] += bool(divisors)
@@ -174,11 +204,11 @@ class Kernel:
     assignments: tuple[Assignment, ...]
     outputs: tuple[Expression, ...]
     shape: tuple[int, ...]
-    equation: int  # its number in the note
-    symbol: str  # Unicode, one line: "Ω′"
-    definition: str  # Unicode, one line: "Rᵀ Ω"; may be empty
-    about: str  # words
-    unit: str  # SI; "" for a pure number
+    equation: int | None = None  # its number in the note, where it has one
+    symbol: str = ""  # Unicode, one line: "Ω′"
+    definition: str = ""  # Unicode, one line: "Rᵀ Ω"; may be empty
+    about: str = ""  # words
+    unit: str = ""  # SI; "" for a pure number
 
     def __post_init__(self) -> None:
         if len(self.outputs) != prod(self.shape):
@@ -204,8 +234,9 @@ class Kernel:
         for node in walk(expression):
             if isinstance(node, Name) and node.text not in known:
                 raise KernelError(f"{self.name}: {node.text} is used before it is defined")
-            if isinstance(node, Call) and not (is_whole and node is expression):
-                raise KernelError(f"{self.name}: {node.function} is called inside an expression")
+            if isinstance(node, Call | Guarded) and not (is_whole and node is expression):
+                called = node.function if isinstance(node, Call) else "a guard"
+                raise KernelError(f"{self.name}: {called} is called inside an expression")
 
     @property
     def components(self) -> tuple[str, ...]:
@@ -226,12 +257,22 @@ class Kernel:
 
     @cached_property
     def delicate(self) -> frozenset[str]:
-        """Names that reach a divisor: near a pole their relative error is the result's."""
-        reached = {name for divisor in self.divisors for name in names_in(divisor)}
+        """Names whose relative error is the result's: factors of a divisor or of a size."""
+        reached = {name for divisor in self.divisors for name in _factors_in(divisor)}
         for assignment in reversed(self.assignments):
-            if assignment.name in reached:
-                reached.update(names_in(assignment.value))
+            is_size = isinstance(assignment.value, Call) and assignment.value.function == "abs"
+            if is_size or assignment.name in reached:
+                reached.update(_factors_in(assignment.value))
         return frozenset(reached)
+
+
+def _factors_in(expression: Expression) -> Iterator[str]:
+    """The names that an expression is a product of; a sum has errors of its own."""
+    if not isinstance(expression, Sum):
+        for part in parts(expression):
+            yield from _factors_in(part)
+    if isinstance(expression, Name):
+        yield expression.text
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,26 +1,38 @@
 """Expressions of a derivation -> kernels.
 
 Tangents and their like become sines over cosines, the sine and the cosine of an angle are taken
-once, and what the outputs of a kernel have in common is computed once. Nothing is approximated:
-put back into each other, the assignments are the derivation's own expression.
+once, and what the outputs of a kernel have in common is computed once. Where n = √(v·v) leaves a
+removable singularity, it is written in the entire functions of n²; where 1 ± cos θ divides, in
+θ/2; and divisors that can vanish are guarded. Nothing else is changed: put back into each other,
+the assignments are the derivation's own expression.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 import sympy as sp
 
+from rigidsym.algebra.entire import Entire, at_zero, rewriter_of
+from rigidsym.algebra.halves import halved
 from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
 from rigidsym.kernels.assign import write
+from rigidsym.kernels.guard import guarded
 from rigidsym.kernels.naming import Names
 from rigidsym.kernels.sharing import Factors, Graph, Weighted
 from rigidsym.mechanics.derivation import Argument as Vector
-from rigidsym.mechanics.derivation import Derivation, Step
+from rigidsym.mechanics.derivation import Derivation, Singularities, Step
 from rigidsym.models.rotation import RotationModel
 
+MARGIN = "singularity_margin"
+_RATES = frozenset(
+    f"{quantity}_{frame}"
+    for quantity in ("rate_matrix", "inverse_rate_matrix", "rates_from_angular_velocity")
+    for frame in ("space", "body")
+)
 Monomial = tuple[Fraction, Factors]  # a number times nodes of the graph, ~node dividing
 
 _QUOTIENTS: Mapping[type, tuple[str, str]] = {  # numerator and denominator; "" for one
@@ -39,18 +51,18 @@ def lower(derivation: Derivation, reserved: Iterable[str] = ()) -> ir.Program:
     `reserved` are the words of the target that no name may be. Raises KernelError for an
     expression that kernels cannot hold.
     """
-    names = Names(reserved)
-    named = {vector.name: _named(vector, names) for vector in derivation.arguments}
-    kernels = tuple(_kernel(derivation, step, named, names) for step in derivation.steps)
-    used = {argument.name for kernel in kernels for argument in kernel.arguments}
+    kernels = _Lowering(derivation, Names(reserved))
+    found = tuple(map(kernels.of_step, derivation.steps))
+    found += tuple(kernels.margin())
+    used = {argument.name for kernel in found for argument in kernel.arguments}
     model = derivation.model
     return ir.Program(
         name=derivation.name,
         title=derivation.title,
         convention=_convention(model),
         source=str(model.source),
-        arguments=tuple(argument for name, argument in named.items() if name in used),
-        kernels=kernels,
+        arguments=tuple(a for name, a in kernels.arguments.items() if name in used),
+        kernels=found,
     )
 
 
@@ -75,34 +87,97 @@ def _named(vector: Vector, names: Names) -> ir.Argument:
     )
 
 
-def _kernel(
-    derivation: Derivation, step: Step, named: Mapping[str, ir.Argument], names: Names
-) -> ir.Kernel:
-    quantity = step.quantity
-    arguments = tuple(named[name] for name in quantity.inputs)
-    inputs = {
-        symbol: component
-        for argument in arguments
-        for symbol, component in zip(
-            derivation.argument(argument.name).symbols, argument.components, strict=True
+class _Lowering:
+    """The kernels of one derivation, over the same names."""
+
+    def __init__(self, derivation: Derivation, names: Names) -> None:
+        self.derivation = derivation
+        self.arguments = {vector.name: _named(vector, names) for vector in derivation.arguments}
+        self._names = names
+        model = derivation.model
+        inputs = [symbol for vector in derivation.arguments for symbol in vector.symbols]
+        self._given = [*model.matrix, *inputs]
+        self._rewriter = rewriter_of(self._given, model.constraints)
+
+    def of_step(self, step: Step) -> ir.Kernel:
+        """The kernel of one quantity."""
+        quantity = step.quantity
+        entries = self._rewritten(step.expression)
+        kernel = self._kernel(quantity.name, quantity.inputs, entries, step.shape)
+        return replace(
+            kernel,
+            equation=step.number,
+            symbol=quantity.symbol.text,
+            definition=quantity.definition.text,
+            about=quantity.about,
+            unit=quantity.unit,
         )
-    }
-    reader = _Reader(quantity.name, inputs)
-    weighted = [reader.weighted(entry) for entry in step.expression]
-    reader.graph.share(node for _, node in weighted)
-    assignments, outputs = write(reader.graph, weighted, list(inputs.values()), names.copy())
-    return ir.Kernel(
-        name=quantity.name,
-        arguments=arguments,
-        assignments=assignments,
-        outputs=outputs,
-        shape=step.shape,
-        equation=step.number,
-        symbol=quantity.symbol.text,
-        definition=quantity.definition.text,
-        about=quantity.about,
-        unit=quantity.unit,
-    )
+
+    def margin(self) -> Iterator[ir.Kernel]:
+        """How far the rate matrix is from failing, where it is among the quantities and may."""
+        found = self.derivation.singularities
+        names = {step.quantity.name for step in self.derivation.steps}
+        if found is None or not _can_fail(found) or names.isdisjoint(_RATES):
+            return
+        (determinant,) = self._rewritten([found.determinant])
+        scale, about = _largest(determinant)
+        value = sp.Abs(determinant / scale, evaluate=False)
+        is_free = determinant.free_symbols.isdisjoint(self.derivation.model.constants)
+        inputs = ("q",) if is_free else ("q", "parameters")
+        kernel = self._kernel(MARGIN, inputs, [value], ())
+        yield replace(kernel, symbol="|det W|" + _over(scale), about=about)
+
+    def _rewritten(self, entries: Iterable[sp.Expr]) -> list[sp.Expr]:
+        """The entries in forms that keep their digits where they can: see `algebra`."""
+        plain = list(entries)
+        if self._rewriter is None:
+            return halved(plain, self._given, self.derivation.model.constraints)
+        found = map(self._rewriter.rewritten, plain)
+        return [old if new is None else new for old, new in zip(plain, found, strict=True)]
+
+    def _kernel(
+        self, name: str, inputs: Sequence[str], entries: Iterable[sp.Expr], shape: tuple[int, ...]
+    ) -> ir.Kernel:
+        arguments = tuple(self.arguments[vector] for vector in inputs)
+        known = {
+            symbol: component
+            for argument in arguments
+            for symbol, component in zip(
+                self.derivation.argument(argument.name).symbols, argument.components, strict=True
+            )
+        }
+        reader = _Reader(name, known)
+        weighted = [reader.weighted(entry) for entry in entries]
+        reader.graph.share(node for _, node in weighted)
+        names = self._names.copy()
+        assignments, outputs = write(reader.graph, weighted, list(known.values()), names)
+        kernel = ir.Kernel(
+            name=name, arguments=arguments, assignments=assignments, outputs=outputs, shape=shape
+        )
+        return guarded(kernel, names)
+
+
+def _can_fail(found: Singularities) -> bool:
+    return bool(found.points) or not found.is_solved
+
+
+def _largest(determinant: sp.Expr) -> tuple[sp.Rational, str]:
+    """The number that scales the margin to at most 1, and what the margin is in words.
+
+    A product of sines, cosines and entire functions is largest where each of them is; of anything
+    else the determinant is taken as it is.
+    """
+    number, rest = determinant.as_coeff_Mul()
+    factors = [factor.as_base_exp()[0] for factor in sp.Mul.make_args(rest)]
+    if not all(isinstance(factor, sp.sin | sp.cos | Entire) for factor in factors):
+        return sp.S.One, "how far the rates are from failing; 0 where they do"
+    value = at_zero(rest) if rest.has(Entire) else sp.S.One
+    scale = abs(number) * (value if value.is_Rational and value else 1)
+    return scale, "how far the rates are from failing; 1 at most, 0 where they do"
+
+
+def _over(scale: sp.Rational) -> str:
+    return "" if scale == 1 else f"/({scale})"
 
 
 class _Reader:
@@ -138,6 +213,12 @@ class _Reader:
             return self._factored(self.graph.sum(map(self.weighted, expression.args)))
         if expression.is_Pow and (2 * expression.exp).is_Integer:
             return self._power(expression.base, expression.exp)
+        if isinstance(expression, Entire):
+            order, square = expression.args
+            return Fraction(1), (self.graph.call(f"c{order}", self.weighted(square)),)
+        if isinstance(expression, sp.Abs):
+            number, node = self.weighted(expression.args[0])
+            return abs(number), (self.graph.call("abs", (Fraction(1), node)),)
         if type(expression) in _QUOTIENTS:
             above, below = _QUOTIENTS[type(expression)]
             (argument,) = map(self.weighted, expression.args)

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
+from rigidsym.kernels.conversions import lower_conversions
 from rigidsym.kernels.lower import lower
 from rigidsym.kernels.targets import TARGETS, printer
+from rigidsym.mechanics.conversions import conversions_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.writing import write_text
 
@@ -40,11 +42,20 @@ class KernelModule:
         )
 
 
-def generate(derivation: Derivation, target: str = "numpy") -> KernelModule:
+def generate(
+    derivation: Derivation, target: str = "numpy", *, conversions: bool = False
+) -> KernelModule:
     """The kernels of all quantities of a derivation, for one target.
 
-    Raises KernelError for an unknown target, and for an expression that kernels cannot hold.
+    `conversions` adds those between the coordinates, the unit quaternion and the matrix. Raises
+    KernelError for an unknown target, and for an expression that kernels cannot hold.
     """
     chosen = printer(target)
     program = lower(derivation, chosen.RESERVED)
-    return KernelModule(name=derivation.name, target=target, source=chosen.render(program))
+    converting = None
+    if conversions:
+        converting = lower_conversions(
+            derivation, conversions_of(derivation.model), chosen.RESERVED
+        )
+    source = chosen.render(program, converting)
+    return KernelModule(name=derivation.name, target=target, source=source)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import sympy as sp
+from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.rotation import Citation, RotationModel
@@ -30,7 +31,7 @@ class ThreeTurns:
     lean: tuple[sp.Expr, sp.Expr]  # parallel to (cos λ/2, sin λ/2), λ in [0, π]
     sign: int  # of the middle angle: −1 where the frame holds −e₂
     places: tuple[int, int, int]  # of α, β, γ among the coordinates
-    angle_names: tuple[str, str, str]  # of the coordinates, in their order
+    angle_names: tuple[str, str, str]  # of the coordinates in Unicode, in their order
 
     @property
     def offset(self) -> sp.Expr:
@@ -85,7 +86,7 @@ def three_turns(model: RotationModel) -> ThreeTurns | str:
         few = "fewer than three turns do not reach every rotation"
         return few if len(model.turns) < 3 else "more than three turns reach it in many ways"
     angles = [turn.angle for turn in model.turns]
-    if set(angles) != set(model.coordinates):
+    if len(set(angles)) != 3 or set(angles) != set(model.coordinates):
         return "the angles of the turns are not the coordinates themselves"
     first, second, third = (sp.Matrix(turn.direction) for turn in model.turns)
     if any(part.free_symbols for turn in model.turns for part in turn.direction):
@@ -110,7 +111,7 @@ def _geometry(
     frame = sp.Matrix.hstack(first, second, first.cross(second)).applyfunc(sp.expand)
     angles = [turn.angle for turn in model.turns]
     first_place, middle_place, last_place = (model.coordinates.index(angle) for angle in angles)
-    a, b, c = (coordinate.func.__name__ for coordinate in model.coordinates)
+    a, b, c = (pretty_symbol(coordinate.func.__name__) for coordinate in model.coordinates)
     return ThreeTurns(
         frame=sp.ImmutableMatrix(frame),
         lean=lean,

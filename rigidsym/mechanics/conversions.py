@@ -27,7 +27,7 @@ from rigidsym.models.so3 import hat
 
 Parts = tuple[sp.Expr, ...]  # of a quaternion, scalar first
 
-LONGEST_CHAIN = 6  # turns whose product is written out: its terms double with each
+LONGEST_CHAIN = 4  # turns whose product is written out: its terms double with each
 P = Markup(r"\mathbf{p}", "p")
 SHEPPERD = Citation(
     text="S. Shepperd, Quaternion from Rotation Matrix, Journal of Guidance and Control 1 (1978)"
@@ -46,6 +46,7 @@ QUATERNION = Quantity(
     is_vector=True,
     source=_RODRIGUES,
 )
+UNIT = "_unit"  # ends the names of what holds for quaternions of length one
 _OF_UNIT_LENGTH = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
 _TURNS = Markup(r"\mathbf{R}(\mathbf{p}) = \mathbf{R}", "R(p) = R")
 _UNIT = Markup(r"\mathbf{p}\cdot\mathbf{p} = 1", "p·p = 1")
@@ -110,15 +111,13 @@ def _unit_variants(model: RotationModel, form: ClosedForm | None) -> tuple[Step,
     names = [model.coordinates[place].func.__name__ for place in form.order]
     unit = UnitQuaternion(names, scalar_last=form.order[0] != 0, passive=model.passive)
     steps = (derive(unit).step(name) for name in _OF_UNIT_LENGTH)
-    return tuple(
-        replace(step, number=0, quantity=_of_unit_length(step.quantity)) for step in steps
-    )
+    return tuple(replace(step, number=0, quantity=_of_unit_length(step.quantity)) for step in steps)
 
 
 def _of_unit_length(quantity: Quantity) -> Quantity:
     return replace(
         quantity,
-        name=f"{quantity.name}_unit",
+        name=quantity.name + UNIT,
         about=f"{quantity.about}, for a quaternion of length one",
     )
 
@@ -179,9 +178,10 @@ def _proved_step(
     prove = Prover(model, codec)
     residual = [codec.encode(e) for e in rotation_of(list(shown)) - model.matrix]
     length = codec.encode(shown.dot(shown) - 1)
+    is_fixed = shown.free_symbols.isdisjoint(model.constants)
     return Step(
         number=0,
-        quantity=QUATERNION,
+        quantity=QUATERNION if is_fixed else replace(QUATERNION, inputs=("q", "parameters")),
         expression=shown,
         because=because,
         proofs=(
@@ -205,9 +205,12 @@ def _product(codec: Codec, first: RingMatrix, second: RingMatrix) -> RingMatrix:
 def _by_turns(model: RotationModel, rule: ThreeTurns) -> Backward:
     return Backward(
         rule=rule,
-        because="In the frame of the first two axes, p (1 + C) has the components "
-        "κ cos β/2 (cos σ, sin σ) and κ sin β/2 (cos δ, sin δ), with σ and δ half the sum and half "
-        "the difference of the outer angles; the arctangents of their quotients are the angles.",
+        because="C is the fixed turn about the second axis that takes the first to the third. In "
+        "the frame of the first two axes and their cross product, the quaternion of R C is "
+        "κ (cos β′/2 cos σ, cos β′/2 sin σ, sin β′/2 cos δ, sin β′/2 sin δ): β′ is the middle "
+        "angle and that of C, σ half the sum and δ half the difference of the outer angles. "
+        "So σ = atan2(a₁, a₀), δ = atan2(a₃, a₂), and tan β′/2 is the quotient of the lengths of "
+        "(a₂, a₃) and (a₀, a₁).",
         branch=rule.branch,
         proofs=_vanishing(model, turns_claims(model, rule)),
     )
@@ -243,7 +246,7 @@ def _read_off() -> Proof:
     model = UnitQuaternion()
     column = sp.Matrix(model.coordinates)
     residual = tuple(outer_product(model.matrix) - 4 * column * column.T)
-    claim = Markup(r"4\,\mathbf{p}\mathbf{p}^{\mathsf T} = \mathbf{K}(\mathbf{R})", "4 p pᵀ = K(R)")
+    claim = Markup(r"4\,\mathbf{p}\mathbf{p}^{\mathsf T} = \mathbf{K}", "4 p pᵀ = K")
     return _vanishing(model, [(residual, claim)])[0]
 
 

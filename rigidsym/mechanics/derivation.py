@@ -111,6 +111,7 @@ class Singularity:
     lost_space: sp.ImmutableMatrix | None  # no q̇ gives Ω along this direction; (3, 1)
     lost_body: sp.ImmutableMatrix | None  # the same direction in body components
     undetermined: sp.ImmutableMatrix | None  # the q̇ that turns nothing, (n, 1)
+    reached: sp.ImmutableMatrix | None = None  # the direction of all Ω, where the rank is 1; (3, 1)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -120,6 +121,7 @@ class Singularities:
     determinant: sp.Expr
     points: tuple[Singularity, ...]
     is_solved: bool  # whether `points` are all the places where the determinant vanishes
+    length: sp.Expr | None = None  # what takes the place of an angle at the points; never at 0
 
 
 @dataclass(frozen=True, kw_only=True)

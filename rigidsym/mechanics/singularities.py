@@ -11,6 +11,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
+from rigidsym.algebra.entire import at_zero, rewriter_for
 from rigidsym.algebra.matrix import RingMatrix, Row, cross
 from rigidsym.algebra.present import Presenter
 from rigidsym.algebra.shorten import shortest
@@ -28,16 +29,33 @@ def singularities_of(
 ) -> Singularities:
     """The zeros of det W, for a square rate matrix in space components.
 
-    Solved where every factor of the determinant is a number, or the sine or cosine of a rational
-    multiple of one coordinate; otherwise the determinant is reported and nothing is guessed.
+    Solved where every factor of the determinant is a number, a reciprocal, the sine or cosine of a
+    rational multiple of one coordinate, or sin n, cos n or 1 ± cos n of one coordinate or of the
+    length n of all of them; otherwise the determinant is reported and nothing is guessed.
     """
     determinant = matrix.det()
+    shown = presenter.element(determinant)
     zeros, is_solved = _zeros(shortest(codec.ring, determinant), codec, coordinates)
+    length = _length(coordinates)
+    if any(zero[0] == length for zero in zeros):
+        is_solved = is_solved and _is_regular_at_zero(shown, codec)
     return Singularities(
-        determinant=presenter.element(determinant),
+        determinant=shown,
         points=tuple(_at(zero, matrix, rotation, presenter) for zero in zeros),
         is_solved=is_solved,
+        length=next((zero[0] for zero in zeros if zero[0] == length), None),
     )
+
+
+def _length(coordinates: Sequence[sp.Expr]) -> sp.Expr:
+    return sp.sqrt(sp.Add(*(coordinate**2 for coordinate in coordinates)))
+
+
+def _is_regular_at_zero(determinant: sp.Expr, codec: Codec) -> bool:
+    """Whether the determinant is not zero where all coordinates are, by its entire form."""
+    rewriter = rewriter_for(codec)
+    form = rewriter.rewritten(determinant) if rewriter else None
+    return form is not None and bool(at_zero(form) != 0)
 
 
 def _zeros(
@@ -63,7 +81,19 @@ def _factors(element: PolyElement) -> list[PolyElement]:
 def _zeros_of_factor(
     factor: PolyElement, codec: Codec, coordinates: Sequence[sp.Expr]
 ) -> list[Zero] | None:
-    """Zeros of one irreducible factor in (−π, π]; None where it is not a sine or a cosine."""
+    """Zeros of one irreducible factor in (−π, π]; None where they are not known.
+
+    For a length they lie in (0, 2π].
+    """
+    if _is_reciprocal(factor, codec):
+        return []
+    length = _length(coordinates)
+    for sine, cosine in codec.angle_pairs:
+        argument = codec.ring.generators[sine].expression.args[0]
+        if argument == length or argument in coordinates:
+            turned = _quarter_turns(factor, codec, sine, cosine)
+            if turned:
+                return [(argument, _placed(turn, argument == length), b) for turn, b in turned]
     for sine, cosine in codec.angle_pairs:
         argument = codec.ring.generators[sine].expression.args[0]
         rate, coordinate = argument.as_coeff_Mul()
@@ -78,6 +108,38 @@ def _zeros_of_factor(
     return None
 
 
+def _is_reciprocal(factor: PolyElement, codec: Codec) -> bool:
+    """Whether it is 1/d for a d of the ring: their product is one, so that it is never zero."""
+    for place, generator in enumerate(codec.ring.generators):
+        if factor.monic() == codec.ring.generator(place):
+            expression = generator.expression
+            return bool(expression.is_Pow and expression.exp.is_negative)
+    return False
+
+
+def _quarter_turns(
+    factor: PolyElement, codec: Codec, sine: int, cosine: int
+) -> list[tuple[int, dict[int, int]]]:
+    """Quarters of a turn in (−2, 2] at which a factor 1 ± cos n, sin n or cos n vanishes."""
+    ring = codec.ring
+    quarters = {0: (0, 1), 1: (1, 0), 2: (0, -1), -1: (-1, 0)}
+    zeros = {
+        ring.generator(cosine) - 1: (0,),
+        ring.generator(cosine) + 1: (2,),
+        ring.generator(sine): (0, 2),
+        ring.generator(cosine): (-1, 1),
+    }
+    return [
+        (turn, dict(zip((sine, cosine), quarters[turn], strict=True)))
+        for turn in zeros.get(factor.monic(), ())
+    ]
+
+
+def _placed(quarters: int, is_length: bool) -> sp.Expr:
+    """The angle in (−π, π]; of a length, which is no angle below zero, in (0, 2π]."""
+    return sp.Rational(quarters + 4 if is_length and quarters <= 0 else quarters, 2) * sp.pi
+
+
 def _half_turns(offset: Fraction, rate: Fraction) -> Iterator[tuple[Fraction, int]]:
     """(offset + k)/rate in (−1, 1], in half turns, with the ±1 of what does not vanish there."""
     reach = ceil(rate) + 1
@@ -89,7 +151,8 @@ def _half_turns(offset: Fraction, rate: Fraction) -> Iterator[tuple[Fraction, in
 
 def _at(zero: Zero, matrix: RingMatrix, rotation: RingMatrix, presenter: Presenter) -> Singularity:
     coordinate, value, becomes = zero
-    there = matrix.map(lambda entry: _substituted(entry, becomes))
+    reduce = matrix.ring.reduce
+    there = matrix.map(lambda entry: reduce(_substituted(entry, becomes)))
     lost = _normal_to(there.T)
     idle = _normal_to(there)
     body = None
@@ -103,6 +166,7 @@ def _at(zero: Zero, matrix: RingMatrix, rotation: RingMatrix, presenter: Present
         lost_space=_presented(lost, matrix, presenter),
         lost_body=None if body is None else presenter.matrix(body),
         undetermined=_presented(idle, matrix, presenter),
+        reached=_presented(_line(there), matrix, presenter),
     )
 
 
@@ -131,6 +195,14 @@ def _normal_to(matrix: RingMatrix) -> Row | None:
         if any(normal):
             return _primitive(normal)
     return None
+
+
+def _line(matrix: RingMatrix) -> Row | None:
+    """The direction of the columns of a matrix of rank one; None for any other."""
+    if _rank(matrix) != 1:
+        return None
+    column = next(row for row in matrix.T.rows if any(row))
+    return _primitive([shortest(matrix.ring, entry) for entry in column])
 
 
 def _primitive(entries: Sequence[PolyElement]) -> Row:

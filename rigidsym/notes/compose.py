@@ -5,15 +5,16 @@ Equations carry the numbers of the steps; what is only recalled has none.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
 from rigidsym.mechanics.claims import orthogonal, skew, spin_of
-from rigidsym.mechanics.derivation import Derivation, Markup, Proof, Step
+from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Proof, Step
 from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
-from rigidsym.models.rotation import Citation
-from rigidsym.models.so3 import elementary, hat
+from rigidsym.models.rotation import Citation, Turn
+from rigidsym.models.so3 import hat
 from rigidsym.notes.document import (
     Block,
     Cited,
@@ -22,16 +23,21 @@ from rigidsym.notes.document import (
     Equation,
     EquationReference,
     EquationRow,
+    Figure,
     Paragraph,
+    Program,
     Section,
     Strong,
     Table,
     Text,
 )
 from rigidsym.notes.entries import RESIDUAL, entry_names, indexed
+from rigidsym.notes.figure import figure_of
 from rigidsym.notes.formula import markup
+from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.notation import notation_of
 from rigidsym.notes.prose import DETERMINANTS, equal, motion, product, proofs_in_words, turn, zeros
+from rigidsym.notes.rewriting import in_manner
 from rigidsym.notes.words import (
     convention,
     singular,
@@ -43,6 +49,8 @@ from rigidsym.notes.words import (
 
 _OPERATOR = Markup(r"\mathbf{C}(\mathbf{u})", "C(u)")
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
+
+_CODE_WIDTH = 76  # columns of typewriter type on a page
 
 _ANGULAR_VELOCITY = (
     "rotation_rate",
@@ -59,34 +67,45 @@ _ACCELERATION = ("angular_acceleration_space", "angular_acceleration_body")
 
 
 def compose(
-    derivation: Derivation, *, module: str | None = None, functions: Sequence[str] = ()
+    derivation: Derivation,
+    *,
+    module: str | None = None,
+    functions: Sequence[str] = (),
+    manner: Manner = DEFAULT,
 ) -> Document:
     """The note of a derivation.
 
     `module` is the file name of a kernel module and `functions` the quantities it evaluates; each
-    of their equations names its function.
+    of their equations names its function. Raises ModelError where a name of the model would be
+    taken for one of the notation.
     """
-    composer = _Composer(derivation, module, tuple(functions))
-    return Document(
+    manner.check(derivation.model)
+    composer = _Composer(derivation, module, tuple(functions), manner)
+    document = Document(
         name=derivation.name,
         title=derivation.title,
         subtitle="Kinematics of a rotation",
         notation=composer.notation,
         sections=tuple(composer.sections()),
     )
+    return in_manner(document, manner)
 
 
 class _Composer:
     """The sections of one note."""
 
     def __init__(
-        self, derivation: Derivation, module: str | None, functions: tuple[str, ...]
+        self,
+        derivation: Derivation,
+        module: str | None,
+        functions: tuple[str, ...],
+        manner: Manner,
     ) -> None:
         self.derivation = derivation
         self.model = derivation.model
-        self.module = module
+        self.module = module or ""
         self.functions = functions
-        self.notation = notation_of(derivation.arguments)
+        self.notation = notation_of(derivation.arguments, manner)
         self.symbols = symbols_of(derivation)
         self.said: set[str] = set()
 
@@ -105,19 +124,22 @@ class _Composer:
         return (Section(title, blocks) for title, blocks in filled if blocks)
 
     def _convention(self) -> Iterator[Block]:
-        return (Paragraph(text) for text in convention(self.derivation))
+        return (Paragraph(text) for text in convention(self.derivation, self.notation.manner))
 
     def _rotation(self) -> Iterator[Block]:
         if self.model.turns:
             yield from self._product_of_turns()
+        else:
+            yield from self._figure()
         yield from self._steps(("rotation_matrix",))
 
     def _product_of_turns(self) -> Iterator[Block]:
         yield Paragraph(
             words("The rotation is a product of turns\u00a0{}:", Cited(self.model.source))
         )
-        turns = [turn(t.axis, markup(t.angle, self.notation)) for t in self.model.turns]
+        turns = [turn(t, self.notation) for t in self.model.turns]
         yield Equation(sides=(ROTATION, product(turns)))
+        yield from self._figure()
         yield Paragraph(
             (
                 "Read from left to right, they are about the axes as they have turned; read from "
@@ -126,19 +148,32 @@ class _Composer:
                 " are",
             )
         )
-        yield EquationRow(tuple(self._elementary(axis) for axis in self._axes()))
+        by_axis = list(self._turns_by_axis())
+        short = tuple(self._elementary(t) for t in by_axis if not t.components)
+        if short:
+            yield EquationRow(short)
+        yield from (self._elementary(t) for t in by_axis if t.components)
 
-    def _axes(self) -> list[str]:
-        return sorted({t.axis for t in self.model.turns})
+    def _figure(self) -> Iterator[Figure]:
+        figure = figure_of(self.model, self.notation)
+        if figure is not None:
+            yield figure
+
+    def _turns_by_axis(self) -> Iterator[Turn]:
+        """One turn about each axis, by the angle that stands for any."""
+        axes = {(t.components, t.axis): t for t in self.model.turns}
+        for key in sorted(axes, key=lambda key: (bool(key[0]), key[1])):
+            yield replace(axes[key], angle=self._turn_angle())
 
     def _turn_angle(self) -> sp.Symbol:
         taken = {coordinate.func.__name__ for coordinate in self.model.coordinates}
         return sp.Symbol(next(name for name in _TURN_ANGLES if name not in taken))
 
-    def _elementary(self, axis: str) -> Equation:
-        angle = self._turn_angle()
-        side = turn(axis, markup(angle, self.notation))
-        return Equation(sides=(side,), matrix=elementary(axis, angle))
+    def _elementary(self, any_turn: Turn) -> Equation:
+        side = turn(any_turn, self.notation)
+        return Equation(
+            sides=(side,), matrix=any_turn.matrix, entries=indexed(side, any_turn.matrix.shape)
+        )
 
     def _angular_velocity(self) -> Iterator[Block]:
         shown = COSINES if self.model.passive else ROTATION
@@ -199,22 +234,13 @@ class _Composer:
         return None if step.quantity.source == self.model.source else step.quantity.source
 
     def _equation(self, step: Step) -> Equation:
-        quantity = step.quantity
-        definition = () if not quantity.definition.text else (quantity.definition,)
-        return Equation(
-            sides=(quantity.symbol, *definition),
-            matrix=step.expression,
-            entries=entry_names(step, self.derivation),
-            number=step.number,
-            label=quantity.name,
-            function=_call(step) if quantity.name in self.functions else "",
-            proved=tuple(proof.claim for proof in step.proofs if proof.is_exact),
-            unproved=tuple(proof.claim for proof in step.proofs if not proof.is_exact),
-        )
+        function = _call(step) if step.quantity.name in self.functions else ""
+        return replace(equation_of(step, self.derivation.arguments), function=function)
 
     def _proofs(self) -> Iterator[Block]:
         yield Paragraph(proofs_in_words(is_proved=self.derivation.is_proved))
         yield Table(
+            caption="What was claimed, and what became of it",
             head=(("Equation",), ("Claim",), ("Status",)),
             rows=tuple(
                 (_reference(step), (proof.claim,), _status(proof))
@@ -227,7 +253,7 @@ class _Composer:
                 yield from _left_over(proof)
 
     def _functions(self) -> Iterator[Block]:
-        if not self.module:
+        if not self.functions:
             return
         yield Paragraph(
             words(
@@ -236,6 +262,7 @@ class _Composer:
             )
         )
         yield Table(
+            caption="The function that evaluates each equation",
             head=(("Equation",), ("Quantity",), ("Function",), ("Unit",)),
             rows=tuple(
                 (
@@ -248,10 +275,51 @@ class _Composer:
                 if step.quantity.name in self.functions
             ),
         )
+        yield Paragraph(("For example,",))
+        yield Program(self._example())
+
+    def _example(self) -> str:
+        """A call of one function with made-up numbers; of the angular velocity, if it is there."""
+        shown = "angular_velocity_body"
+        name = shown if shown in self.functions else self.functions[0]
+        module = self.module.removesuffix(".py")
+        inputs = self.derivation.step(name).quantity.inputs
+        given = (_given(self.derivation.argument(argument)) for argument in inputs)
+        return "\n".join(
+            [
+                f"import {module} as kinematics",
+                "",
+                *given,
+                f"kinematics.{name}({', '.join(inputs)})",
+            ]
+        )
+
+
+def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
+    """The numbered equation of a step."""
+    quantity = step.quantity
+    definition = () if not quantity.definition.text else (quantity.definition,)
+    return Equation(
+        sides=(quantity.symbol, *definition),
+        matrix=step.expression,
+        entries=entry_names(step, arguments),
+        number=step.number,
+        label=quantity.name,
+        proved=tuple(proof.claim for proof in step.proofs if proof.is_exact),
+        unproved=tuple(proof.claim for proof in step.proofs if not proof.is_exact),
+    )
 
 
 def _call(step: Step) -> str:
     return f"{step.quantity.name}({', '.join(step.quantity.inputs)})"
+
+
+def _given(argument: Argument) -> str:
+    """q = [0.1, 0.2, 0.3]  # phi, theta, psi"""
+    numbers = ", ".join(f"{k / 10:.1f}" for k in range(1, 1 + len(argument.symbols)))
+    line = f"{argument.name} = [{numbers}]"
+    explained = f"{line}  # {', '.join(argument.names)}"
+    return explained if len(explained) <= _CODE_WIDTH else line
 
 
 def _reference(step: Step) -> Text:

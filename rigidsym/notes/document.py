@@ -13,6 +13,7 @@ import sympy as sp
 
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.rotation import Citation
+from rigidsym.notes.drawing import Drawing
 from rigidsym.notes.notation import Notation
 
 
@@ -76,11 +77,26 @@ class EquationRow:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Table:
+    caption: str
     head: tuple[Text, ...]
     rows: tuple[tuple[Text, ...], ...]
 
 
-Block = Paragraph | Equation | EquationRow | Table
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A few lines of Python that can be run as they stand, beside the kernel module."""
+
+    code: str  # ASCII, lines of at most 80 columns
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Figure:
+    drawing: Drawing
+    caption: Text  # which line is what
+    description: Text  # what the figure says, in words that do without it
+
+
+Block = Paragraph | Equation | EquationRow | Table | Program | Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +122,12 @@ class Document:
         return (block for block in blocks if isinstance(block, Equation) and block.number)
 
     @property
+    def figures(self) -> tuple[Figure, ...]:
+        """The figures, in order; their numbers are their places."""
+        blocks = (block for section in self.sections for block in section.blocks)
+        return tuple(block for block in blocks if isinstance(block, Figure))
+
+    @property
     def sources(self) -> tuple[str, ...]:
         """The sources that the text cites, each once, in order of appearance."""
         spans = (span for text in self._texts() for span in text)
@@ -120,5 +142,7 @@ class Document:
             for block in section.blocks:
                 if isinstance(block, Paragraph):
                     yield block.text
+                elif isinstance(block, Figure):
+                    yield from (block.caption, block.description)
                 elif isinstance(block, Table):
                     yield from (cell for row in block.rows for cell in row)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
-from rigidsym.mechanics.derivation import Derivation, Markup, Step
+from rigidsym.mechanics.derivation import Argument, Markup, Step
 
 _BOLD = re.compile(r"\\(?:mathbf|boldsymbol)\{([^{}]*)\}")
 _RATE = re.compile(r"\\frac\{d(\w|\\[A-Za-z]+)\}\{dt\}")
@@ -16,12 +16,12 @@ RESIDUAL = Markup(r"\boldsymbol{\Delta}", "Δ")  # what is left over of a claim
 _DIGITS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
-def entry_names(step: Step, derivation: Derivation) -> tuple[Markup, ...]:
+def entry_names(step: Step, arguments: Iterable[Argument]) -> tuple[Markup, ...]:
     """A name for each entry, row by row.
 
     Vectors that are arguments of other quantities, such as the rates, have the names of those.
     """
-    known = {argument.name: argument.notation for argument in derivation.arguments}
+    known = {argument.name: argument.notation for argument in arguments}
     argument = _argument_name(step.quantity.name)
     return known.get(argument) or indexed(step.quantity.symbol, step.shape)
 

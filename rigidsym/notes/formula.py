@@ -66,7 +66,9 @@ class _Walk:
         if is_application(node):
             arguments = [self.expression(argument).text for argument in node.args]
             return Piece(self.pen.application(node.func.__name__, arguments), Binding.CALL)
-        return Piece(self.pen.name(self.notation.name(node)), Binding.NAME)
+        name = self.notation.name(node)
+        binding = Binding.FRACTION if r"\frac" in name.latex else Binding.NAME
+        return Piece(self.pen.name(name), binding)
 
     def _rational(self, number: sp.Rational) -> Piece:
         if number.is_negative:

@@ -14,7 +14,9 @@ from rigidsym.notes.document import (
     Equation,
     EquationReference,
     EquationRow,
+    Figure,
     Paragraph,
+    Program,
     Section,
     Span,
     Strong,
@@ -22,7 +24,9 @@ from rigidsym.notes.document import (
     Text,
 )
 from rigidsym.notes.escape import escape
-from rigidsym.notes.layout import Display, display, pack
+from rigidsym.notes.layout import display, pack
+from rigidsym.notes.prose import announcement
+from rigidsym.notes.tikz import tikz
 
 TEMPLATE = "note.tex.jinja"
 _DELIMITERS = {
@@ -35,9 +39,6 @@ _DELIMITERS = {
 }
 _LINE = 41.5  # ems: 160 mm at 11 points
 _NUMBERED_LINE = 38.6  # ems: beside a number such as (13)
-_ABBREVIATED = (
-    r"In short, with $s_\alpha$ for $\sin\alpha$ and $c_\alpha$ for $\cos\alpha$ of any angle,"
-)
 
 
 def print_latex(document: Document) -> str:
@@ -78,19 +79,17 @@ class _Printer:
                 return f"\\[\n{packed}\n\\]"
             case Table():
                 return self._table(block)
+            case Figure():
+                return self._figure(block)
+            case Program():
+                return f"\\begin{{verbatim}}\n{block.code}\n\\end{{verbatim}}"
 
     def _equation(self, equation: Equation) -> str:
         width = _NUMBERED_LINE if equation.number else _LINE
         shown = display(equation, self.document.notation, width)
-        lines = [*self._announced(equation, shown), *self._numbered(equation, shown.latex)]
-        return "\n".join(lines)
-
-    def _announced(self, equation: Equation, shown: Display) -> Iterator[str]:
-        if shown.done == "abbreviated":
-            yield _ABBREVIATED
-        if shown.done == "listed":
-            whole = " = ".join(side.latex for side in equation.sides)
-            yield f"The entries of ${whole}$ are"
+        announced = self._text(announcement(equation, shown.done))
+        lines = [announced] if announced else []
+        return "\n".join([*lines, *self._numbered(equation, shown.latex)])
 
     def _numbered(self, equation: Equation, inside: str) -> Iterator[str]:
         if not equation.number:
@@ -116,13 +115,21 @@ class _Printer:
         )
         return "\n".join(
             [
-                rf"\begin{{ruled}}{{{'l' * len(table.head)}}}",
+                rf"\begin{{ruled}}{{{'l' * len(table.head)}}}{{{escape(table.caption)}}}",
                 head,
                 r"\midrule",
                 *rows,
                 r"\end{ruled}",
             ]
         )
+
+    def _figure(self, figure: Figure) -> str:
+        number = self.document.figures.index(figure) + 1
+        words = self._text(
+            (Strong(f"Figure {number}."), " ", *figure.caption, " ", *figure.description)
+        )
+        drawing = f"\n\\begin{{drawing}}\n{tikz(figure.drawing)}\n\\end{{drawing}}"
+        return f"{drawing}\n\\inthefigure{{{words}}}"
 
     def _cell(self, text: Text) -> str:
         return "".join(_tall(s) if isinstance(s, Markup) else self._span(s) for s in text)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal
 
 import sympy as sp
@@ -18,6 +19,7 @@ from rigidsym.notes.measure import ems, matrix_ems
 from rigidsym.notes.notation import Notation
 
 Rows = Sequence[Sequence[str]]
+Done = Literal["", "abbreviated", "listed"]
 
 _EQUAL = ems("=")
 _QUAD = ems(r"\quad")
@@ -27,25 +29,26 @@ _HIGH_ROW = r" \\[7pt]" + "\n"  # so do fractions
 
 @dataclass(frozen=True, slots=True)
 class Display:
-    """The inside of a display, and what was done that the reader has to be told."""
+    """The inside of a display, how wide it is, and what was done that the reader must know."""
 
     latex: str
-    done: Literal["", "abbreviated", "listed"] = ""
+    width: float  # ems; it may be more than was asked for, where there is no place to break
+    done: Done = ""
 
 
 def display(equation: Equation, notation: Notation, width: float) -> Display:
     """The equation in the first form that fits into `width` ems; a listing where none does."""
     if equation.matrix is None:
-        return Display(_chain(equation, width))
+        return Display(*_chain(equation, width))
     full = _rows(equation.matrix, notation, shorthand=False)
     for form, needed in _forms(equation, full):
         if needed <= width:
-            return Display(form)
+            return Display(form, needed)
     if equation.matrix.shape[1] > 1:
         for form, needed in _forms(equation, _rows(equation.matrix, notation, shorthand=True)):
             if needed <= width:
-                return Display(form, "abbreviated")
-    return Display(_listing(equation, full, width), "listed")
+                return Display(form, needed, "abbreviated")
+    return Display(*_listing(equation, full, width), "listed")
 
 
 def pack(equations: Sequence[Equation], notation: Notation, width: float) -> str:
@@ -63,6 +66,7 @@ def pack(equations: Sequence[Equation], notation: Notation, width: float) -> str
     return lines[0] if len(lines) == 1 else _environment("gathered", _HIGH_ROW.join(lines))
 
 
+@lru_cache(maxsize=256)
 def _rows(matrix: sp.ImmutableMatrix, notation: Notation, *, shorthand: bool) -> Rows:
     return [[latex(e, notation, shorthand=shorthand) for e in row] for row in matrix.tolist()]
 
@@ -93,26 +97,31 @@ def _matrix(rows: Rows) -> str:
     return _environment("pmatrix", text)
 
 
-def _listing(equation: Equation, rows: Rows, width: float) -> str:
-    """One entry after the other, long ones broken at + and −."""
+def _listing(equation: Equation, rows: Rows, width: float) -> tuple[str, float]:
+    """One entry after the other, long ones broken at + and −; with its width."""
     entries = [entry for row in rows for entry in row]
+    head = max(ems(name.latex) for name in equation.entries) + _EQUAL
+    widest = 0.0
     lines: list[str] = []
     for name, entry in zip(equation.entries, entries, strict=True):
-        room = width - ems(name.latex) - _EQUAL - _QUAD
-        first, *others = break_lines(entry, room, ems, _QUAD)
+        first, *others = break_lines(entry, width - head - _QUAD, ems, _QUAD)
         lines.append(f"{name.latex} &= {first.text}")
         lines += ["&" + r"\quad" * (1 + line.depth) + f" {{}}{line.text}" for line in others]
-    return _environment("aligned", _ROW.join(lines))
+        depths = [0, *(1 + line.depth for line in others)]
+        texts = [line.text for line in (first, *others)]
+        widest = max(widest, *(_QUAD * d + ems(t) for d, t in zip(depths, texts, strict=True)))
+    return _environment("aligned", _ROW.join(lines)), head + widest
 
 
-def _chain(equation: Equation, width: float) -> str:
-    """Sides that are equal: on one line, or each on its own."""
+def _chain(equation: Equation, width: float) -> tuple[str, float]:
+    """Sides that are equal: on one line, or each on its own; with the width."""
     sides = [side.latex for side in equation.sides]
     whole = " = ".join(sides)
     if ems(whole) <= width:
-        return whole
+        return whole, ems(whole)
     first, *others = sides
-    return _environment("aligned", f"{first} &= " + f"{_ROW}&= ".join(others))
+    lines = _environment("aligned", f"{first} &= " + f"{_ROW}&= ".join(others))
+    return lines, ems(first) + _EQUAL + max(map(ems, others))
 
 
 def _environment(name: str, inside: str) -> str:

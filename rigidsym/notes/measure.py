@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Sequence
+from functools import lru_cache
 
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\s]")
 _SCRIPT = 0.8  # size of indices and exponents
@@ -46,8 +47,22 @@ _SYMBOLS = {
     "}": 0.0,
 }
 _FUNCTIONS = {r"\sin": 1.24, r"\cos": 1.34, r"\tan": 1.46, r"\cot": 1.34, r"\det": 1.39}
-_FENCES = {r"\left": 0.35, r"\right": 0.35, r"\bigl": 0.1, r"\bigr": 0.1}  # beyond the bracket
-_BARE = {r"\dot": 1.0, r"\ddot": 1.0, r"\mathrm": 1.0, r"\mathit": 0.87, r"\mathsf": 1.05}
+_FENCES = {
+    r"\left": 0.35,
+    r"\right": 0.35,
+    r"\bigl": 0.1,
+    r"\bigr": 0.1,
+    r"\Bigl": 0.25,
+    r"\Bigr": 0.25,
+}  # beyond the bracket
+_BARE = {
+    r"\dot": 1.0,
+    r"\ddot": 1.0,
+    r"\vec": 1.0,
+    r"\mathrm": 1.0,
+    r"\mathit": 0.87,
+    r"\mathsf": 1.05,
+}
 _BOLD = {r"\mathbf": 1.2, r"\boldsymbol": 1.2}
 _CAPITAL = 0.92
 _UNKNOWN = 1.0
@@ -66,6 +81,7 @@ def _character_columns(character: str) -> int:
     return 2 if unicodedata.east_asian_width(character) in "WF" else 1
 
 
+@lru_cache(maxsize=8192)
 def ems(latex: str) -> float:
     """Estimated width of a formula in LaTeX, in ems; rather too wide than too narrow."""
     return _Ruler(_TOKEN.findall(latex)).until("")

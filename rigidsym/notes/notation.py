@@ -12,6 +12,7 @@ from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.errors import AlgebraError
 from rigidsym.mechanics.derivation import Argument, Markup
+from rigidsym.notes.manner import DEFAULT, Manner
 
 Place = tuple[int, int]  # order of the time derivative, index of the component
 
@@ -21,15 +22,17 @@ _ORDERS = {"q": 0, "q_dot": 1, "q_ddot": 2}
 _WORDS = re.compile(r"(\\(?:math|text|operator)\w*\{[^}]*\}|\\[A-Za-z]+)|([A-Za-z]{2,})")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Notation:
     """How symbols are printed, and which of them are coordinates, rates and accelerations.
 
-    A symbol that is in neither table is a constant, printed as SymPy prints its name.
+    A symbol that is in neither table is a constant, printed as SymPy prints its name. A notation
+    equals itself alone, so that what is written in it can be kept for the next printer.
     """
 
     names: Mapping[sp.Expr, Markup] = field(default_factory=dict)
     places: Mapping[sp.Expr, Place] = field(default_factory=dict)
+    manner: Manner = DEFAULT
 
     def name(self, symbol: sp.Expr) -> Markup:
         """The name of a symbol; raises AlgebraError for what is neither known nor a symbol."""
@@ -45,12 +48,13 @@ class Notation:
         return Markup(words_in_italics(sp.latex(sp.Symbol(label))), pretty_symbol(label))
 
 
-def notation_of(arguments: Iterable[Argument]) -> Notation:
-    """The notation of a derivation, from its arguments."""
+def notation_of(arguments: Iterable[Argument], manner: Manner = DEFAULT) -> Notation:
+    """The notation of a derivation, from its arguments, in the manner of the user."""
     arguments = tuple(arguments)
     return Notation(
+        manner=manner,
         names={
-            symbol: markup
+            symbol: (manner.rate if argument.name in _ORDERS else manner.symbol)(markup)
             for argument in arguments
             for symbol, markup in zip(argument.symbols, argument.notation, strict=True)
         },

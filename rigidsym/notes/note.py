@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rigidsym.mechanics.conversions import Conversions
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.compose import compose
+from rigidsym.notes.conversions import with_conversions
 from rigidsym.notes.document import Document
 from rigidsym.notes.latex import print_latex
+from rigidsym.notes.manner import DEFAULT, Manner
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,14 +24,44 @@ class Note:
         """A complete LaTeX file; the same derivation gives the same bytes."""
         return print_latex(self.document)
 
+    def html(self) -> str:
+        """A complete HTML file with MathML, for any screen; it loads nothing."""
+        from rigidsym.notes.html import print_html
+
+        return print_html(self.document)
+
+    def markdown(self) -> str:
+        """Markdown with mathematics between dollar signs, as GitHub and Jupyter read it."""
+        from rigidsym.notes.markdown import print_markdown
+
+        return print_markdown(self.document)
+
+    def notebook(self) -> str:
+        """A Jupyter notebook (.ipynb); raises MissingExtra without nbformat."""
+        from rigidsym.notes.notebook import print_notebook
+
+        return print_notebook(self.document)
+
 
 def note(
-    derivation: Derivation, *, module: str | None = None, functions: Sequence[str] | None = None
+    derivation: Derivation,
+    *,
+    module: str | None = None,
+    functions: Sequence[str] | None = None,
+    manner: Manner = DEFAULT,
+    conversions: Conversions | None = None,
 ) -> Note:
-    """The note of a derivation.
+    """The note of a derivation, and of the conversions where they are given.
 
     `module` is the file name of its kernel module, if there is one; `functions` are the quantities
     that module evaluates, all of them where nothing is said. Each equation names its function.
     """
     names = [step.quantity.name for step in derivation.steps] if functions is None else functions
-    return Note(compose(derivation, module=module, functions=names if module else ()))
+    document = compose(derivation, module=module, functions=names if module else (), manner=manner)
+    if conversions is None:
+        return Note(document)
+    return Note(
+        with_conversions(
+            document, derivation, conversions, has_functions=bool(module), manner=manner
+        )
+    )

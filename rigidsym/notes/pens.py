@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
@@ -10,6 +11,8 @@ from typing import ClassVar, Protocol
 
 from rigidsym.mechanics.derivation import Markup
 
+_BRACES = r"(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*"  # what may stand in braces, up to two deep
+_RATES = re.compile(rf"\\frac\{{d{_BRACES}\}}\{{dt(?:\^\{{2\}})?\}}")
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
@@ -70,11 +73,17 @@ class LatexPen:
         return markup.latex
 
     def bracket(self, inside: str) -> str:
-        return rf"\left({inside}\right)" if r"\frac" in inside else f"({inside})"
+        if r"\frac" not in inside:
+            return f"({inside})"
+        if r"\frac" not in _RATES.sub("", inside):
+            # no line can end between \left and \right
+            return rf"\Bigl({inside}\Bigr)"
+        return rf"\left({inside}\right)"
 
     def power(self, base: str, exponent: str) -> str:
         # a prime is a superscript, and TeX takes one superscript only
-        return rf"{{{base}}}^{{{exponent}}}" if "'" in base else rf"{base}^{{{exponent}}}"
+        is_raised = "'" in base or r"^{\mathrm{B}}" in base
+        return rf"{{{base}}}^{{{exponent}}}" if is_raised else rf"{base}^{{{exponent}}}"
 
     def root(self, inside: Piece) -> Piece:
         return Piece(rf"\sqrt{{{inside.text}}}", Binding.NAME)

@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 from rigidsym.mechanics.claims import fill, rate_of, spin_of
 from rigidsym.mechanics.derivation import Markup, Singularities
 from rigidsym.mechanics.quantities import BODY, COSINES, ROTATION, SPACE
-from rigidsym.models.rotation import lecture
+from rigidsym.models.rotation import Turn, lecture
 from rigidsym.notes.document import Block, Cited, Equation, Paragraph, Text
 from rigidsym.notes.formula import markup
+from rigidsym.notes.layout import Done
 from rigidsym.notes.notation import Notation
 from rigidsym.notes.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION, listed, words
 
@@ -19,6 +20,12 @@ _BODY_VELOCITY = Markup(r"\dot{\mathbf{x}}'", "ẋ′")
 DETERMINANTS = tuple(
     fill(r"\det {0}", "det {0}", frame.matrix) for frame in (SPACE, BODY)
 )  # of the two rate matrices, which are equal
+_SHORTHAND = (
+    Markup(r"s_\alpha", "s_α"),
+    Markup(r"\sin\alpha", "sin α"),
+    Markup(r"c_\alpha", "c_α"),
+    Markup(r"\cos\alpha", "cos α"),
+)
 _VECTOR = Markup(r"\mathbf{u}", "u")
 
 
@@ -32,9 +39,21 @@ def equal(*sides: Markup) -> Markup:
     return Markup(" = ".join(s.latex for s in sides), " = ".join(s.text for s in sides))
 
 
-def turn(axis: str, angle: Markup) -> Markup:
-    """R_z(φ)."""
-    return fill(rf"\mathbf{{{{R}}}}_{axis}({{0}})", f"R_{axis}({{0}})", angle)
+def turn(turn: Turn, notation: Notation) -> Markup:
+    """R_z(φ), or R_[0, 3/5, 4/5](φ)."""
+    angle = markup(turn.angle, notation)
+    axis = axis_of(turn, notation)
+    latex = rf"{{{axis.latex}}}" if turn.components else axis.latex
+    return fill(r"\mathbf{{R}}_{0}({1})", "R_{0}({1})", Markup(latex, axis.text), angle)
+
+
+def axis_of(turn: Turn, notation: Notation) -> Markup:
+    """The axis of a turn: its letter, or its components."""
+    if not turn.components:
+        return Markup(turn.axis, turn.axis)
+    parts = [markup(part, notation) for part in turn.components]
+    latex, text = (", ".join(getattr(part, kind) for part in parts) for kind in ("latex", "text"))
+    return Markup(f"[{latex}]", f"[{text}]")
 
 
 def motion(*, passive: bool) -> Iterator[Block]:
@@ -100,12 +119,31 @@ def _minus(symbol: Markup) -> Markup:
     return fill("-{0}", "−{0}", symbol)
 
 
+def announcement(equation: Equation, done: Done) -> Text:
+    """What a reader has to be told of the way an equation is set, before it; often nothing."""
+    if done == "abbreviated":
+        return words("In short, with {} for {} and {} for {} of any angle,", *_SHORTHAND)
+    if done == "listed":
+        return words("The entries of {} are", equal(*equation.sides))
+    return ()
+
+
 def zeros(singularities: Singularities, notation: Notation) -> Text:
     """Where the determinant vanishes, as far as that was decided."""
     angles = [
         (equal(markup(point.coordinate, notation), markup(point.value, notation)),)
         for point in singularities.points
     ]
+    if angles and singularities.length is not None:
+        zero = equal(markup(singularities.length, notation), Markup("0", "0"))
+        known = "" if singularities.is_solved else "; where else it vanishes was not decided"
+        return (
+            "It vanishes at ",
+            *listed(angles),
+            ", up to whole turns, not at ",
+            zero,
+            f"{known}.",
+        )
     if angles and singularities.is_solved:
         return ("It vanishes at ", *listed(angles), ", up to whole turns, and nowhere else.")
     if angles:

@@ -8,13 +8,14 @@ from typing import Literal
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Derivation, Markup, Proof, Step
+from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Proof, Step
 from rigidsym.mechanics.quantities import ROTATION
 from rigidsym.notes.breaking import break_lines
 from rigidsym.notes.document import Text
 from rigidsym.notes.entries import RESIDUAL, entry_names, indexed
 from rigidsym.notes.formula import markup, text
 from rigidsym.notes.grid import grid
+from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.measure import columns
 from rigidsym.notes.notation import notation_of
 from rigidsym.notes.prose import DETERMINANTS, equal, product, turn, zeros
@@ -32,47 +33,48 @@ def unstyled(words: str, _: str) -> str:
     return words
 
 
-def show(derivation: Derivation, *, width: int = 88, style: Style = unstyled) -> str:
+def show(
+    derivation: Derivation,
+    *,
+    width: int = 88,
+    style: Style = unstyled,
+    manner: Manner = DEFAULT,
+) -> str:
     """The derivation as plain text, at most `width` columns wide where formulas allow.
 
     `style` is given each heading and each aside, and returns it with the codes of the terminal.
     """
-    screen = _Screen(derivation, width, style)
+    screen = _Screen(derivation, width, style, manner)
     return "\n".join(screen.lines())
 
 
-class _Screen:
-    """The lines of one derivation."""
+def show_step(
+    step: Step, arguments: Sequence[Argument], *, width: int = 88, manner: Manner = DEFAULT
+) -> str:
+    """One step of a derivation as plain text."""
+    return "\n".join(_Steps(arguments, width, unstyled, manner).step(step))
 
-    def __init__(self, derivation: Derivation, width: int, style: Style) -> None:
-        self.derivation = derivation
+
+class _Steps:
+    """The lines of single steps."""
+
+    def __init__(
+        self, arguments: Sequence[Argument], width: int, style: Style, manner: Manner
+    ) -> None:
+        self.arguments = arguments
         self.width = width
         self.style = style
-        self.notation = notation_of(derivation.arguments)
+        self.notation = notation_of(arguments, manner)
+        self.written = manner.text  # formulas that were composed elsewhere
 
-    def lines(self) -> Iterator[str]:
-        yield self.style(self.derivation.title, "heading")
-        yield ""
-        yield from self._convention()
-        for step in self.derivation.steps:
-            yield ""
-            yield from self._headline(step)
-            yield from self._value(step)
-        yield from self._singularities()
-        yield from self._proofs()
-
-    def _convention(self) -> Iterator[str]:
-        for sentence in convention(self.derivation):
-            yield from self._wrapped(sentence)
-        turns = self.derivation.model.turns
-        if turns:
-            factors = [turn(t.axis, markup(t.angle, self.notation)) for t in turns]
-            yield _INDENT + equal(ROTATION, product(factors)).text
+    def step(self, step: Step) -> Iterator[str]:
+        yield from self._headline(step)
+        yield from self._value(step)
 
     def _headline(self, step: Step) -> Iterator[str]:
         """(5) angular velocity, body components           angular_velocity_body, rad/s"""
         quantity = step.quantity
-        left = f"({step.number}) {quantity.about}"
+        left = f"({step.number}) {self.written(quantity.about)}"
         unit = f", {unit_in_words(quantity.unit)}" if quantity.unit else ""
         right = quantity.name + unit
         room = self.width - columns(left)
@@ -83,11 +85,12 @@ class _Screen:
             yield self.style(left, "heading") + self.style(right.rjust(room), "dim")
 
     def _value(self, step: Step) -> Iterator[str]:
-        names = entry_names(step, self.derivation)
-        yield from self._matrix(_prefixes(step), step.expression, names)
+        names = entry_names(step, self.arguments)
+        prefixes = [self.written(prefix) for prefix in _prefixes(step)]
+        yield from self._matrix(prefixes, step.expression, names)
         for proof in step.proofs:
             if not proof.is_exact:
-                yield f"{_INDENT}✗ unproved: {proof.claim.text}"
+                yield f"{_INDENT}✗ unproved: {self.written(proof.claim.text)}"
 
     def _matrix(
         self, prefixes: Sequence[str], matrix: sp.ImmutableMatrix, names: Sequence[Markup]
@@ -103,13 +106,39 @@ class _Screen:
         """A line an entry; long ones are broken, and hang below their equals sign."""
         lines: list[str] = []
         for name, entry in zip(names, entries, strict=True):
-            head = f"{_INDENT}{name.text} = "
+            head = f"{_INDENT}{self.written(name.text)} = "
             room = self.width - columns(head)
             first, *others = break_lines(entry, room, columns, len(_INDENT))
             hang = " " * columns(head)
             lines.append(head + first.text)
             lines += [hang + _INDENT * line.depth + line.text for line in others]
         return lines
+
+
+class _Screen(_Steps):
+    """The lines of one derivation."""
+
+    def __init__(self, derivation: Derivation, width: int, style: Style, manner: Manner) -> None:
+        super().__init__(derivation.arguments, width, style, manner)
+        self.derivation = derivation
+
+    def lines(self) -> Iterator[str]:
+        yield self.style(self.derivation.title, "heading")
+        yield ""
+        yield from self._convention()
+        for step in self.derivation.steps:
+            yield ""
+            yield from self.step(step)
+        yield from self._singularities()
+        yield from self._proofs()
+
+    def _convention(self) -> Iterator[str]:
+        for sentence in convention(self.derivation, self.notation.manner):
+            yield from self._wrapped(sentence)
+        turns = self.derivation.model.turns
+        if turns:
+            factors = [turn(t, self.notation) for t in turns]
+            yield _INDENT + equal(ROTATION, product(factors)).text
 
     def _singularities(self) -> Iterator[str]:
         found = self.derivation.singularities
@@ -118,7 +147,7 @@ class _Screen:
         yield ""
         yield self.style("Where the rates fail", "heading")
         value = markup(found.determinant, self.notation)
-        yield _INDENT + equal(*DETERMINANTS, value).text
+        yield _INDENT + self.written(equal(*DETERMINANTS, value).text)
         yield from self._wrapped(zeros(found, self.notation))
         for point in found.points:
             yield from self._wrapped(singular(point, self.derivation))
@@ -132,7 +161,7 @@ class _Screen:
 
     def _proof(self, number: int, proof: Proof) -> Iterator[str]:
         mark, status = ("✓", "exact") if proof.is_exact else ("✗", "unproved")
-        yield f"{_INDENT}{mark} {f'({number})':<5}{status:<10}{proof.claim.text}"
+        yield f"{_INDENT}{mark} {f'({number})':<5}{status:<10}{self.written(proof.claim.text)}"
         if proof.residual is not None:
             yield f"{_DEEPER}left over:"
             names = indexed(RESIDUAL, proof.residual.shape)
@@ -141,7 +170,7 @@ class _Screen:
     def _wrapped(self, sentence: Text) -> list[str]:
         whole = (_unbroken(span) if isinstance(span, Markup) else span for span in sentence)
         lines = textwrap.wrap(
-            plain(tuple(whole)),
+            self.written(plain(tuple(whole))),
             self.width,
             initial_indent=_INDENT,
             subsequent_indent=_DEEPER,

@@ -14,6 +14,7 @@ from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.document import Cited, Code, EquationReference, Span, Strong, Text
 from rigidsym.notes.formula import markup
+from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.notation import Notation, notation_of
 
 POSITION = Markup(r"\mathbf{x}", "x")
@@ -77,7 +78,7 @@ def with_symbols(sentence: str, symbols: Mapping[str, Markup]) -> Text:
     return tuple(symbols.get(part, part) for part in parts if part)
 
 
-def convention(derivation: Derivation) -> tuple[Text, ...]:
+def convention(derivation: Derivation, manner: Manner = DEFAULT) -> tuple[Text, ...]:
     """The convention, a sentence or two an entry: turns, direction of the rotation, frames."""
     symbols = symbols_of(derivation)
     return (
@@ -89,7 +90,7 @@ def convention(derivation: Derivation) -> tuple[Text, ...]:
             SPACE.omega,
             BODY.omega,
         ),
-        _coordinates(derivation.argument("q")),
+        _coordinates(derivation.argument("q"), has_dots=manner.rates == "dot"),
     )
 
 
@@ -108,12 +109,13 @@ def _direction(*, passive: bool) -> Text:
     )
 
 
-def _coordinates(argument: Argument) -> Text:
+def _coordinates(argument: Argument, *, has_dots: bool) -> Text:
     names = listed([(name,) for name in argument.notation], ", ")
     units = sorted(set(argument.units))
     measured = f", in {unit_in_words(units[0])}" if len(units) == 1 and units[0] else ""
     head = words("The coordinates are {} = (", COORDINATES)
-    return (*head, *names, f"){measured}; a dot is the derivative with respect to time.")
+    dots = "; a dot is the derivative with respect to time" if has_dots else ""
+    return (*head, *names, f"){measured}{dots}.")
 
 
 def unit_in_words(unit: str) -> str:
@@ -162,6 +164,8 @@ def determined(idle: sp.ImmutableMatrix, coordinates: Sequence[sp.Expr]) -> sp.E
 
 
 def _lost(point: Singularity, notation: Notation) -> Text:
+    if point.reached is not None:
+        return (", and rates turn the body about ", *vector(point.reached, notation), " alone")
     if point.lost_space is None or point.lost_body is None:
         return ()
     return (

@@ -13,6 +13,7 @@ from types import MappingProxyType, ModuleType
 from typing import Protocol, cast
 
 from rigidsym.errors import KernelError
+from rigidsym.kernels.conversions import ConversionProgram
 from rigidsym.kernels.ir import Program
 
 
@@ -34,7 +35,7 @@ class Printer(Protocol):
 
     RESERVED: frozenset[str]
 
-    def render(self, program: Program) -> str: ...
+    def render(self, program: Program, conversions: ConversionProgram | None = None) -> str: ...
 
     def load(self, name: str, source: str) -> ModuleType: ...
 

@@ -3,52 +3,63 @@
 from __future__ import annotations
 
 import keyword
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from types import ModuleType
 
 from rigidsym import __version__, resources
+from rigidsym.kernels.conversions import ConversionProgram
 from rigidsym.kernels.infix import infix
-from rigidsym.kernels.ir import FUNCTIONS, Argument, Call, Kernel, Program
+from rigidsym.kernels.ir import FUNCTIONS, Argument, Call, Guarded, Kernel, Program
 from rigidsym.kernels.layout import WIDTH, assignment_lines, bracketed, docstring, exploded
 from rigidsym.kernels.narrow import narrowed
+from rigidsym.kernels.targets import numpy_singular as singular
+from rigidsym.kernels.targets.numpy_conversions import Additions, additions
+from rigidsym.kernels.targets.numpy_function import Function
 
 TEMPLATE = "kernels_numpy.py.jinja"
 RESERVED = frozenset(
-    {*keyword.kwlist, *FUNCTIONS, "np", "ValueError", "ZeroDivisionError", "l", "O", "I"}
+    {*keyword.kwlist, *FUNCTIONS, "np", "tan", "ValueError", "ZeroDivisionError", "l", "O", "I"}
 )  # the last three are names that linters refuse
 
 _MATH: Mapping[str, str] = {name: name for name in FUNCTIONS}
 _show = partial(infix, functions=_MATH)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Function:
-    """The pieces of text that stand for one kernel in the template."""
-
-    signature: str
-    about: str
-    body: str
-    scalar_signature: str
-    scalar_about: str
-    scalar_body: str
-    exceptional: str
-    block_signature: str
-    block_body: str
-
-
-def render(program: Program) -> str:
-    """The text of the module."""
-    kernels = [_fitted(kernel) for kernel in program.kernels]
+def render(program: Program, conversions: ConversionProgram | None = None) -> str:
+    """The text of the module, with the conversions where they are asked for."""
+    added = _additions(program, conversions)
+    converting = conversions.kernels if conversions else ()
+    kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
     template = resources.environment().get_template(TEMPLATE)
     return template.render(
-        about=docstring(_about(program)),
-        imports=", ".join(sorted({"sin", "cos", *_functions(kernels)})),
-        exports=_lines(f'"{name}",' for name in sorted(_exports(kernels))),
-        components=_lines(map(_entry, program.arguments)),
-        functions=[_function(kernel) for kernel in kernels],
+        about=docstring([*_about(program), *added.remarks]),
+        imports=_import(singular.imports(kernels) | added.imports),
+        exports=_lines(f'"{name}",' for name in sorted((*_exports(kernels), *added.exports))),
+        components=_lines((*map(_entry, _arguments(program, conversions)), *added.components)),
+        functions=[*map(_function, kernels), *added.functions],
+        helpers="".join(
+            f"\n\n{text}" for text in (*singular.helpers(kernels), added.helpers) if text
+        ),
     )
+
+
+def _import(names: set[str]) -> str:
+    """The line for `math`, where anything of it is needed."""
+    return f"from math import {', '.join(sorted(names))}\n\n" if names else ""
+
+
+def _arguments(program: Program, conversions: ConversionProgram | None) -> list[Argument]:
+    """All arguments that the functions of the module take, each once."""
+    more = conversions.arguments if conversions else ()
+    return list({a.name: a for a in (*program.arguments, *more)}.values())
+
+
+def _additions(program: Program, conversions: ConversionProgram | None) -> Additions:
+    coordinates = [argument for argument in program.arguments if argument.name == "q"]
+    if conversions is None or not coordinates:
+        return Additions()
+    return additions(conversions, f"({len(coordinates[0].components)},)")
 
 
 def load(name: str, source: str) -> ModuleType:
@@ -79,8 +90,7 @@ def _fitted(kernel: Kernel) -> Kernel:
 
 
 def _functions(kernels: Sequence[Kernel]) -> set[str]:
-    values = (assignment.value for kernel in kernels for assignment in kernel.assignments)
-    return {value.function for value in values if isinstance(value, Call)}
+    return {call.function for kernel in kernels for call in singular.calls_of(kernel).values()}
 
 
 def _exports(kernels: Sequence[Kernel]) -> Iterator[str]:
@@ -97,7 +107,7 @@ def _entry(argument: Argument) -> str:
     return exploded(4, f'"{argument.name}": (', names, "),").lstrip()
 
 
-def _lines(items: Iterator[str]) -> str:
+def _lines(items: Iterable[str]) -> str:
     return "\n".join(f"    {item}" for item in items)
 
 
@@ -123,15 +133,20 @@ def _function(kernel: Kernel) -> Function:
 
 
 def _nesting(kernel: Kernel) -> str:
-    return "a tuple" if len(kernel.shape) == 1 else "a tuple of rows"
+    return ("a float", "a tuple", "a tuple of rows")[len(kernel.shape)]
 
 
 def _scalar_lines(kernel: Kernel) -> Iterator[str]:
-    for assignment in kernel.assignments:
-        if isinstance(assignment.value, Call):
-            yield _call_line(8, assignment.name, assignment.value.function, assignment.value)
-        else:
-            yield assignment_lines(8, assignment.name, _show(assignment.value))
+    for name, value in singular.grouped(kernel):
+        match value:
+            case Call(function):
+                yield _call_line(8, name, function, value)
+            case Guarded():
+                yield singular.guard_line(8, name, value, "_or_nan_scalar")
+            case dict():
+                yield singular.entire_line(8, value, "_entire_scalar")
+            case _:
+                yield assignment_lines(8, name, _show(value))
 
 
 def _call_line(indent: int, names: str, function: str, call: Call) -> str:
@@ -141,31 +156,33 @@ def _call_line(indent: int, names: str, function: str, call: Call) -> str:
 def _block_lines(kernel: Kernel) -> Iterator[str]:
     """The assignments on arrays, the sine and the cosine of one angle in one call."""
     pairs = _pairs(kernel)
-    for assignment in kernel.assignments:
-        name, call = assignment.name, assignment.value
-        if not isinstance(call, Call):
-            yield assignment_lines(4, name, _show(call))
-        elif name in pairs:
-            yield _call_line(4, f"{name}, {pairs[name]}", "_sin_cos", call)
-        elif name not in pairs.values():
-            yield _call_line(4, name, _array_function(kernel, name, call), call)
+    for name, value in singular.grouped(kernel):
+        match value:
+            case Guarded():
+                yield singular.guard_line(4, name, value, "_or_nan")
+            case dict():
+                yield singular.entire_line(4, value, "_entire")
+            case Call() if name in pairs:
+                yield _call_line(4, f"{name}, {pairs[name]}", "_sin_cos", value)
+            case Call("sqrt" | "abs" as function):
+                yield _call_line(4, name, f"np.{function}", value)
+            case Call(function, argument):
+                if name not in pairs.values():  # no cosine that came with its sine
+                    yield _call_line(4, name, f"_{function}", value)
+                if function == "cos" and name in kernel.delicate:
+                    yield bracketed(4, f"{name} = _sharp(", [name, argument.text], ")")
+            case _:
+                yield assignment_lines(4, name, _show(value))
 
 
 def _pairs(kernel: Kernel) -> dict[str, str]:
-    """sine: cosine of the angles of which both are needed, and no cosine divides."""
-    calls = {a.value: a.name for a in kernel.assignments if isinstance(a.value, Call)}
+    """sine: cosine of the angles of which both are needed."""
+    calls = {call: name for name, call in singular.calls_of(kernel).items()}
     return {
         name: cosine
         for call, name in calls.items()
-        if call.function == "sin"
-        and (cosine := calls.get(Call("cos", call.argument))) is not None
-        and cosine not in kernel.delicate
+        if call.function == "sin" and (cosine := calls.get(Call("cos", call.argument))) is not None
     }
-
-
-def _array_function(kernel: Kernel, name: str, call: Call) -> str:
-    exact = call.function == "sqrt" or (call.function == "cos" and name in kernel.delicate)
-    return f"np.{call.function}" if exact else f"_{call.function}"
 
 
 def _outputs(kernel: Kernel) -> list[str]:
@@ -174,6 +191,8 @@ def _outputs(kernel: Kernel) -> list[str]:
 
 def _scalar_return(kernel: Kernel) -> str:
     outputs = _outputs(kernel)
+    if not kernel.shape:
+        return f"        return {outputs[0]}"
     if len(kernel.shape) == 1:
         return _tuple(8, "return ", outputs)
     columns = kernel.shape[1]
@@ -210,9 +229,8 @@ def _about(program: Program) -> list[str | Sequence[str]]:
         "result is float32 where every argument is, else float64. A given `out` of the "
         "result's shape and dtype is filled and returned; it may overlap the arguments. Each "
         "function has a twin, `..._scalar`, for one orientation in plain floats.",
-        "NaN stays NaN, and so does the sine of infinity. Where a function divides by zero it "
-        "gives inf or NaN without a warning. Angles such as pi/2 are not exact floats: there "
-        "a function with a pole gives numbers of the order of 1e16.",
+        "NaN stays NaN, and so does the sine of infinity; nothing warns.",
+        *singular.remarks(program.kernels),
         f"Generated by rigidsym {__version__}; do not edit. The equations are those of the note "
         "of the same name.",
     ]
@@ -226,22 +244,23 @@ def _about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
         (a.name, f"(..., {len(a.components)})", f"{', '.join(a.components)} in {_unit(a.units)}")
         for a in kernel.arguments
     ]
-    shape = ", ".join(map(str, kernel.shape))
-    returned = ("returns", f"(..., {shape})", f"in {kernel.unit}" if kernel.unit else "")
+    shape = ", ".join(["...", *map(str, kernel.shape)])
+    returned = ("returns", f"({shape})", f"in {kernel.unit}" if kernel.unit else "")
     return [
         f"{kernel.symbol}{definition}: {kernel.about}.",
         _table([*rows, returned]),
-        f"Equation ({kernel.equation}) of the note; {kernel.operations}.",
-        *_poles(kernel),
+        f"{_place(kernel)}{kernel.operations}.",
+        *singular.poles(kernel),
         "Raises TypeError for a dtype and ValueError for a shape that it cannot take.",
     ]
 
 
-def _poles(kernel: Kernel) -> list[str]:
-    if not kernel.divisors:
-        return []
-    divisors = ", ".join(map(_show, kernel.divisors))
-    return [f"Divides by {divisors}: near its zeros the result grows and loses digits."]
+def _place(kernel: Kernel) -> str:
+    return f"Equation ({kernel.equation}) of the note; " if kernel.equation else ""
+
+
+def _equation(kernel: Kernel) -> str:
+    return "" if kernel.equation is None else f"Equation ({kernel.equation}) of the note; "
 
 
 def _unit(units: Sequence[str]) -> str:

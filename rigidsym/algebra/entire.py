@@ -1,0 +1,217 @@
+"""Quotients with removable singularities at n = 0, n = √(v·v), written without them.
+
+What has sin n, cos n and 1/n in it, and yet no singularity at n = 0, is a polynomial in the entire
+functions c_k(n) of `series.py` and in the other generators; the form found is put back into the
+ring, and must be equal there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+from sympy.polys.rings import PolyElement
+
+from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.present import presenter_for
+from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.series import closed_form, taylor
+from rigidsym.errors import AlgebraError
+
+_HIGHEST = 8  # c_8: the highest that is tried
+_POWERS = 6  # of 1/n that are looked for below a fraction bar
+
+Orders = tuple[int, ...]  # of the functions c_k in one product, in order
+Parts = dict[tuple[Orders, int], PolyElement]  # (functions, power of 1/n²): what stands before
+
+
+class Entire(sp.Function):
+    """c_k of n², unevaluated: Entire(k, n²)."""
+
+    nargs = 2
+
+
+def at_zero(form: sp.Expr) -> sp.Expr:
+    """A form in `Entire` where the functions of time, and so n, are zero."""
+    flat = form.replace(Entire, lambda order, _: sp.Rational(*_start(int(order))))
+    return flat.xreplace(dict.fromkeys(flat.atoms(AppliedUndef), sp.S.Zero))
+
+
+def _start(order: int) -> tuple[int, int]:
+    first = taylor(order)[0]
+    return first.numerator, first.denominator
+
+
+@dataclass(frozen=True, slots=True)
+class _Norm:
+    """The places of n, its powers, sin rn and cos rn among the generators of a ring."""
+
+    expression: sp.Expr  # n
+    ratio: sp.Rational  # r
+    sine: int
+    cosine: int
+    powers: Mapping[int, int]  # place: power of n that stands there
+
+
+def rewriter_of(
+    expressions: Sequence[sp.Expr], constraints: Sequence[sp.Expr] = ()
+) -> Rewriter | None:
+    """The rewriter for expressions in which there is one norm; None where there is not one."""
+    angles = [f.args[0] for e in expressions for f in e.atoms(sp.sin, sp.cos)]
+    if not any(_is_root(angle.as_coeff_Mul()[1]) for angle in angles):
+        return None
+    return rewriter_for(codec_for(expressions, constraints=constraints, order=2))
+
+
+def _is_root(expression: sp.Expr) -> bool:
+    return bool(expression.is_Pow and expression.exp == sp.Rational(1, 2))
+
+
+@lru_cache(maxsize=32)
+def rewriter_for(codec: Codec) -> Rewriter | None:
+    """The rewriter of a ring with sines, cosines and the inverse of one norm; else None."""
+    found = list(_norms(codec))
+    return Rewriter(codec, found[0]) if len(found) == 1 else None
+
+
+def _norms(codec: Codec) -> Iterator[_Norm]:
+    """The roots n with 1/n, sin rn and cos rn in the ring."""
+    index = codec.ring.index
+    for sine, cosine in codec.angle_pairs:
+        ratio, root = codec.ring.generators[sine].expression.args[0].as_coeff_Mul()
+        if _is_root(root) and 1 / root in index:
+            powers = {index[root**k]: k for k in (1, -1, -2) if root**k in index}
+            yield _Norm(root, ratio, sine, cosine, powers)
+
+
+class Rewriter:
+    """The way from one ring to polynomials in the functions c_k; remembers what it has found."""
+
+    def __init__(self, codec: Codec, norm: _Norm) -> None:
+        self.codec = codec
+        self._norm = norm
+        angle = norm.ratio * norm.expression
+        self._functions = [Entire(k, angle**2) for k in range(_HIGHEST + 1)]
+        self._closed = {f: closed_form(k, angle) for k, f in enumerate(self._functions)}
+        self._symbols = [sp.Dummy(f"c{k}") for k in range(_HIGHEST + 1)]
+        special = {norm.sine, norm.cosine, *norm.powers}
+        others = [g.expression for k, g in enumerate(codec.ring.generators) if k not in special]
+        self._plain = codec_for([*self._symbols, *others, sp.Rational(1, 2)], order=0)
+        self._wholes: dict[PolyElement, sp.Expr | None] = {}
+
+    def rewritten(self, expression: sp.Expr) -> sp.Expr | None:
+        """The expression in terms of `Entire`, proved equal; None where a singularity stays.
+
+        What stands below a fraction bar may still vanish, but not at n = 0 for all v.
+        """
+        value = self.codec.encode_quotient(expression)
+        for power in range(_POWERS, -_POWERS - 1, -1):
+            below = self._whole(self._times(value.denominator, power))
+            if below is not None:
+                above = self._whole(self._times(value.numerator, power))
+                if above is not None:
+                    return self._proved(self._over(above, below), value)
+        return None
+
+    def _over(self, above: sp.Expr, below: sp.Expr) -> sp.Expr:
+        """The shorter of the equal quotients, with the functions in their places."""
+        numerator, denominator = map(self._plain.encode, (above, below))
+        presenter = presenter_for(self._plain)
+        shown = presenter.quotient(Quotient(self._plain.ring, numerator, denominator))
+        return shown.xreplace(dict(zip(self._symbols, self._functions, strict=True)))
+
+    def _proved(self, found: sp.Expr, value: Quotient) -> sp.Expr:
+        if not self.codec.encode_quotient(found.xreplace(self._closed)).equals(value):
+            raise AlgebraError(f"the form {found} differs from its normal form")
+        return found
+
+    def _times(self, element: PolyElement, power: int) -> PolyElement:
+        """The element over n to a power."""
+        return self.codec.ring.reduce(element * self._n(-power))
+
+    def _whole(self, element: PolyElement) -> sp.Expr | None:
+        """An element of the ring as a polynomial in the functions, by their symbols."""
+        if element not in self._wholes:
+            self._wholes[element] = self._find_whole(element)
+        return self._wholes[element]
+
+    def _find_whole(self, element: PolyElement) -> sp.Expr | None:
+        parts = self._parts(element)
+        if parts is None:
+            return None
+        ring = self.codec.ring
+        rest, terms = ring.zero, []
+        for (orders, power), before in _lowered(parts, self._number(2)).items():
+            if orders and power <= 0:
+                terms.append((orders, ring.reduce(before * self._n(-2 * power))))
+            else:
+                rest += before * self._n(-2 * power)
+        terms.append(((), ring.reduce(rest)))
+        if any(self._is_singular(before) for _, before in terms):
+            return None
+        return sp.Add(
+            *(
+                self.codec.decode(before) * sp.Mul(*(self._symbols[k] for k in orders))
+                for orders, before in terms
+            )
+        )
+
+    def _n(self, power: int) -> PolyElement:
+        """n to a power."""
+        ring = self.codec.ring
+        norm = self._norm.expression
+        return ring.generator(ring.index[norm if power > 0 else 1 / norm]) ** abs(power)
+
+    def _number(self, power: int) -> Any:
+        """The ratio r to a power, as a coefficient."""
+        ratio = self._norm.ratio**power
+        return self.codec.ring.polynomials.domain(int(ratio.p), int(ratio.q))
+
+    def _is_singular(self, element: PolyElement) -> bool:
+        return any(monomial[place] for monomial in element for place in self._norm.powers)
+
+    def _parts(self, element: PolyElement) -> Parts | None:
+        """Split by powers of cos rn = c₀, sin rn = rn c₁, 1/n²; None for an odd power of n."""
+        norm, parts = self._norm, dict[tuple[Orders, int], PolyElement]()
+        for monomial, coefficient in element.items():
+            sines, cosines = monomial[norm.sine], monomial[norm.cosine]
+            power = -sines - sum(monomial[place] * k for place, k in norm.powers.items())
+            if power % 2:
+                return None
+            rest = list(monomial)
+            for place in (norm.sine, norm.cosine, *norm.powers):
+                rest[place] = 0
+            key = (0,) * cosines + (1,) * sines, power // 2
+            before = parts.get(key, self.codec.ring.zero)
+            term = coefficient * self._number(sines)
+            parts[key] = before + element.ring.term_new(tuple(rest), term)
+        return parts
+
+
+def _lowered(parts: Mapping[tuple[Orders, int], PolyElement], square: Any) -> Parts:
+    """No 1/n² beside a function: c_k/n² = c_k(0)/n² − r² c_{k+2}; `square` is r²."""
+    waiting, done = dict(parts), dict[tuple[Orders, int], PolyElement]()
+    while waiting:
+        (orders, power), before = waiting.popitem()
+        if power <= 0 or not orders or orders[0] + 2 > _HIGHEST:
+            _gather(done, (orders, power), before)
+            continue
+        first, *others = orders
+        start = taylor(first)[0]
+        _gather(waiting, (tuple(others), power), before * _coefficient(before, start))
+        raised = tuple(sorted((*others, first + 2)))
+        _gather(waiting, (raised, power - 1), -before * square)
+    return done
+
+
+def _gather(parts: Parts, key: tuple[Orders, int], before: PolyElement) -> None:
+    parts[key] = parts[key] + before if key in parts else before
+
+
+def _coefficient(element: PolyElement, value: Fraction) -> Any:
+    return element.ring.domain(value.numerator, value.denominator)

@@ -1,0 +1,323 @@
+"""Where samples come from: arrays in memory or on disk, and text files read piece by piece."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rigidsym.detective.columns import by_name, by_width
+from rigidsym.detective.readings import ANGLE_NAMES
+from rigidsym.detective.samples import Block, SampleError
+from rigidsym.detective.turns import Array
+
+BLOCK = 16384  # rows that are in memory at once
+SPREAD = 64  # rows that are looked at first
+_SHAPES = {
+    "angles": ((3,),),
+    "matrix": ((3, 3), (9,)),
+    "quaternion": ((4,),),
+    "rates": ((3,),),
+    "omega": ((3,),),
+}
+_SEPARATORS = (",", ";", "\t", None)  # None: blanks
+
+
+class Source(Protocol):
+    """Rows that can be read from the beginning more than once."""
+
+    names: tuple[str, ...]  # of the angles
+    layouts: tuple[bool | None, ...]  # whether the scalar stands last; None: a matrix
+    coarseness: float  # of the numbers, beyond what their digits say: single precision
+
+    def blocks(self) -> Iterator[Block]:
+        """All rows."""
+
+    def spread(self) -> Block:
+        """A few rows from all over the data."""
+
+    def place(self, row: int) -> str:
+        """What a row is called in messages."""
+
+
+def layouts_of(*, is_matrix: bool, scalar_first: bool = False) -> tuple[bool | None, ...]:
+    if is_matrix:
+        return (None,)
+    return (False,) if scalar_first else (False, True)
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """Some columns of an array whose rows are samples; nothing is copied but the rows asked for."""
+
+    array: NDArray[Any]
+    columns: tuple[int, ...] | None = None  # None: all
+
+    def rows(self, which: slice | NDArray[np.intp]) -> Array:
+        rows = self.array[which]
+        rows = rows.reshape(len(rows), -1)
+        return np.asarray(rows if self.columns is None else rows[:, list(self.columns)], float)
+
+
+class ArraySource:
+    """Arrays with one sample a row, such as a memory map."""
+
+    def __init__(
+        self,
+        parts: dict[str, _Part],
+        *,
+        names: tuple[str, ...] = ANGLE_NAMES,
+        scalar_first: bool = False,
+    ) -> None:
+        self.names = names
+        self.layouts = layouts_of(is_matrix="matrix" in parts, scalar_first=scalar_first)
+        self.coarseness = max(_coarseness(part.array.dtype) for part in parts.values())
+        self._attitude = parts["matrix"] if "matrix" in parts else parts["quaternion"]
+        self._parts = parts
+        self._count = len(self._attitude.array)
+
+    def place(self, row: int) -> str:
+        return f"sample {row + 1}"
+
+    def blocks(self) -> Iterator[Block]:
+        for start in range(0, self._count, BLOCK):
+            end = min(start + BLOCK, self._count)
+            yield self._block(slice(start, end), np.arange(start, end))
+
+    def spread(self) -> Block:
+        rows = np.unique(np.linspace(0, self._count - 1, SPREAD).round().astype(np.intp))
+        return self._block(rows, rows)
+
+    def _block(self, which: slice | NDArray[np.intp], rows: NDArray[np.intp]) -> Block:
+        has_velocity = "omega" in self._parts
+        return Block(
+            rows=rows,
+            angles=self._parts["angles"].rows(which),
+            attitude=self._attitude.rows(which),
+            rates=self._parts["rates"].rows(which) if has_velocity else None,
+            omega=self._parts["omega"].rows(which) if has_velocity else None,
+            done=(int(rows[-1]) + 1) / self._count,
+        )
+
+
+def _coarseness(dtype: np.dtype[Any]) -> float:
+    """What computing in a precision below double leaves uncertain."""
+    if dtype.kind == "f" and dtype.itemsize < 8:
+        return 64 * float(np.finfo(dtype).eps)
+    return 0.0
+
+
+def from_arrays(
+    given: Mapping[str, ArrayLike | None], names: Sequence[str] = ANGLE_NAMES
+) -> Source:
+    """Samples from Python; raises SampleError for shapes that do not belong together."""
+    arrays: dict[str, NDArray[Any]] = {}
+    faults: list[str] = []
+    for name, value in given.items():
+        if value is not None:
+            array, fault = _shaped(name, value)
+            arrays[name] = array
+            faults += fault
+    faults += parts_missing(set(arrays))
+    counts = {name: len(array) for name, array in arrays.items()}
+    if not faults and len(set(counts.values())) > 1:
+        said = ", ".join(f"{count} of {name}" for name, count in counts.items())
+        faults.append(f"every part needs one row a sample, got {said}")
+    if len(names) != 3 or len(set(names)) != 3:
+        faults.append(f"expected three different names of angles, got {', '.join(names)}")
+    if not faults and not min(counts.values()):
+        faults.append("no samples")
+    if faults:
+        raise SampleError(faults)
+    return ArraySource({name: _Part(a) for name, a in arrays.items()}, names=tuple(names))
+
+
+def _shaped(name: str, value: ArrayLike) -> tuple[NDArray[Any], list[str]]:
+    """The array with samples on the first axis."""
+    try:
+        array = np.asanyarray(value)
+    except ValueError as error:  # rows of different lengths
+        return np.empty(0), [f"{name}: not an array of numbers ({error})"]
+    if array.dtype.kind not in "fiub":
+        return array, [f"{name}: expected real numbers, got {array.dtype}"]
+    shapes = _SHAPES[name]
+    if array.shape in shapes:
+        return array[None], []
+    if array.shape[1:] in shapes:
+        return array, []
+    expected = " or ".join(str(("n", *shape)).replace("'", "") for shape in shapes)
+    return array, [f"{name}: expected the shape {expected}, got {array.shape}"]
+
+
+def parts_missing(parts: Set[str]) -> list[str]:
+    """What is wrong with this choice of parts."""
+    faults = [] if "angles" in parts else ["angles are missing"]
+    if not parts & {"matrix", "quaternion"}:
+        faults.append("a matrix or a quaternion is missing")
+    if {"matrix", "quaternion"} <= parts:
+        faults.append("give a matrix or a quaternion, not both")
+    if len(parts & {"rates", "omega"}) == 1:
+        faults.append("rates and omega belong together; one of them is missing")
+    return faults
+
+
+def from_file(path: Path, columns: Sequence[str] | None = None) -> Source:
+    """Samples from an NPY file (memory-mapped) or a text file.
+
+    `columns` names the columns, with `-` for one to leave out. Raises SampleError for what is
+    not one of these, and for columns that are missing.
+    """
+    if path.suffix.lower() != ".npy":
+        return TextSource(path, columns)
+    try:
+        array = np.load(path, mmap_mode="r", allow_pickle=False)
+    except (ValueError, EOFError) as error:
+        raise SampleError([f"{path}: not an NPY file of numbers ({error})"]) from error
+    return _from_npy(path, array, columns)
+
+
+def _from_npy(path: Path, array: NDArray[Any], names: Sequence[str] | None) -> Source:
+    if array.ndim != 2 or array.dtype.kind not in "fiub" or not len(array):
+        raise SampleError(
+            [f"{path}: expected numbers, one sample a row, got {array.dtype} {array.shape}"]
+        )
+    if names and len(names) != array.shape[1]:
+        raise SampleError([f"{path}: {array.shape[1]} columns, but {len(names)} names"])
+    found = by_name(names) if names else by_width(array.shape[1])
+    attitude = "matrix" if len(found.attitude) == 9 else "quaternion"
+    parts = {"angles": _Part(array, found.angles), attitude: _Part(array, found.attitude)}
+    if found.rates:
+        parts |= {"rates": _Part(array, found.rates), "omega": _Part(array, found.omega)}
+    return ArraySource(parts, names=found.names, scalar_first=found.scalar_first)
+
+
+class TextSource:
+    """A text file with one sample a line, between commas, semicolons, tabs or blanks.
+
+    The first line names the columns, unless the user does or it holds numbers. Empty lines are
+    left out.
+    """
+
+    def __init__(self, path: Path, names: Sequence[str] | None = None) -> None:
+        self.path = path
+        self.coarseness = 0.0
+        self._size = path.stat().st_size
+        with path.open("rb") as file:
+            first = next((line for line in map(_text, file) if line), "")
+        if not first:
+            raise SampleError([f"{path}: no samples"])
+        self._separator = next(s for s in _SEPARATORS if s is None or s in first)
+        fields = first.removeprefix("#").split(self._separator)
+        self._has_header = not all(_is_number(field) for field in fields)
+        if names and len(names) != len(fields):
+            raise SampleError([f"{path}: {len(fields)} columns, but {len(names)} names"])
+        if names or self._has_header:
+            self._columns = by_name(names or fields)
+        else:
+            self._columns = by_width(len(fields))
+        self.names = self._columns.names
+        is_matrix = len(self._columns.attitude) == 9
+        self.layouts = layouts_of(is_matrix=is_matrix, scalar_first=self._columns.scalar_first)
+
+    def place(self, row: int) -> str:
+        return f"line {row}"
+
+    def blocks(self) -> Iterator[Block]:
+        read, row, found = 0, 0, False
+        with self.path.open("rb") as file:
+            while lines := list(islice(file, BLOCK)):
+                read += sum(map(len, lines))
+                numbered = self._without_header(lines, row)
+                row += len(lines)
+                if numbered:
+                    found = True
+                    yield self._block(numbered, read / self._size)
+        if not found:
+            raise SampleError([f"{self.path}: no samples"])
+
+    def _without_header(self, lines: Sequence[bytes], before: int) -> list[tuple[int, str]]:
+        numbered = [(before + k, text) for k, text in enumerate(map(_text, lines), 1) if text]
+        is_start = before == 0 and self._has_header
+        return numbered[1:] if is_start else numbered
+
+    def _block(self, numbered: Sequence[tuple[int, str]], done: float) -> Block:
+        rows, lines = zip(*numbered, strict=True)
+        try:
+            table = self._numbers(lines)
+        except ValueError:
+            raise SampleError(self._faults(numbered)) from None
+        return self._as_block(np.array(rows), table, done)
+
+    def _numbers(self, lines: Sequence[str]) -> Array:
+        return np.loadtxt(
+            lines,
+            delimiter=self._separator,
+            comments=None,
+            ndmin=2,
+            usecols=self._columns.used,
+        )
+
+    def _as_block(self, rows: NDArray[np.intp], table: Array, done: float) -> Block:
+        at = np.cumsum([3, len(self._columns.attitude), len(self._columns.rates)])
+        angles, attitude, rates, omega = np.split(table, at, axis=1)
+        has_velocity = bool(self._columns.rates)
+        return Block(
+            rows=rows,
+            angles=angles,
+            attitude=attitude,
+            rates=rates if has_velocity else None,
+            omega=omega if has_velocity else None,
+            done=done,
+        )
+
+    def _faults(self, numbered: Sequence[tuple[int, str]]) -> list[str]:
+        """Which fields of these lines are missing or no numbers."""
+        return [
+            f"{self.place(row)}: {fault}"
+            for row, line in numbered
+            for fault in self._faults_of(line)
+        ]
+
+    def _faults_of(self, line: str) -> list[str]:
+        fields = line.split(self._separator)
+        if len(fields) <= max(self._columns.used):
+            return [f"{len(fields)} fields, expected {max(self._columns.used) + 1} or more"]
+        return [
+            f"field {index + 1}: {fields[index].strip()!r} is not a number"
+            for index in self._columns.used
+            if not _is_number(fields[index])
+        ]
+
+    def spread(self) -> Block:
+        """Lines from all over the file, found by seeking; those that do not read are left out."""
+        lines: list[tuple[int, str]] = []
+        with self.path.open("rb") as file:
+            head = self._without_header(list(islice(file, SPREAD)), 0)
+            start = file.tell()
+            for offset in np.linspace(start, self._size, SPREAD, endpoint=False).astype(int):
+                file.seek(int(offset))
+                file.readline()  # the rest of a line
+                if text := _text(file.readline()):
+                    lines.append((0, text))
+        good = [(row, line) for row, line in [*head, *lines] if not self._faults_of(line)]
+        if not good:
+            return next(self.blocks())  # which says what is wrong with them
+        return self._block(good, 0.0)
+
+
+def _text(line: bytes) -> str:
+    return line.decode(errors="replace").removeprefix("\ufeff").strip()
+
+
+def _is_number(field: str) -> bool:
+    """Whether NumPy reads it too, which takes neither 1_000 nor digits beyond ASCII."""
+    try:
+        float(field)
+    except ValueError:
+        return False
+    return field.isascii() and "_" not in field

@@ -1,0 +1,366 @@
+"""Conversions of a model -> formulas with arctangents and choices, in no language yet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from rigidsym.kernels import ir
+from rigidsym.kernels.formulas import (
+    BOTH_SIGNS,
+    LENGTH,
+    MATRIX,
+    QUATERNION,
+    RULES,
+    SCALED,
+    SHORT_WAY,
+    Line,
+    of_quaternion,
+    shepperd,
+)
+from rigidsym.kernels.lower import lower
+from rigidsym.mechanics.conversion_forms import ClosedForm
+from rigidsym.mechanics.conversion_turns import ThreeTurns
+from rigidsym.mechanics.conversions import SHEPPERD, UNIT, Backward, Conversions
+from rigidsym.mechanics.derivation import Derivation, Step
+from rigidsym.models.rotation import RotationModel
+
+_FRAME = ("a0", "a1", "a2", "a3")
+_DIGITS = 30
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Formula:
+    """One conversion as a function of a vector, or of the coordinates and the constants."""
+
+    name: str
+    arguments: tuple[str, ...]  # "p", "matrix", "q", "parameters"
+    inputs: tuple[str, ...]  # the names of their components; empty: all, passed on to R
+    lines: tuple[Line, ...]
+    outputs: tuple[str, ...]
+    about: str  # one line
+    remarks: tuple[str, ...]  # paragraphs
+    unit: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Unwrapping:
+    """Continuity along a trajectory: the kind, and the numbers that it needs."""
+
+    kind: str  # "turns", "quaternion", "axis_angle", "rotation_vector", "modified_rodrigues"
+    remarks: tuple[str, ...]
+    numbers: Mapping[str, int | float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ConversionProgram:
+    """What a module offers beside the quantities of its derivation."""
+
+    arguments: tuple[ir.Argument, ...]  # of the kernels
+    kernels: tuple[ir.Kernel, ...]  # in closed form: the quaternion, and variants
+    formulas: tuple[Formula, ...]
+    unwrapping: Unwrapping | None
+    remarks: tuple[str, ...]  # for the module's docstring
+
+
+def lower_conversions(
+    derivation: Derivation, conversions: Conversions, reserved: Iterable[str] = ()
+) -> ConversionProgram:
+    """The conversions as kernels and formulas; what cannot be computed is left out and said."""
+    steps, formulas, missing = _forward(derivation, conversions)
+    names = {step.quantity.name for step in derivation.steps}
+    variants = (v for v in conversions.variants if v.quantity.name.removesuffix(UNIT) in names)
+    chosen = replace(derivation, steps=(*steps, *variants), singularities=None)
+    program = lower(chosen, tuple(reserved))
+    backward, unwrapping = conversions.backward, None
+    if backward is not None:
+        formulas += (*_backward(derivation.model, backward), *_shadow_sets(backward.rule))
+        unwrapping = _unwrapping(backward.rule)
+    return ConversionProgram(
+        arguments=program.arguments,
+        kernels=program.kernels,
+        formulas=formulas,
+        unwrapping=unwrapping,
+        remarks=tuple(text for text in (missing, conversions.without) if text),
+    )
+
+
+def _forward(
+    derivation: Derivation, conversions: Conversions
+) -> tuple[tuple[Step, ...], tuple[Formula, ...], str]:
+    """The quaternion as a step, or as a formula, or why there is none."""
+    step, number = conversions.quaternion, len(derivation.steps) + 1  # as in the note
+    if _is_rule(conversions, "rotation_vector"):
+        return (), (_quaternion_of_rotation_vector(number),), ""
+    if conversions.variants:
+        return (), (_quaternion_of_any_length(derivation.model, number),), ""
+    if step is not None:
+        return (replace(step, number=number),), (), ""
+    if any(s.quantity.name == "rotation_matrix" for s in derivation.steps):
+        return (), (_quaternion_of_matrix(derivation.model),), ""
+    return (), (), "The quaternion is taken from R: ask for rotation_matrix to have it."
+
+
+def _is_rule(conversions: Conversions, name: str) -> bool:
+    rule = conversions.backward and conversions.backward.rule
+    return isinstance(rule, ClosedForm) and rule.rule == name
+
+
+def _backward(model: RotationModel, backward: Backward) -> tuple[Formula, ...]:
+    """from_quaternion and from_rotation_matrix."""
+    quaternion, matrix = _ways(model, backward.rule)
+    shown = "A, the transpose of R" if model.passive else "R"
+    shared = (backward.because, backward.branch)
+    return (
+        Formula(
+            name="from_quaternion",
+            arguments=("p",),
+            inputs=QUATERNION,
+            lines=quaternion.lines,
+            outputs=quaternion.outputs,
+            about="The coordinates of a quaternion, scalar first.",
+            remarks=(*shared, "Its length does not matter; zero gives NaN."),
+            unit=_unit(model),
+        ),
+        Formula(
+            name="from_rotation_matrix",
+            arguments=("matrix",),
+            inputs=MATRIX,
+            lines=matrix.lines,
+            outputs=matrix.outputs,
+            about=f"The coordinates of a rotation matrix {shown}, as `rotation_matrix` gives it.",
+            remarks=(
+                *shared,
+                f"The quaternion is read off from R by its largest component ({SHEPPERD}). The "
+                "matrix is taken to be a rotation; that is not checked.",
+            ),
+            unit=_unit(model),
+        ),
+    )
+
+
+def _unit(model: RotationModel) -> str:
+    units = dict.fromkeys(model.coordinate_units)
+    return next(iter(units)) if len(units) == 1 else f"({', '.join(model.coordinate_units)})"
+
+
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """Lines, and what they give in the order of the coordinates."""
+
+    lines: tuple[Line, ...]
+    outputs: tuple[str, ...]
+
+
+def _ways(model: RotationModel, rule: ThreeTurns | ClosedForm) -> tuple[_Way, _Way]:
+    """From the quaternion, and from the matrix."""
+    if isinstance(rule, ThreeTurns):
+        quaternion, matrix = _turn_lines(rule, model)
+        after, outputs = _angle_lines(rule)
+        return _Way((*quaternion, *after), outputs), _Way((*matrix, *after), outputs)
+    after, unordered = RULES[rule.rule]()
+    outputs = _in_order(unordered, rule.order)
+    from_quaternion = _Way((*SCALED, *after), outputs)
+    if rule.rule == "direction_cosines":
+        return from_quaternion, _Way(_plain(model), MATRIX)
+    sign = SHORT_WAY if rule.rule in BOTH_SIGNS else ()
+    read_off = (*_plain(model), *shepperd(QUATERNION), *sign)
+    return from_quaternion, _Way((*read_off, *after), outputs)
+
+
+def _in_order(outputs: tuple[str, ...], order: tuple[int, ...]) -> tuple[str, ...]:
+    """What a rule gives, in the order of the model's coordinates."""
+    placed = dict(zip(order, outputs, strict=True))
+    return tuple(placed[place] for place in range(len(outputs)))
+
+
+def _plain(model: RotationModel) -> tuple[Line, ...]:
+    """R from what is given, where that is the transpose."""
+    if not model.passive:
+        return ()
+    return (("r12, r13, r21, r23, r31, r32", "r21, r31, r12, r32, r13, r23"),)
+
+
+def _turn_lines(
+    rule: ThreeTurns, model: RotationModel
+) -> tuple[tuple[Line, ...], tuple[Line, ...]]:
+    """Lines to a0 to a3, the quaternion in the frame of the turns, from p and from R."""
+    forms = rule.forms
+    from_quaternion = tuple(
+        (name, _linear(forms[k, :], QUATERNION)) for k, name in enumerate(_FRAME)
+    )
+    left, right = rule.turned
+    entries = [
+        _linear([left[i, a] * right[b, j] for a in range(3) for b in range(3)], MATRIX)
+        for i in range(3)
+        for j in range(3)
+    ]
+    renamed = tuple((f"s{name[1:]}", e) for name, e in zip(MATRIX, entries, strict=True))
+    back = tuple((f"r{name[1:]}", f"s{name[1:]}") for name in MATRIX)
+    turned = (*_joined(renamed), *_joined(back))
+    return (*SCALED, *from_quaternion), (*_plain(model), *turned, *shepperd(_FRAME))
+
+
+def _joined(lines: Sequence[Line]) -> tuple[Line, ...]:
+    """Three assignments in a line, which is how matrices are read."""
+    rows = [lines[k : k + 3] for k in range(0, len(lines), 3)]
+    if any(len(value) > 12 for _, value in lines):
+        return tuple(lines)
+    return tuple((", ".join(n for n, _ in row), ", ".join(v for _, v in row)) for row in rows)
+
+
+def _linear(coefficients: Iterable[sp.Expr], names: Sequence[str]) -> str:
+    """The sum of numbers times names."""
+    terms = []
+    for coefficient, name in zip(coefficients, names, strict=True):
+        number = _number(coefficient)
+        if number:
+            size = name if abs(number) == 1 else f"{abs(number)!r} * {name}"
+            terms.append(("- " if number < 0 else "+ ") + size)
+    text = " ".join(terms).removeprefix("+ ")
+    return "-" + text.removeprefix("- ") if text.startswith("- ") else text
+
+
+def _number(exact: sp.Expr) -> float:
+    """The nearest float; what is zero is zero, whatever radicals it is written in."""
+    value = sp.N(exact, _DIGITS)
+    return 0.0 if abs(value) < sp.Float(10) ** (-_DIGITS // 2) else float(value)
+
+
+def _angle_lines(rule: ThreeTurns) -> tuple[tuple[Line, ...], tuple[str, ...]]:
+    """Lines from a0 to a3 to the angles, by the half sum and the half difference."""
+    sign = "-" if rule.last_is_first_turn else ""
+    offset = _number(rule.offset)
+    middle = "2.0 * $atan2(near, far)"
+    if rule.sign > 0:
+        middle += f" - {offset!r}" if offset else ""
+    else:
+        middle = f"{offset!r} - {middle}"
+    lines: tuple[Line, ...] = (
+        ("near", "$hypot(a2, a3)"),
+        ("far", "$hypot(a0, a1)"),
+        ("half_sum", "$atan2(a1, a0)"),
+        ("half_difference", "$atan2(a3, a2)"),
+        ("half_difference", f"$pick(near <= $tiny * far, {sign}half_sum, half_difference)"),
+        ("half_sum", f"$pick(far <= $tiny * near, {sign}half_difference, half_sum)"),
+    )
+    angles = (
+        "$wrapped(half_sum + half_difference)",
+        middle,
+        "$wrapped(half_sum - half_difference)",
+    )
+    return lines, _in_order(angles, rule.places)
+
+
+def _quaternion_of_matrix(model: RotationModel) -> Formula:
+    """The quaternion of a rotation that is known by its matrix alone."""
+    return Formula(
+        name="quaternion",
+        arguments=("q", "parameters") if model.constants else ("q",),
+        inputs=(),
+        lines=(*_plain(model), *shepperd(QUATERNION), *SHORT_WAY, *LENGTH),
+        outputs=of_quaternion()[1],
+        about="The unit quaternion of the rotation, scalar first and not negative.",
+        remarks=(f"It is read off from R by its largest component ({SHEPPERD}).",),
+    )
+
+
+def _quaternion_of_any_length(model: RotationModel, number: int) -> Formula:
+    scalar_last = model.coordinates[0] in model.vector
+    return Formula(
+        name="quaternion",
+        arguments=("q",),
+        inputs=(*QUATERNION[1:], QUATERNION[0]) if scalar_last else QUATERNION,
+        lines=(*SCALED, *LENGTH),
+        outputs=of_quaternion()[1],
+        about="The unit quaternion of the rotation, scalar first.",
+        remarks=(
+            f"Equation ({number}) of the note.",
+            "The coordinates are divided by their length; zero gives NaN.",
+        ),
+    )
+
+
+def _quaternion_of_rotation_vector(number: int) -> Formula:
+    return Formula(
+        name="quaternion",
+        arguments=("q",),
+        inputs=("x", "y", "z"),
+        lines=(
+            ("angle", "$sqrt(x * x + y * y + z * z)"),
+            ("divisor", "$pick(angle == 0.0, 1.0, angle)"),
+            ("factor", "$pick(angle == 0.0, 0.5, $sin(0.5 * angle) / divisor)"),
+        ),
+        outputs=("$cos(0.5 * angle)", "factor * x", "factor * y", "factor * z"),
+        about="The unit quaternion of the rotation, scalar first: cos n/2 and v sin(n/2)/n.",
+        remarks=(
+            f"Equation ({number}) of the note.",
+            "Accurate at every length: where n² is too small for a float, sin(n/2)/n is 1/2.",
+        ),
+    )
+
+
+def _shadow_sets(rule: ThreeTurns | ClosedForm) -> tuple[Formula, ...]:
+    """The other set of modified Rodrigues parameters, and the shorter of both."""
+    if isinstance(rule, ThreeTurns) or rule.rule != "modified_rodrigues":
+        return ()
+    square = ("square", "x * x + y * y + z * z")
+    return (
+        Formula(
+            name="shadow_set",
+            arguments=("q",),
+            inputs=("x", "y", "z"),
+            lines=(square,),
+            outputs=("-x / square", "-y / square", "-z / square"),
+            about="The other set of the same rotation, −s/(s·s).",
+            remarks=("The shadow of zero is at infinity and comes as NaN.",),
+        ),
+        Formula(
+            name="shorter_set",
+            arguments=("q",),
+            inputs=("x", "y", "z"),
+            lines=(square, ("scale", "$pick(square > 1.0, -square, 1.0)")),
+            outputs=("x / scale", "y / scale", "z / scale"),
+            about="The same rotation by the set with s·s ≤ 1: the shadow set where s·s > 1.",
+            remarks=(),
+        ),
+    )
+
+
+_UNWRAPPINGS: Mapping[str, str] = {
+    "quaternion": "Of p and −p the one nearer to the sample before.",
+    "cayley_klein": "Of the parameters and their negatives those nearer to the sample before.",
+    "axis_angle": "The axis does not turn by more than π/2 from one sample to the next, and the "
+    "angle not by more than π; where there is no turn, the axis is that of the sample before.",
+    "rotation_vector": "The axis does not turn by more than π/2 from one sample to the next, and "
+    "the length goes on beyond π, also through whole turns.",
+    "modified_rodrigues": "Of the two sets the one whose quaternion is nearer to that of the "
+    "sample before; at a whole turn it is infinite.",
+}
+
+
+def _unwrapping(rule: ThreeTurns | ClosedForm) -> Unwrapping | None:
+    if isinstance(rule, ThreeTurns):
+        first, middle, third = rule.places
+        return Unwrapping(
+            kind="turns",
+            remarks=(
+                "At each sample the angles are those, of the two sets in [−π, π] that give the "
+                "rotation and of all that whole turns add to them, which are nearest to the sample "
+                "before. At a pole, what is not determined is taken from the last sample that was "
+                "not at one.",
+            ),
+            numbers={
+                "first": first,
+                "middle": middle,
+                "third": third,
+                "sign": rule.sign,
+                "offset": _number(rule.offset),
+            },
+        )
+    if rule.rule not in _UNWRAPPINGS:
+        return None
+    kind = "quaternion" if rule.rule == "cayley_klein" else rule.rule
+    return Unwrapping(kind=kind, remarks=(_UNWRAPPINGS[rule.rule],), numbers={})

@@ -1,0 +1,189 @@
+"""Conversions as NumPy functions: each formula once on arrays and once on plain floats."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from string import Template
+
+from rigidsym import resources
+from rigidsym.kernels.conversions import ConversionProgram, Formula, Unwrapping
+from rigidsym.kernels.formulas import MATRIX, QUATERNION
+from rigidsym.kernels.layout import WIDTH, bracketed, docstring, exploded
+from rigidsym.kernels.targets.numpy_function import Function
+
+_HELPERS = "kernels_numpy_conversions.jinja"
+_UNWRAP = "kernels_numpy_unwrap_{}.jinja"
+_ARRAYS = {
+    "sqrt": "np.sqrt",
+    "atan2": "np.arctan2",
+    "hypot": "np.hypot",
+    "sin": "np.sin",
+    "cos": "np.cos",
+    "pick": "np.where",
+    "wrapped": "_wrapped",
+    "tiny": "_tiny(far)",
+}
+_FLOATS = {name: name for name in ("sqrt", "atan2", "hypot", "sin", "cos")} | {
+    "pick": "_pick",
+    "wrapped": "_wrapped_float",
+    "tiny": "_TINY",
+}
+_OF_MATH = frozenset({"sqrt", "atan2", "hypot", "sin", "cos"})
+_GIVEN = {"matrix": "_entries(matrix)"}  # what an argument is passed on as
+_SHAPES = {
+    "p": "(..., 4)",
+    "matrix": "(..., 3, 3)",
+    "q": "(..., n)",
+    "parameters": "(..., k)",
+}
+_CALLED = re.compile(r"\$(\w+)")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Additions:
+    """What conversions add to a module."""
+
+    functions: tuple[Function, ...] = ()
+    exports: tuple[str, ...] = ()
+    components: tuple[str, ...] = ()  # lines of the table of arguments
+    imports: frozenset[str] = frozenset()  # from math
+    helpers: str = ""  # text for the end of the module
+    remarks: tuple[str, ...] = ()
+
+
+def additions(program: ConversionProgram, shape: str) -> Additions:
+    """The text of all formulas and of `unwrap`; `shape` is that of the coordinates, "(3,)"."""
+    formulas, unwrapping = program.formulas, program.unwrapping
+    exports = [name for f in formulas for name in (f.name, f"{f.name}_scalar")]
+    called = {name for f in formulas for text in _texts(f) for name in _CALLED.findall(text)}
+    return Additions(
+        functions=tuple(_function(formula, shape) for formula in formulas),
+        exports=tuple(exports) + (("unwrap",) if unwrapping else ()),
+        components=_components(formulas),
+        imports=frozenset(called & _OF_MATH),
+        helpers=_helpers(unwrapping) if exports else "",
+        remarks=program.remarks,
+    )
+
+
+def _helpers(unwrapping: Unwrapping | None) -> str:
+    environment = resources.environment()
+    texts = [environment.get_template(_HELPERS).render()]
+    if unwrapping is not None:
+        template = environment.get_template(_UNWRAP.format(unwrapping.kind))
+        about = [
+            "The coordinates along a trajectory, continuous from sample to sample.",
+            ["  q        (m, ..., n)  the samples on the first axis", "  returns  (m, ..., n)"],
+            *unwrapping.remarks,
+            "The first sample stays as it is. A sample with NaN is passed over.",
+        ]
+        numbers = {name: repr(number) for name, number in unwrapping.numbers.items()}
+        texts.append(template.render(about=docstring(about, indent=4), **numbers))
+    return "\n\n".join(texts)
+
+
+def _components(formulas: Sequence[Formula]) -> tuple[str, ...]:
+    used = {argument for formula in formulas for argument in formula.arguments}
+    lines = []
+    if "p" in used:
+        lines.append(f'"p": ({_quoted(QUATERNION)}),')
+    if "matrix" in used:
+        lines.append(f'"matrix": ({_quoted(MATRIX)}),')
+    return tuple(lines)
+
+
+def _quoted(names: Sequence[str]) -> str:
+    return ", ".join(f'"{name}"' for name in names)
+
+
+def _texts(formula: Formula) -> Iterator[str]:
+    yield from (value for _, value in formula.lines)
+    yield from formula.outputs
+
+
+def _function(formula: Formula, shape: str) -> Function:
+    name = formula.name
+    block, scalar = f"_{name}", f"{name}_scalar"
+    inputs = formula.inputs or ("*components",)
+    result = _shape(formula, shape)
+    passed = [f"{a}={_GIVEN.get(a, a)}" for a in formula.arguments]
+    return Function(
+        signature=f"def {name}({', '.join(formula.arguments)}, *, out=None):",
+        about=docstring(_about(formula), indent=4),
+        body=bracketed(4, "return _apply(", [block, scalar, result, "out", *passed], ")"),
+        scalar_signature=bracketed(0, f"def {scalar}(", inputs, "):"),
+        scalar_about=f"`{name}` of one orientation; floats to a tuple.",
+        scalar_body="\n".join(_body(formula, 8, _FLOATS)),
+        exceptional=bracketed(8, "return _exceptional(", [block, result, *inputs], ")"),
+        block_signature=bracketed(0, f"def {block}(", inputs, "):"),
+        block_body="\n".join(_body(formula, 4, _ARRAYS)),
+    )
+
+
+def _shape(formula: Formula, shape: str) -> str:
+    return "(4,)" if formula.name == "quaternion" else shape
+
+
+def _about(formula: Formula) -> list[str | Sequence[str]]:
+    unit = f"  in {formula.unit}" if formula.unit else ""
+    result = f"(..., {len(formula.outputs)})"
+    rows = [*((a, _SHAPES[a]) for a in formula.arguments), ("returns", result + unit)]
+    width = max(len(name) for name, _ in rows)
+    return [
+        formula.about,
+        [f"  {name:<{width}}  {text}" for name, text in rows],
+        *formula.remarks,
+        "Raises TypeError for a dtype and ValueError for a shape that it cannot take.",
+    ]
+
+
+def _body(formula: Formula, indent: int, spelling: dict[str, str]) -> Iterator[str]:
+    if not formula.inputs:
+        yield _matrix_line(indent, is_float=spelling is _FLOATS)
+    for names, value in formula.lines:
+        yield _assigned(indent, names, _spelled(value, spelling))
+    outputs = [_spelled(output, spelling) for output in formula.outputs]
+    yield exploded(indent, "return (", outputs, ")")
+
+
+def _matrix_line(indent: int, *, is_float: bool) -> str:
+    """The rotation matrix from the coordinates, by the function that stands beside this one."""
+    if is_float:
+        rows = ", ".join(f"({', '.join(MATRIX[k : k + 3])})" for k in (0, 3, 6))
+        return bracketed(indent, f"{rows} = rotation_matrix_scalar(", ["*components"], ")")
+    return bracketed(indent, f"{', '.join(MATRIX)} = _rotation_matrix(", ["*components"], ")")
+
+
+def _spelled(text: str, spelling: dict[str, str]) -> str:
+    return Template(text).substitute(spelling)
+
+
+def _assigned(indent: int, names: str, value: str) -> str:
+    """One assignment; what is too wide is a call, and stands with an argument a line."""
+    line = f"{' ' * indent}{names} = {value}"
+    if len(line) <= WIDTH:
+        return line
+    if "(" not in value:
+        return _broken_sum(indent, names, value)
+    head, _, inside = value.partition("(")
+    return bracketed(indent, f"{names} = {head}(", _arguments(inside[:-1]), ")")
+
+
+def _broken_sum(indent: int, names: str, value: str) -> str:
+    margin = " " * indent
+    terms = re.split(r" (?=[-+] )", value)
+    body = "\n".join(f"{margin}    {term}" for term in terms)
+    return f"{margin}{names} = (\n{body}\n{margin})"
+
+
+def _arguments(inside: str) -> list[str]:
+    """The arguments of a call, whose own calls may hold commas."""
+    found, depth, start = [], 0, 0
+    for place, character in enumerate(inside):
+        depth += (character == "(") - (character == ")")
+        if character == "," and not depth:
+            found.append(inside[start:place].strip())
+            start = place + 1
+    return [*found, inside[start:].strip()]

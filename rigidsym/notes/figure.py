@@ -1,0 +1,110 @@
+"""The figure of a rotation: Figure 1 of the lecture, for any convention and in words too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import chain
+
+import sympy as sp
+
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.models.rotation import RotationModel, Turn
+from rigidsym.notes.document import Figure, Span, Text
+from rigidsym.notes.drawing import Kind
+from rigidsym.notes.formula import markup
+from rigidsym.notes.notation import Notation
+from rigidsym.notes.scene import BODY, Arc, Names, Scene, scene_of
+from rigidsym.notes.sketch import best_view, drawn
+from rigidsym.notes.space import Vector, unit
+from rigidsym.notes.words import listed, words
+
+MOST_TURNS = 5  # more would be a tangle
+
+_AXIS_OF_THE_VECTOR = Markup(r"\mathbf{e}", "e")
+
+
+def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
+    """The figure of a model that is a product of turns, or one turn about the axis of a vector.
+
+    None for any other, for more than MOST_TURNS, and for axes that are not numbers.
+    """
+    turns = model.turns or _about_the_vector(model)
+    if not 1 <= len(turns) <= MOST_TURNS:
+        return None
+    if not all(part.is_number for turn in turns for part in turn.direction):
+        return None
+    axes = tuple(map(_components, turns))
+    angles, view = best_view(axes, tuple(map(_fixed_angle, turns)))
+    between = _AXIS_OF_THE_VECTOR if not model.turns else None
+    names = Names(
+        angles=tuple(markup(turn.angle, notation) for turn in turns),
+        body=tuple(map(notation.manner.symbol, BODY)),
+        between=between,
+    )
+    scene = scene_of(axes, angles, names)
+    return Figure(
+        drawing=drawn(scene, view),
+        caption=_caption(scene, _between_in_words(turns)),
+        description=tuple(chain.from_iterable((*s, " ") for s in _in_words(scene)))[:-1],
+    )
+
+
+def _about_the_vector(model: RotationModel) -> tuple[Turn, ...]:
+    """The one turn that the components of a vector along its axis stand for; some axis of space."""
+    if not model.vector:
+        return ()
+    axis = tuple(sp.Rational(part, 3) for part in (1, 2, 2))
+    return (Turn(axis=_AXIS_OF_THE_VECTOR.text, angle=sp.Symbol("n"), components=axis),)
+
+
+def _between_in_words(turns: Sequence[Turn]) -> str:
+    """What the only axis that is neither of space nor of the body is called."""
+    if len(turns) == 1:
+        return "the axis {} of the turn"
+    are_coordinate_axes = not any(turn.components for turn in turns)
+    return "the line of nodes {}" if are_coordinate_axes else "the axis {} of a turn"
+
+
+def _components(turn: Turn) -> Vector:
+    x, y, z = (float(part) for part in turn.direction)
+    return unit((x, y, z))
+
+
+def _fixed_angle(turn: Turn) -> float | None:
+    return float(turn.angle) if turn.angle.is_number else None
+
+
+def _caption(scene: Scene, between: str) -> Text:
+    """Which axes are which."""
+    nodes = _names(scene, "node")
+    parts = [
+        _filled("the axes {} of space", _names(scene, "space")),
+        _filled("the axes {} of the body", _names(scene, "body")),
+        _filled(between if len(nodes) == 1 else "the axes {} of turns", nodes),
+    ]
+    shown = listed([part for part in parts if part])
+    return ("Shown are ", *shown, ".")
+
+
+def _names(scene: Scene, kind: Kind) -> Text:
+    return listed([(ray.name,) for ray in scene.rays if ray.kind == kind], ", ")
+
+
+def _filled(text: str, names: Text) -> Text:
+    before, after = text.split("{}")
+    return (before, *names, after) if names else ()
+
+
+def _in_words(scene: Scene) -> Iterator[Text]:
+    """The turn by φ about z takes x to N; and so on, as the product is read from left to right."""
+    for arc in scene.arcs:
+        about = scene.named(arc.axis)
+        axis = about.name if about else "its axis"
+        start, end = (_called(scene, arc, v) for v in (arc.start, arc.end))
+        yield words("The turn by {} about {} takes {} to {}.", arc.name, axis, start, end)
+
+
+def _called(scene: Scene, arc: Arc, direction: Vector) -> Span:
+    """The name of the ray in a direction; a line that has none is named after its axis."""
+    ray = scene.named(direction)
+    return ray.name if ray else f"the turned {arc.start_name}"

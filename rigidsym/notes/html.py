@@ -1,0 +1,215 @@
+"""Document -> one HTML file with MathML, which needs neither network nor script.
+
+A display that is too wide for a phone is there twice, set for a page and set for a phone; the
+style sheet shows one of the two. The template only places the pieces that are made here.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from html import escape as escape_markup
+from itertools import pairwise
+
+from rigidsym import resources
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.notes.document import (
+    Block,
+    Cited,
+    Code,
+    Document,
+    Equation,
+    EquationReference,
+    EquationRow,
+    Figure,
+    Paragraph,
+    Program,
+    Section,
+    Span,
+    Strong,
+    Table,
+    Text,
+)
+from rigidsym.notes.formula import text
+from rigidsym.notes.layout import Display, display
+from rigidsym.notes.mathml import mathml
+from rigidsym.notes.plain import cleaned
+from rigidsym.notes.prose import announcement, equal
+from rigidsym.notes.svg import svg
+from rigidsym.notes.words import plain
+
+TEMPLATE = "note.html.jinja"
+_PAGE = 39.5  # ems of a display on a page, some less than there are: browsers differ in fonts
+_PHONE = 19.0  # ems of a display on a screen 360 pixels wide
+# a formula with the brackets, commas and stops that no line may part from it
+_MATH = r"<math(?:(?!</math>).)*</math>"
+_WITH_POINTS = re.compile(rf"\({_MATH}[.,;:)]*|{_MATH}[.,;:)]+")
+
+
+def print_html(document: Document) -> str:
+    """The note as an HTML file; the same document gives the same bytes."""
+    printer = _Printer(document)
+    template = resources.environment().get_template(TEMPLATE)
+    return template.render(
+        title=escape(document.title),
+        subtitle=escape(document.subtitle),
+        sections=[
+            {
+                "title": escape(section.title),
+                "key": f"section-{place}",
+                "body": printer.body(section),
+            }
+            for place, section in enumerate(document.sections, start=1)
+        ],
+        sources=[
+            {"key": f"source-{place}", "text": escape(source)}
+            for place, source in enumerate(document.sources, start=1)
+        ],
+    )
+
+
+def escape(words: str) -> str:
+    """Any text as the text of an element or the value of an attribute."""
+    return escape_markup(cleaned(words))
+
+
+class _Printer:
+    """Blocks and spans of one document in HTML."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+
+    def body(self, section: Section) -> str:
+        blocks = [self._block(block) for block in section.blocks]
+        for place, (block, after) in enumerate(pairwise(section.blocks)):
+            if isinstance(block, Paragraph) and isinstance(after, Equation | EquationRow):
+                # no page ends between the words and the formula
+                blocks[place] = blocks[place].replace("<p>", '<p class="lead">', 1)
+        return "\n".join(blocks)
+
+    def _block(self, block: Block) -> str:
+        match block:
+            case Paragraph():
+                return f"<p>{self._text(block.text)}</p>"
+            case Equation():
+                return "\n".join(self._equation(block))
+            case EquationRow():
+                displays = (self._forms(equation) for equation in block.equations)
+                return f'<div class="row">{"".join(displays)}</div>'
+            case Table():
+                return self._table(block)
+            case Figure():
+                return self._figure(block)
+            case Program():
+                return f'<pre tabindex="0"><code>{escape_markup(block.code)}</code></pre>'
+
+    def _equation(self, equation: Equation) -> Iterator[str]:
+        if not equation.number:
+            yield f'<div class="equation">{self._forms(equation)}</div>'
+            return
+        label, number = escape(equation.label), equation.number
+        yield f'<div class="equation" id="{label}" role="group" aria-label="Equation {number}">'
+        yield self._forms(equation)
+        yield f'<a class="number" href="#{label}">({number})</a>'
+        yield "</div>"
+        yield f'<p class="remark">{self._claims(equation)}{self._function(equation)}</p>'
+
+    def _forms(self, equation: Equation) -> str:
+        """The display for a page and the one for a phone, or one that does for both."""
+        page = display(equation, self.document.notation, _PAGE)
+        phone = display(equation, self.document.notation, _PHONE)
+        if page.latex == phone.latex:
+            return self._display(equation, page, "display")
+        return self._display(equation, page, "display page") + self._display(
+            equation, phone, "display phone"
+        )
+
+    def _display(self, equation: Equation, shown: Display, kind: str) -> str:
+        announced = self._text(announcement(equation, shown.done))
+        lead = f"<p>{announced}</p>" if announced else ""
+        formula = mathml(shown.latex, self._spoken(equation), is_display=True)
+        room = _PAGE if "page" in kind else _PHONE
+        # what may have to be scrolled must be within reach of the keyboard
+        reach = ' tabindex="0" role="group" aria-label="wide formula"' if shown.width > room else ""
+        return f'<div class="{kind}">{lead}<div class="formula"{reach}>{formula}</div></div>'
+
+    def _spoken(self, equation: Equation) -> str:
+        """The equation on one line of Unicode; a matrix row by row."""
+        sides = equal(*equation.sides).text
+        if equation.matrix is None:
+            return sides
+        notation = self.document.notation
+        rows = (", ".join(text(e, notation) for e in row) for row in equation.matrix.tolist())
+        return f"{sides} = ({'; '.join(rows)})"
+
+    def _claims(self, equation: Equation) -> str:
+        kinds = (("Proved", equation.proved), ("<strong>Unproved</strong>", equation.unproved))
+        said = (
+            f"{kind}: {', '.join(self._span(claim) for claim in claims)}."
+            for kind, claims in kinds
+            if claims
+        )
+        return f"<span>{' '.join(said)}</span>"
+
+    def _function(self, equation: Equation) -> str:
+        return f" {self._span(Code(equation.function))}" if equation.function else ""
+
+    def _table(self, table: Table) -> str:
+        head = "".join(f'<th scope="col">{self._text(cell)}</th>' for cell in table.head)
+        rows = "\n".join(
+            f"<tr>{''.join(f'<td>{self._text(cell)}</td>' for cell in row)}</tr>"
+            for row in table.rows
+        )
+        caption = escape(table.caption)
+        return (
+            f'<div class="scroll" tabindex="0" role="group" aria-label="{caption}">\n'
+            f"<table>\n<caption>{caption}</caption>\n"
+            f"<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>\n</div>"
+        )
+
+    def _figure(self, figure: Figure) -> str:
+        number = self.document.figures.index(figure) + 1
+        drawing = svg(
+            figure.drawing,
+            title=f"Figure {number}",
+            description=plain((*figure.caption, " ", *figure.description)),
+            name=f"figure-{number}",
+        )
+        words = self._text(
+            (Strong(f"Figure {number}."), " ", *figure.caption, " ", *figure.description)
+        )
+        return f"<figure>\n{drawing}\n<figcaption>{words}</figcaption>\n</figure>"
+
+    def _text(self, text: Text) -> str:
+        return _WITH_POINTS.sub(r'<span class="whole">\g<0></span>', "".join(map(self._span, text)))
+
+    def _span(self, span: Span) -> str:
+        match span:
+            case str():
+                return escape(span)
+            case Markup():
+                return mathml(_tall(span.latex), span.text)
+            case Code():
+                return f"<code>{_breakable(escape(span.text))}</code>"
+            case Strong():
+                return f"<strong>{escape(span.text)}</strong>"
+            case EquationReference():
+                return f'<a href="#{escape(span.label)}">({self.document.number(span.label)})</a>'
+            case Cited():
+                return self._cited(span)
+
+    def _cited(self, cited: Cited) -> str:
+        number = self.document.sources.index(cited.citation.text) + 1
+        equation = escape(cited.citation.equation)
+        place = f", eq.\u00a0{equation}" if equation else ""
+        return f'[<a href="#source-{number}">{number}</a>{place}]'
+
+
+def _breakable(name: str) -> str:
+    """A name in a program, with places where a line may end."""
+    return name.replace("_", "_<wbr>").replace("(", "<wbr>(")
+
+
+def _tall(latex: str) -> str:
+    """Fractions in a line of their own height; small type would be hard to read."""
+    return latex.replace(r"\frac", r"\dfrac")

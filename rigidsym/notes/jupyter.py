@@ -1,0 +1,45 @@
+"""What Jupyter shows of a derivation or of one of its steps; plain text where it can do no better.
+
+Jupyter asks an object for its `_repr_mimebundle_` and shows the richest form that it can draw.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rigidsym.mechanics.derivation import Argument, Derivation, Step
+from rigidsym.notes.compose import equation_of
+from rigidsym.notes.layout import display
+from rigidsym.notes.manner import Manner
+from rigidsym.notes.markdown import formula
+from rigidsym.notes.notation import notation_of
+from rigidsym.notes.note import Note
+from rigidsym.notes.rewriting import equation_in_manner
+from rigidsym.notes.terminal import show, show_step
+
+_WIDTH = 44.0  # ems
+
+
+def bundle_of(derivation: Derivation, note: Note, manner: Manner) -> dict[str, str]:
+    """The whole derivation: as the note, as one display of its equations, as plain text."""
+    steps = (latex_of(step, derivation.arguments, manner) for step in derivation.steps)
+    return {
+        "text/markdown": note.markdown(),
+        "text/latex": "\n\n".join(steps),
+        "text/plain": show(derivation, manner=manner),
+    }
+
+
+def step_bundle_of(step: Step, arguments: Sequence[Argument], manner: Manner) -> dict[str, str]:
+    """One step: its equation, and the lines that a terminal shows of it."""
+    return {
+        "text/latex": latex_of(step, arguments, manner),
+        "text/plain": show_step(step, arguments, manner=manner),
+    }
+
+
+def latex_of(step: Step, arguments: Sequence[Argument], manner: Manner) -> str:
+    """The equation of a step between dollar signs, with its number."""
+    equation = equation_in_manner(equation_of(step, arguments), manner)
+    shown = display(equation, notation_of(arguments, manner), _WIDTH)
+    return f"$$\n{formula(shown.latex)}\n\\tag{{{step.number}}}\n$$"

@@ -1,0 +1,44 @@
+"""LaTeX of the notes -> MathML, by math-core."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from html import escape
+
+from math_core import LatexError, LatexToMathML
+
+from rigidsym.errors import AlgebraError
+
+_CONVERTER = LatexToMathML(fancy_error=False)
+_CLASSES = {  # for the style sheet
+    "<mo>′</mo>": '<mo class="prime">′</mo>',  # most fonts have it smaller than readers notice
+    # a combining arrow stands beside its letter in some browsers
+    '<mo stretchy="false">\u20d7</mo>': '<mo class="arrow" stretchy="false">→</mo>',
+    # attributes of MathML Core, which not every validator knows
+    '<mfrac displaystyle="true">': '<mfrac class="tall">',
+    ' scriptlevel="0"': "",
+}
+_ROW_SPACE = re.compile(r"\\\\\[\d+pt\]")  # the style sheet sets the distance of rows
+
+
+def mathml(latex: str, text: str, *, is_display: bool = False) -> str:
+    """One formula as a MathML element, with `text` for readers that do not know MathML.
+
+    Raises AlgebraError for a macro that has no MathML.
+    """
+    element = _converted(latex, is_display)
+    return element.replace("<math", f'<math alttext="{escape(text)}"', 1)
+
+
+@lru_cache(maxsize=4096)
+def _converted(latex: str, is_display: bool) -> str:
+    try:
+        element = _CONVERTER.convert_with_local_state(
+            _ROW_SPACE.sub(r"\\\\", latex), displaystyle=is_display
+        )
+    except LatexError as error:
+        raise AlgebraError(f"no MathML for {latex}: {error}") from error
+    for plain, classed in _CLASSES.items():
+        element = element.replace(plain, classed)
+    return element

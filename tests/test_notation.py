@@ -1,0 +1,187 @@
+"""Notation is the user's: one choice, the same in LaTeX, HTML, Markdown and the terminal."""
+
+from __future__ import annotations
+
+import json
+import re
+from itertools import product
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from conftest import derived
+from test_typeset import tex  # noqa: F401
+
+import rigidsym as rs
+from rigidsym import cli
+from rigidsym.errors import ModelError, SpecError
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.models.catalogue import EulerAngles
+from rigidsym.notes.manner import CHOICES, DEFAULT, Manner
+from rigidsym.notes.measure import columns
+from rigidsym.notes.terminal import show
+from rigidsym.spec import DerivationSpec, read_spec
+from rigidsym.typeset import typeset
+
+OTHER = {
+    "rates": "fraction",
+    "vectors": "arrow",
+    "body": "superscript",
+    "angular_velocity": "omega",
+}
+MANNERS = [dict(zip(CHOICES, choice, strict=True)) for choice in product(*CHOICES.values())]
+FILE = '[rotation]\nsequence = "ZXZ"\n'
+
+
+@pytest.mark.parametrize(
+    ("choice", "given", "expected"),
+    [
+        ({"rates": "fraction"}, (r"\dot{\phi}_{1}", "φ̇₁"), (r"\frac{d\phi_{1}}{dt}", "dφ₁/dt")),
+        ({"rates": "fraction"}, (r"\ddot{\phi}", "φ̈"), (r"\frac{d^{2}\phi}{dt^{2}}", "d²φ/dt²")),
+        (
+            {"rates": "fraction"},
+            (r"\dot{\mathit{h}}\mathit{eading}", "ḣeading"),
+            (r"\frac{d\mathit{h}\mathit{eading}}{dt}", "dheading/dt"),
+        ),
+        (
+            {"rates": "fraction"},
+            (r"\dot{\boldsymbol{\Omega}}'", "Ω̇′"),
+            (r"\frac{d\boldsymbol{\Omega}'}{dt}", "dΩ′/dt"),
+        ),
+        (
+            {"rates": "fraction"},
+            (r"\frac{\partial \mathbf{u}}{\partial \dot{\mathbf{q}}}", "∂u/∂q̇"),
+            (r"\frac{\partial \mathbf{u}}{\partial(d\mathbf{q}/dt)}", "∂u/∂(dq/dt)"),
+        ),
+        ({"vectors": "arrow"}, (r"\boldsymbol{\Omega}'", "Ω′"), (r"\vec{\Omega}'", "Ω⃗′")),
+        ({"vectors": "arrow"}, (r"\Omega'_{1}", "Ω′₁"), (r"\Omega'_{1}", "Ω′₁")),
+        ({"vectors": "arrow"}, (r"\mathbf{R}\,\mathbf{x}", "R x"), (r"\mathbf{R}\,\vec{x}", "R x")),
+        (
+            {"body": "superscript"},
+            (r"\mathbf{W}'^{-1}", "W′⁻¹"),
+            (r"\bigl(\mathbf{W}^{\mathrm{B}}\bigr)^{-1}", "(Wᴮ)⁻¹"),
+        ),
+        ({"body": "superscript"}, (r"\Omega'_{1}", "Ω′₁"), (r"\Omega^{\mathrm{B}}_{1}", "Ωᴮ₁")),
+        ({"angular_velocity": "omega"}, (r"\Omega_{2}", "Ω₂"), (r"\omega_{2}", "ω₂")),
+    ],
+)
+def test_symbols_in_another_notation(choice, given, expected):
+    manner = Manner(**choice)
+    assert manner.symbol(Markup(*given)) == Markup(*expected)
+    assert manner.symbol(Markup(*expected)) == Markup(*expected)
+
+
+def test_the_form_of_the_lectures_equation_18(golden):
+    motion = derived("ZXZ").written(rates="fraction")
+    golden("terminal/euler_zxz_fractions_100.txt", show(motion, width=100, manner=motion.manner))
+    assert (
+        r"\dfrac{d\phi}{dt} \sin\theta \sin\psi + \dfrac{d\theta}{dt} \cos\psi"
+        in motion.note().latex()
+    )
+
+
+def test_no_symbol_is_left_in_the_old_notation():
+    motion = derived("ZYX", passive=True).written(**OTHER)
+    latex = motion.note().latex().split(r"\begin{document}")[1]
+    text = show(motion, manner=motion.manner)
+    markdown = motion.note().markdown()
+    html = motion.note().html().split("</style>")[1]
+    for old in (r"\dot{", r"\ddot{", r"\Omega", "x'", r"\boldsymbol"):
+        assert old not in latex
+        assert old not in markdown
+    for old in ("\u0307", "\u0308", "Ω", "′", "˙", "𝛀"):
+        assert old not in text
+        assert old not in html
+    bundle = motion.step("angular_velocity_body")._repr_mimebundle_()
+    assert "Ω" not in bundle["text/plain"]
+    assert r"\Omega" not in bundle["text/latex"]
+
+
+@pytest.mark.parametrize("choices", MANNERS, ids=lambda choices: "-".join(choices.values()))
+def test_lines_fit_the_terminal_in_every_notation(choices):
+    for sequence in ("ZXZ", "xyz"):
+        lines = show(derived(sequence), width=100, manner=Manner(**choices)).splitlines()
+        assert max(map(columns, lines)) <= 100
+
+
+@pytest.mark.usefixtures("tex")
+@pytest.mark.parametrize("choices", [OTHER, {"rates": "fraction"}, {"body": "superscript"}])
+def test_notes_compile_without_a_warning_in_every_notation(choices):
+    for sequence in ("ZXZ", "xyz"):
+        for passive in (False, True):
+            motion = derived(sequence, passive=passive).written(**choices)
+            assert typeset(motion.note().latex()).warnings == ()
+
+
+def test_kernels_and_records_know_nothing_of_it():
+    motion = derived("ZXZ")
+    assert motion.written(**OTHER).kernels().source == motion.kernels().source
+
+
+def test_writing_twice_keeps_the_first_choice():
+    motion = derived("ZXZ").written(rates="fraction").written(body="superscript")
+    assert motion.manner == Manner(rates="fraction", body="superscript")
+    assert motion.steps[0].manner == motion.manner
+    assert derived("ZXZ").manner == DEFAULT
+
+
+# --- what is refused ---
+
+
+def test_a_choice_that_is_none_is_refused():
+    with pytest.raises(ModelError, match="notation: rates is dot or fraction, and not 'dots'"):
+        derived("ZXZ").written(rates="dots")
+
+
+@pytest.mark.parametrize("name", ["omega", "Omega_wheel"])
+def test_an_angle_called_omega_is_not_mistaken_for_the_angular_velocity(name):
+    motion = rs.derive(EulerAngles("ZXZ", (name, "theta", "psi")))
+    motion.note()
+    with pytest.raises(ModelError, match=f"cannot be called omega beside {name}"):
+        motion.written(angular_velocity="omega").note()
+
+
+# --- from a file, and from the command line ---
+
+
+def test_a_file_chooses_its_notation():
+    text = FILE + '[notation]\nrates = "fraction"\nangular_velocity = "omega"\n'
+    spec = read_spec(text, source="top.toml", name="top")
+    assert spec.manner == Manner(rates="fraction", angular_velocity="omega")
+    assert DerivationSpec.from_data(json.loads(json.dumps(spec.to_data()))) == spec
+
+
+def test_faults_of_a_notation_are_all_named():
+    text = FILE + '[notation]\nrates = "dots"\nbody = 1\nvector = "bold"\n'
+    with pytest.raises(SpecError) as caught:
+        read_spec(text, source="top.toml", name="top")
+    assert [str(fault) for fault in caught.value.faults] == [
+        'line 4: notation.rates: unknown choice "dots"; did you mean dot?',
+        "line 5: notation.body: expected a text in quotes, got the number 1",
+        "line 6: notation.vector: unknown key; did you mean vectors?",
+    ]
+
+
+def test_options_go_before_the_file_and_check_knows_them(tmp_path: Path):
+    file = tmp_path / "top.toml"
+    file.write_text(FILE + '[notation]\nrates = "fraction"\nbody = "superscript"\n', "utf-8")
+    run = CliRunner()
+    done = run.invoke(
+        cli.commands, ["run", str(file), "--rates", "dot", "--out", str(tmp_path / "out")]
+    )
+    assert done.exit_code == 0, done.output
+    assert "φ̇ sin θ sin ψ" in done.output
+    assert "Ωᴮ" in done.output
+    record = json.loads((tmp_path / "out" / "top" / "top.json").read_text("utf-8"))
+    assert record["request"]["notation"]["body"] == "superscript"
+    assert record["request"]["notation"]["rates"] == "dot"
+    assert run.invoke(cli.commands, ["check", str(tmp_path / "out")]).exit_code == 0
+
+
+def test_the_command_line_offers_every_choice():
+    assert cli._NOTATION == CHOICES
+    shown = CliRunner().invoke(cli.commands, ["derive", "--help"]).output
+    for name, known in CHOICES.items():
+        assert re.search(
+            rf"--{name.replace('_', '-')} \[{'|'.join(known)}\]".replace("|", r"\|"), shown
+        )
