@@ -253,6 +253,7 @@ def check(context: click.Context, paths: tuple[Path, ...]) -> None:
 @click.pass_context
 def identify(
     context: click.Context,
+    /,
     file: Path | None,
     columns: str | None,
     tolerance: float | None,

@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 
 import pytest
+from test_cli import call
 
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
-from test_cli import call
 
 GIBBS = """\
 title = "Gibbs vector by hand"
@@ -58,7 +58,7 @@ def test_every_named_rotation_runs_from_a_file(tmp_path):
     [
         (("unit_quaternion",), "scalar first", "unit_quaternion"),
         (("quaternion", "--scalar-last"), "scalar last", "quaternion_xyzw"),
-        (("rotation-vector",), "exp", "rotation_vector"),
+        (("rotation-vector",), "its length n is the angle", "rotation_vector"),
         (("goldstein",), "A = Rᵀ", "goldstein"),
         (("z(pan) y(tilt)",), "pan about z", "chain_zy"),
         (("z(phi) [1,1,0](psi)",), "[1,1,0]", "chain_zu"),
@@ -69,8 +69,7 @@ def test_derive_takes_names_and_turns(tmp_path, arguments, part, folder):
     done = call("derive", *arguments, cwd=tmp_path)
     assert "✗" not in done.stdout
     assert (tmp_path / "out" / folder / f"{folder}.py").is_file()
-    if part != "exp":
-        assert part in done.stdout
+    assert part in " ".join(done.stdout.split())
 
 
 @pytest.mark.parametrize("text", [GIBBS, BOUND], ids=["free", "bound"])

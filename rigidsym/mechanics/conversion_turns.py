@@ -76,7 +76,8 @@ class ThreeTurns:
         return (
             f"{first} and {third} are in (−π, π], {middle} is in [{_text(low)}, {_text(high)}]. "
             f"At a pole, the ends of that interval, only the sum or the difference of {first} and "
-            f"{third} is determined: there {last} is 0. Within 4 eps of a pole it counts as one."
+            f"{third} is determined: there {last} is 0. What is within 8 eps (radians) of a pole "
+            "counts as there."
         )
 
 
