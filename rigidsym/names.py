@@ -79,9 +79,9 @@ def check_name(text: str) -> str:
 
     Raises ExpressionError for what cannot name one.
     """
-    if not text or len(text) > _LONGEST:
-        raise ExpressionError(f"expected a name of 1 to {_LONGEST} letters, got {len(text)}")
     name = spelled(text)
+    if not 0 < len(name) <= _LONGEST:
+        raise ExpressionError(f"expected a name of 1 to {_LONGEST} letters, got {len(name)}")
     fault = _fault(name)
     if fault:
         raise ExpressionError(f"{text!r} cannot be a name here: {fault}")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import sympy as sp
 
@@ -42,7 +43,13 @@ def markup(expression: sp.Expr, notation: Notation) -> Markup:
 
 
 def write(expression: sp.Expr, notation: Notation, pen: Pen) -> str:
-    return _Walk(notation, pen).expression(sp.sympify(expression)).text
+    return _written(sp.sympify(expression), notation, type(pen))
+
+
+@lru_cache(maxsize=8192)
+def _written(expression: sp.Expr, notation: Notation, pen: type[Pen]) -> str:
+    """One formula; the terminal, the note and its phone layout ask for the same ones again."""
+    return _Walk(notation, pen()).expression(expression).text
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -50,7 +51,11 @@ class Notation:
 
 def notation_of(arguments: Iterable[Argument], manner: Manner = DEFAULT) -> Notation:
     """The notation of a derivation, from its arguments, in the manner of the user."""
-    arguments = tuple(arguments)
+    return _notation(tuple(arguments), manner)
+
+
+@lru_cache(maxsize=64)
+def _notation(arguments: tuple[Argument, ...], manner: Manner) -> Notation:
     return Notation(
         manner=manner,
         names={
