@@ -36,10 +36,10 @@ def codec_for(
     that ask for the same generators share one ring, with all that it remembers.
     Raises AlgebraError for an expression that no ring of this kind can hold.
     """
-    held_to = tuple(sp.sympify(constraint) for constraint in constraints)
+    held_to = tuple(sp.sympify(constraint, strict=True) for constraint in constraints)
     request = Request(order)
     for expression in (*expressions, *held_to):
-        request.collect(sp.sympify(expression))
+        request.collect(sp.sympify(expression, strict=True))
     request.close()
     return _shared(
         tuple(request.generators()),
@@ -159,7 +159,7 @@ class Codec:
         """
         known = self._known.get(expression)
         if known is None:
-            known = self._known[expression] = self._walk(sp.sympify(expression))
+            known = self._known[expression] = self._walk(sp.sympify(expression, strict=True))
         return known
 
     def _walk(self, expression: sp.Expr) -> Quotient:
@@ -172,7 +172,7 @@ class Codec:
         if expression.is_Add:
             return Quotient.sum(ring, [self.encode_quotient(part) for part in expression.args])
         if expression.is_Mul:
-            return Quotient.product(ring, [self.encode_quotient(part) for part in expression.args])
+            return self._product(expression.args)
         if expression.is_Pow and expression.exp.is_Rational:
             return self._power(expression.base, expression.exp)
         if isinstance(expression, sp.sin | sp.cos):
@@ -186,6 +186,23 @@ class Codec:
     def _foreign(self, expression: sp.Expr) -> AlgebraError:
         names = ", ".join(str(gen.expression) for gen in self.ring.generators)
         return AlgebraError(f"{expression} is not in the ring of {names}")
+
+    def _product(self, factors: Sequence[sp.Expr]) -> Quotient:
+        """The product; what are generators and their powers is one monomial, made in one go."""
+        powers = [0] * len(self.ring.generators)
+        others: list[Quotient] = []
+        for factor in factors:
+            base, exponent = (factor.base, factor.exp) if factor.is_Pow else (factor, sp.S.One)
+            place = self.ring.index.get(factor)
+            if place is not None:
+                powers[place] += 1
+            elif exponent.is_Integer and exponent > 0 and base in self.ring.index:
+                powers[self.ring.index[base]] += int(exponent)
+            else:
+                others.append(self.encode_quotient(factor))
+        one = self.ring.polynomials.domain.one
+        monomial = self.ring.reduce(self.ring.polynomials.term_new(tuple(powers), one))
+        return Quotient.product(self.ring, [*others, Quotient.whole(self.ring, monomial)])
 
     def _number(self, numerator: int, denominator: int) -> Quotient:
         polynomials = self.ring.polynomials

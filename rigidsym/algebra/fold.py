@@ -44,13 +44,21 @@ def _of_two(a: Angle, b: Angle, expressions: Sequence[sp.Expr]) -> Iterator[Rule
 
 
 def folded(terms: Mapping[Monomial, Fraction], found: Iterable[Rule]) -> Terms:
-    """The terms with each pair of an addition theorem made one; places for all rules are added."""
+    """The terms with each pair of an addition theorem made one.
+
+    Places for all rules are added, unless no rule can apply.
+    """
     found = tuple(found)
+    highest = tuple(map(max, zip(*terms, strict=True)))
+    may = [
+        (place, rule)
+        for place, rule in enumerate(found, start=len(highest))
+        if all(highest[k] > 0 for k in (*rule.first, *rule.second))
+    ]
+    if len(terms) < 2 or not may:
+        return dict(terms)
     result = {(*monomial, *[0] * len(found)): value for monomial, value in terms.items()}
-    if len(result) < 2:
-        return result
-    start = len(next(iter(terms)))
-    for place, rule in enumerate(found, start=start):
+    for place, rule in may:
         for monomial in list(result):
             _fold_at(result, monomial, rule, place)
     return result

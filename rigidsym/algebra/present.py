@@ -49,9 +49,8 @@ class Presenter:
     ) -> sp.ImmutableMatrix:
         """The matrix, or the matrix divided by `denominator`, entry by entry."""
         below = self.ring.one if denominator is None else denominator
-        return sp.ImmutableMatrix(
-            [[self.quotient(Quotient(self.ring, e, below)) for e in row] for row in matrix.rows]
-        )
+        entries = [self.quotient(Quotient(self.ring, entry, below)) for entry in matrix.entries]
+        return sp.ImmutableMatrix(*matrix.shape, entries)
 
     def element(self, element: PolyElement) -> sp.Expr:
         """The textbook form of one element."""
@@ -97,8 +96,8 @@ class Presenter:
         factors = [sp.Rational(number.numerator, number.denominator), *self._ratios(powers)]
         factors += [
             expression if power == 1 else expression**power
-            for expression, power in zip(self._expressions, powers, strict=True)
-            if power
+            for expression, power in zip(self._expressions, powers, strict=False)
+            if power  # the places of folded sums are there where one was folded
         ]
         if product.bracket:
             factors.append(self._sum(product.bracket))

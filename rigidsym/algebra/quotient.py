@@ -35,11 +35,15 @@ class Quotient:
     @classmethod
     def sum(cls, ring: Ring, parts: Iterable[Quotient]) -> Quotient:
         """The sum, over one denominator where the parts share it."""
-        return reduce(add, parts, cls.whole(ring, ring.zero))
+        terms = list(parts)
+        if all(term.denominator == ring.one for term in terms):
+            return cls.whole(ring, ring.total(term.numerator for term in terms))
+        return reduce(add, terms)
 
     @classmethod
     def product(cls, ring: Ring, parts: Iterable[Quotient]) -> Quotient:
-        return reduce(mul, parts, cls.whole(ring, ring.one))
+        factors = list(parts)
+        return reduce(mul, factors) if factors else cls.whole(ring, ring.one)
 
     def __add__(self, other: Quotient) -> Quotient:
         if self.denominator == other.denominator:

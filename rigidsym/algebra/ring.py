@@ -103,6 +103,13 @@ class Ring:
                     total[product] = total.get(product, 0) + coefficient * factor
         return self._settled(total)
 
+    def total(self, elements: Iterable[PolyElement]) -> PolyElement:
+        """The sum of elements in normal form, which is in normal form."""
+        result: Terms = {}
+        for element in elements:
+            _add(result, 1, element)
+        return self.zero.new({m: c for m, c in result.items() if c})
+
     def _settled(self, terms: Terms) -> PolyElement:
         result: Terms = {}
         for monomial, coefficient in terms.items():

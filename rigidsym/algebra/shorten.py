@@ -45,7 +45,10 @@ def _length(element: PolyElement) -> tuple[int, int]:
 def _neighbours(ring: Ring, element: PolyElement) -> Iterator[PolyElement]:
     """Each polynomial in which one term was replaced by means of one relation."""
     domain = ring.polynomials.domain
+    highest = tuple(map(max, zip(*element, strict=True)))
     for part, needed, factor, relation in ring.relation_terms:
+        if any(highest[k] < power for k, power in needed):
+            continue
         for monomial, coefficient in element.items():
             if any(monomial[k] < power for k, power in needed):
                 continue

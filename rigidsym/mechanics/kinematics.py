@@ -70,6 +70,7 @@ def _numbered(work: _Kinematics, only: Collection[str]) -> Iterator[Step]:
     """The steps that are wanted and that the model has."""
     table = quantities(passive=work.model.passive, coordinates=len(work.model.coordinates))
     rotation = work.rotation_matrix()  # in any case: all else rests on its being a rotation
+    constants = work.model.constants
     number = 0
     for name, find in _STEPS.items():
         if only and name not in only:
@@ -79,7 +80,7 @@ def _numbered(work: _Kinematics, only: Collection[str]) -> Iterator[Step]:
             number += 1
             yield Step(
                 number=number,
-                quantity=_with_parameters(table[name], found.expression, work.model),
+                quantity=_with_parameters(table[name], found.expression, constants),
                 expression=found.expression,
                 because=found.because,
                 proofs=found.proofs,
@@ -88,10 +89,10 @@ def _numbered(work: _Kinematics, only: Collection[str]) -> Iterator[Step]:
 
 
 def _with_parameters(
-    quantity: Quantity, expression: sp.ImmutableMatrix, model: RotationModel
+    quantity: Quantity, expression: sp.ImmutableMatrix, constants: Collection[sp.Symbol]
 ) -> Quantity:
-    """The quantity, with the constants of the model among its inputs where it has any."""
-    if expression.free_symbols.isdisjoint(model.constants):
+    """The quantity, with the constants of the model among its inputs where it holds any."""
+    if not constants or expression.free_symbols.isdisjoint(constants):
         return quantity
     return replace(quantity, inputs=(*quantity.inputs, "parameters"))
 

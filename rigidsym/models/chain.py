@@ -84,7 +84,7 @@ def axis_turn(axis: Sequence[sp.Expr], angle: sp.Expr) -> Turn:
 
     Raises ModelError for a zero axis and for numbers that are not a unit vector.
     """
-    parts = tuple(sp.sympify(part) for part in axis)
+    parts = tuple(sp.sympify(part, strict=True) for part in axis)
     square = sum(part**2 for part in parts)
     if all(part.is_number for part in parts) and sp.expand(square) != 1:
         raise ModelError(
@@ -100,7 +100,7 @@ def direction(parts: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
 
     Symbols are left as they are, for the unit condition to bind. Raises ModelError for [0, 0, 0].
     """
-    exact = tuple(sp.sympify(part) for part in parts)
+    exact = tuple(sp.sympify(part, strict=True) for part in parts)
     if not all(part.is_number for part in exact):
         return exact
     length = sp.sqrt(sum(part**2 for part in exact))
