@@ -16,6 +16,7 @@ from rigidsym.api import Motion, derive
 from rigidsym.errors import ExpressionError, ModelError, QuantityError
 from rigidsym.mechanics import kinematics
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.notes.terminal import show
 from rigidsym.rotations import rotation_from
 from rigidsym.spec import DerivationSpec, spec_for
 
@@ -326,3 +327,11 @@ def test_wrong_options_are_refused():
         rotation_from("quaternion", names=["a", "b", "c"])
     with pytest.raises(QuantityError, match="no quantity speed"):
         kinematics.derive(rotation_from("ZXZ"), only=("speed",))
+
+
+def test_vectors_are_printed_as_vectors():
+    motion = motion_of("rotation_vector")
+    line = "Ω = v̇ + (1 − cos n)/n² v × v̇ + (1 − sin n/n)/n² v × (v × v̇), with v = (v₁, v₂, v₃)"
+    assert line in show(motion, width=120)
+    assert r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})" in motion.note().latex()
+    assert "with v = " not in show(motion_of("lecture"), width=120)

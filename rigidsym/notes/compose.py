@@ -38,6 +38,7 @@ from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.notation import notation_of
 from rigidsym.notes.prose import DETERMINANTS, equal, motion, product, proofs_in_words, turn, zeros
 from rigidsym.notes.rewriting import in_manner
+from rigidsym.notes.vector_words import sum_of_vectors, where
 from rigidsym.notes.words import (
     convention,
     singular,
@@ -214,6 +215,14 @@ class _Composer:
             if step.quantity.name in names:
                 yield Paragraph(self._lead(step))
                 yield self._equation(step)
+                yield from self._as_vectors(step)
+
+    def _as_vectors(self, step: Step) -> Iterator[Block]:
+        """The same as a sum of vectors, where the coordinates hold a vector."""
+        form = step.vector_form
+        if form is not None:
+            yield Paragraph(("With ", *where(form, self.notation), " it is the vector"))
+            yield Equation(sides=(step.quantity.symbol, sum_of_vectors(form, self.notation)))
 
     def _lead(self, step: Step) -> Text:
         """How the quantity follows; what has been said once is not said again."""

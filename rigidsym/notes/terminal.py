@@ -19,6 +19,7 @@ from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.measure import columns
 from rigidsym.notes.notation import notation_of
 from rigidsym.notes.prose import DETERMINANTS, equal, product, turn, zeros
+from rigidsym.notes.vector_words import sum_of_vectors, where
 from rigidsym.notes.words import convention, plain, singular, unit_in_words
 
 Style = Callable[[str, Literal["heading", "dim"]], str]
@@ -70,6 +71,26 @@ class _Steps:
     def step(self, step: Step) -> Iterator[str]:
         yield from self._headline(step)
         yield from self._value(step)
+        yield from self._as_vectors(step)
+
+    def _as_vectors(self, step: Step) -> Iterator[str]:
+        """Ω = v̇ + ..., with v = ..., where the coordinates hold a vector."""
+        form = step.vector_form
+        if form is not None:
+            total = equal(step.quantity.symbol, sum_of_vectors(form, self.notation))
+            yield from self._wrapped((total, ", with ", *where(form, self.notation)))
+
+    def _wrapped(self, sentence: Text) -> list[str]:
+        whole = (_unbroken(span) if isinstance(span, Markup) else span for span in sentence)
+        lines = textwrap.wrap(
+            self.written(plain(tuple(whole))),
+            self.width,
+            initial_indent=_INDENT,
+            subsequent_indent=_DEEPER,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        return [line.replace(_NO_BREAK, " ") for line in lines]
 
     def _headline(self, step: Step) -> Iterator[str]:
         """(5) angular velocity, body components           angular_velocity_body, rad/s"""
@@ -166,18 +187,6 @@ class _Screen(_Steps):
             yield f"{_DEEPER}left over:"
             names = indexed(RESIDUAL, proof.residual.shape)
             yield from self._matrix([f"{RESIDUAL.text} = "], proof.residual, names)
-
-    def _wrapped(self, sentence: Text) -> list[str]:
-        whole = (_unbroken(span) if isinstance(span, Markup) else span for span in sentence)
-        lines = textwrap.wrap(
-            self.written(plain(tuple(whole))),
-            self.width,
-            initial_indent=_INDENT,
-            subsequent_indent=_DEEPER,
-            break_long_words=False,
-            break_on_hyphens=False,
-        )
-        return [line.replace(_NO_BREAK, " ") for line in lines]
 
 
 def _unbroken(formula: Markup) -> str:
