@@ -10,6 +10,7 @@ from rigidsym.mechanics import kinematics
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.manner import DEFAULT, Manner
+from rigidsym.rotations import rotation_from
 
 if TYPE_CHECKING:
     from rigidsym.kernels.module import KernelModule
@@ -96,13 +97,16 @@ class MotionStep(Step):
         return self._repr_mimebundle_()["text/latex"]
 
 
-def derive(model: RotationModel, only: Collection[str] = ()) -> Motion:
+def derive(model: RotationModel | str, only: Collection[str] = ()) -> Motion:
     """The proved kinematics of a rotation model; `only` names the quantities that are wanted.
+
+    A text is read as on the command line: "ZXZ", "z(phi) x(theta)", "quaternion".
 
     Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over, and
     AlgebraError for expressions that the ring cannot hold.
     """
-    derivation = kinematics.derive(model, only)
+    rotation = rotation_from(model) if isinstance(model, str) else model
+    derivation = kinematics.derive(rotation, only)
     steps = tuple(
         MotionStep(**_values(step), arguments=derivation.arguments) for step in derivation.steps
     )

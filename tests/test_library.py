@@ -335,3 +335,15 @@ def test_vectors_are_printed_as_vectors():
     assert line in show(motion, width=120)
     assert r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})" in motion.note().latex()
     assert "with v = " not in show(motion_of("lecture"), width=120)
+
+
+def test_the_conditions_of_a_proof_are_said():
+    motion = motion_of("z(phi) [a,b,c](beta) [1,2,2](psi)")
+    assert "R is a rotation where a**2 + b**2 + c**2 = 1." in motion.kernels().source
+    assert "proved under the condition a² + b² + c² = 1." in show(motion, width=120)
+    assert "a^{2} + b^{2} + c^{2} = 1" in motion.note().latex()
+    assert "condition" not in show(motion_of("lecture"), width=120)
+
+
+def test_derive_reads_text_as_the_command_line_does():
+    assert derive("ZXZ").angular_velocity_body == motion_of("ZXZ").angular_velocity_body

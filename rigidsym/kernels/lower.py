@@ -75,7 +75,8 @@ def _convention(model: RotationModel) -> tuple[str, ...]:
         else "Active: R takes body components to space components, x = R x′."
     )
     product = (f"R = {model.product}.",) if model.turns else ()
-    return (*product, *model.convention, presented)
+    bound = tuple(f"R is a rotation where {condition}." for condition in model.conditions)
+    return (*product, *model.convention, presented, *bound)
 
 
 def _named(vector: Vector, names: Names) -> ir.Argument:

@@ -154,6 +154,13 @@ class RotationModel:
         return " ".join(str(turn) for turn in self.turns)
 
     @property
+    def conditions(self) -> tuple[str, ...]:
+        """What the coordinates and constants are bound by, in plain text: "c**2 + s**2 = 1"."""
+        plain = {q: sp.Symbol(q.func.__name__) for q in self.coordinates}
+        parts = (constraint.xreplace(plain).as_coeff_Add() for constraint in self.constraints)
+        return tuple(f"{rest} = {-number}" for number, rest in parts)
+
+    @property
     def constants(self) -> tuple[sp.Symbol, ...]:
         """The symbols in R that do not move: fixed angles, components of an axis."""
         return tuple(sp.ordered(self.matrix.free_symbols - {TIME}))

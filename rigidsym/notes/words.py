@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain, zip_longest
 
 import sympy as sp
@@ -91,7 +91,21 @@ def convention(derivation: Derivation, manner: Manner = DEFAULT) -> tuple[Text, 
             BODY.omega,
         ),
         _coordinates(derivation.argument("q"), has_dots=manner.rates == "dot"),
+        *_conditions(derivation, manner),
     )
+
+
+def _conditions(derivation: Derivation, manner: Manner) -> Iterator[Text]:
+    """What the coordinates and constants are bound by, which the proofs make use of."""
+    notation = notation_of(derivation.arguments, manner)
+    for constraint in derivation.model.constraints:
+        number, rest = constraint.as_coeff_Add()
+        sides = (markup(rest, notation), markup(-number, notation))
+        yield words("All that is proved is proved under the condition {}.", equal_sides(*sides))
+
+
+def equal_sides(left: Markup, right: Markup) -> Markup:
+    return fill("{0} = {1}", "{0} = {1}", left, right)
 
 
 def _direction(*, passive: bool) -> Text:

@@ -241,7 +241,7 @@ def _about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
     is_named = kernel.definition and kernel.definition != kernel.symbol
     definition = f" = {kernel.definition}" if is_named else ""
     rows = [
-        (a.name, f"(..., {len(a.components)})", f"{', '.join(a.components)} in {_unit(a.units)}")
+        (a.name, f"(..., {len(a.components)})", ", ".join(a.components) + _in_unit(a.units))
         for a in kernel.arguments
     ]
     shape = ", ".join(["...", *map(str, kernel.shape)])
@@ -263,9 +263,13 @@ def _equation(kernel: Kernel) -> str:
     return "" if kernel.equation is None else f"Equation ({kernel.equation}) of the note; "
 
 
-def _unit(units: Sequence[str]) -> str:
+def _in_unit(units: Sequence[str]) -> str:
+    """The unit of the components behind their names; pure numbers have none."""
+    if not any(units):
+        return ""
     distinct = dict.fromkeys(units)
-    return next(iter(distinct)) if len(distinct) == 1 else f"({', '.join(units)})"
+    same = len(distinct) == 1
+    return f" in {units[0] if same else '(' + ', '.join(unit or '1' for unit in units) + ')'}"
 
 
 def _table(rows: Sequence[tuple[str, str, str]]) -> list[str]:
