@@ -63,7 +63,7 @@ def _read(file: Path) -> Mapping[str, Any]:
     """The content of a JSON file; empty where it is not an object."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
-    except (json.JSONDecodeError, UnicodeDecodeError):
+    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
         return {}
     return content if isinstance(content, dict) else {}
 

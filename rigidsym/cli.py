@@ -6,6 +6,7 @@ the functions that need them, so that `rigidsym --help` imports neither SymPy no
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import shutil
@@ -97,6 +98,9 @@ _WITH_CONVERSIONS = click.option(
 
 def main() -> None:
     """The `rigidsym` command: runs, and turns errors into messages and exit codes."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # φ on a terminal that cannot show it is a ?
+            stream.reconfigure(errors="replace")
     try:
         status = commands.main(standalone_mode=False)
     except click.ClickException as error:

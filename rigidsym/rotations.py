@@ -41,6 +41,8 @@ def rotation_from(
         raise ModelError(f"expected {_A_ROTATION}, got {len(text)} characters")
     asked: dict[str, Any] = {"sequence": text, "angles": names and list(names)}
     asked |= {"constants": list(constants), "scalar_last": scalar_last, "passive": passive}
+    if constants and "(" not in text:
+        raise ModelError(f"{text} has no constants; they go with turns such as z(phi) x(incline)")
     name = text.strip().lower().replace("-", "_").replace(" ", "_")
     if "(" in text:
         model = _turned(text, names, constants, passive)
@@ -75,6 +77,8 @@ def rotation_given(
     if len(rows) != 3 or any(len(row) != 3 for row in rows):
         raise ModelError("a rotation matrix has three rows of three expressions")
     functions = {check_name(q): time_function(check_name(q)) for q in coordinates}
+    if len(functions) != len(coordinates):
+        raise ModelError(f"a coordinate is named twice: {', '.join(coordinates)}")
     texts = [*(entry for row in rows for entry in row), *constraints]
     used = {n: functions.get(n) or sp.Symbol(check_name(n)) for t in texts for n in names_in(t)}
     entries = [parse_expression(text, used) for text in texts]

@@ -339,11 +339,34 @@ def test_vectors_are_printed_as_vectors():
 
 def test_the_conditions_of_a_proof_are_said():
     motion = motion_of("z(phi) [a,b,c](beta) [1,2,2](psi)")
-    assert "R is a rotation where a**2 + b**2 + c**2 = 1." in motion.kernels().source
-    assert "proved under the condition a² + b² + c² = 1." in show(motion, width=120)
+    source = " ".join(motion.kernels().source.split())
+    assert "R is a rotation where a**2 + b**2 + c**2 = 1." in source
+    shown = " ".join(show(motion, width=120).split())
+    assert "proved under the condition a² + b² + c² = 1." in shown
     assert "a^{2} + b^{2} + c^{2} = 1" in motion.note().latex()
     assert "condition" not in show(motion_of("lecture"), width=120)
 
 
 def test_derive_reads_text_as_the_command_line_does():
     assert derive("ZXZ").angular_velocity_body == motion_of("ZXZ").angular_velocity_body
+
+
+def test_a_name_is_a_coordinate_or_a_constant():
+    with pytest.raises(ModelError, match="a is both a coordinate and a constant"):
+        rotation_from("z(a) [a,b,c](beta)")
+    with pytest.raises(ModelError, match="they go with turns"):
+        rotation_from("ZXZ", constants=["k"])
+
+
+def test_a_step_of_many_turns_is_proved_by_itself():
+    motion = kinematics.derive(
+        rotation_from("z(a_1) x(a_2) z(a_3) x(a_4) y(a_5)"), only=("spin_matrix",)
+    )
+    assert "dR/dt·Rᵀ = C(Ω)" in [proof.claim.text for proof in motion.proofs]
+
+
+def test_rates_have_the_unit_of_the_coordinates():
+    assert motion_of("ZXZ").step("rates_from_angular_velocity_body").quantity.unit == "rad/s"
+    assert motion_of("unit_quaternion").step("rates_from_angular_velocity_body").quantity.unit == (
+        "1/s"
+    )

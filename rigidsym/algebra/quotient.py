@@ -1,6 +1,7 @@
 """Quotients of ring elements as pairs; equal when the cross products are.
 
-The rings are integral domains, so that a/b = c/d exactly where a·d − c·b reduces to zero.
+Denominators are not zero, so that a/b = c/d where a·d − c·b reduces to zero. Where the ring knows
+all relations it is an integral domain, and only there.
 """
 
 from __future__ import annotations

@@ -14,12 +14,9 @@ import sympy as sp
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.mechanics.derivation import Markup
-from rigidsym.models.rotation import Citation, RotationModel
+from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import hat
 
-SOURCE = Citation(
-    text="E. Bernardes, S. Viollet, Quaternion to Euler angles conversion, PLoS ONE 17 (2022)"
-)
 Claim = tuple[tuple[sp.Expr, ...], Markup]  # what vanishes, and how it is written
 
 

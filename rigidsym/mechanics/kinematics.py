@@ -68,7 +68,12 @@ def derive(model: RotationModel, only: Collection[str] = ()) -> Derivation:
 
 def _numbered(work: _Kinematics, only: Collection[str]) -> Iterator[Step]:
     """The steps that are wanted and that the model has."""
-    table = quantities(passive=work.model.passive, coordinates=len(work.model.coordinates))
+    units = set(work.values.arguments["q_dot"].units)
+    table = quantities(
+        passive=work.model.passive,
+        coordinates=len(work.model.coordinates),
+        rate_unit=units.pop() if len(units) == 1 else "",
+    )
     rotation = work.rotation_matrix()  # in any case: all else rests on its being a rotation
     constants = work.model.constants
     number = 0
@@ -140,12 +145,15 @@ class _Kinematics:
         return _Found(
             self.present.matrix(self._shown(self.values.R_dot)),
             "The matrix is differentiated entry by entry, by the chain rule.",
-            (self.prove.vanishes(spin + spin.T, claims.stays_orthogonal(self._shown_symbol)),),
+            (
+                self.prove.vanishes(spin + spin.T, claims.stays_orthogonal(self._shown_symbol)),
+                *self._composed(),
+            ),
         )
 
     def spin_matrix(self) -> _Found:
         spin, symbol = self._shown_spin, claims.spin_of(self._shown_symbol)
-        proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol))]
+        proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol)), *self._composed()]
         because = "The derivative is multiplied by the transpose; the product is skew"
         if self.model.passive:
             operator = claims.is_operator(BODY.omega, symbol, "-")
@@ -153,19 +161,27 @@ class _Kinematics:
             because += ", and it is the operator of −Ω′, not of Ω"
         return _Found(self.present.matrix(spin), f"{because}.", tuple(proofs))
 
+    def _composed(self) -> tuple[Proof, ...]:
+        """Where Ω was composed turn by turn: that it is the vector of dR/dt Rᵀ."""
+        factors = self.values.factors
+        if not factors:
+            return ()
+        residual = composition.operators(factors, self.values.argument("omega_space"))
+        claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
+        return (self.prove.vanishes(residual, claim),)
+
     def angular_velocity_space(self) -> _Found:
         values = self.values
         if values.factors:
-            residual = composition.operators(values.factors, values.argument("omega_space"))
+            (proof,) = self._composed()
             because = (
                 "Each turn adds its own axis, as the turns before it have moved it; for so many "
                 "turns the product is not multiplied out."
             )
         else:
-            residual = values.spin - hat(values.omega_space)
             because = "The vector of a skew matrix stands in its entries (3,2), (1,3) and (2,1)."
-        claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
-        proof = self.prove.vanishes(residual, claim)
+            claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
+            proof = self.prove.vanishes(values.spin - hat(values.omega_space), claim)
         return self._vector(SPACE, values.omega_space, because, proof)
 
     def angular_velocity_body(self) -> _Found:
@@ -232,7 +248,7 @@ class _Kinematics:
         return _Found(
             self.present.matrix(space),
             "The space components of the angular velocity are differentiated.",
-            (self.prove.vanishes(self.values.spin.dt() - hat(space), claim),),
+            (self.prove.vanishes(self.values.spin.dt() - hat(space), claim), *self._composed()),
         )
 
     def angular_acceleration_body(self) -> _Found:

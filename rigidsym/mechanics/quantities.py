@@ -159,7 +159,7 @@ def _omega_body(definition: Markup) -> Quantity:
     )
 
 
-def _rates(frame: Frame, *, is_square: bool) -> tuple[Quantity, ...]:
+def _rates(frame: Frame, rate_unit: str, *, is_square: bool) -> tuple[Quantity, ...]:
     """The rate matrix of one frame, its inverse, and the rates that follow from it."""
     inverse = frame.inverse if is_square else frame.right_inverse
     kind = "inverse" if is_square else "right inverse of the"
@@ -189,7 +189,7 @@ def _rates(frame: Frame, *, is_square: bool) -> tuple[Quantity, ...]:
             symbol=RATES,
             definition=fill(r"{0}{1}", "{0} {1}", inverse, frame.omega),
             about=f"rates of the coordinates from {frame.name} components of the angular velocity",
-            unit="rad/s",
+            unit=rate_unit,
             inputs=("q", f"omega_{frame.name}"),
             is_vector=True,
             source=_DIEBEL,
@@ -223,12 +223,17 @@ def _accelerations() -> tuple[Quantity, ...]:
 
 
 @cache
-def quantities(*, passive: bool, coordinates: int = 3) -> Mapping[str, Quantity]:
-    """All quantities by name, in the order of the derivation, for a number of coordinates."""
+def quantities(
+    *, passive: bool, coordinates: int = 3, rate_unit: str = "rad/s"
+) -> Mapping[str, Quantity]:
+    """All quantities by name, in the order of the derivation, for a number of coordinates.
+
+    `rate_unit` is that of the rates, where they have one in common.
+    """
     table = (
         *(_passive() if passive else _active()),
-        *_rates(SPACE, is_square=coordinates == 3),
-        *_rates(BODY, is_square=coordinates == 3),
+        *_rates(SPACE, rate_unit, is_square=coordinates == 3),
+        *_rates(BODY, rate_unit, is_square=coordinates == 3),
         *_accelerations(),
     )
     return MappingProxyType({quantity.name: quantity for quantity in table})

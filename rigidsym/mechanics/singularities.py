@@ -97,7 +97,7 @@ def _zeros_of_factor(
     for sine, cosine in codec.angle_pairs:
         argument = codec.ring.generators[sine].expression.args[0]
         rate, coordinate = argument.as_coeff_Mul()
-        if coordinate not in coordinates or (2 * rate).q != 1:
+        if coordinate not in coordinates or rate.q != 1:
             continue  # sin θ/3 does not vanish again after a whole turn
         for place, other, offset in ((sine, cosine, Fraction(0)), (cosine, sine, Fraction(1, 2))):
             if factor.monic() == codec.ring.generator(place):

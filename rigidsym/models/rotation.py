@@ -32,7 +32,7 @@ LECTURE = "Lecture notes on rigid body motion"
 
 
 def lecture(equation: str = "", section: str = "") -> Citation:
-    """A place in the ground text of this project."""
+    """A place in the lecture notes."""
     return Citation(text=f"{LECTURE}, {section}" if section else LECTURE, equation=equation)
 
 
@@ -123,6 +123,15 @@ class RotationModel:
         if not self.coordinates:
             raise ModelError(f"{self.name}: a model needs at least one coordinate")
         self._check_coordinates()
+        self._check_constants()
+
+    def _check_constants(self) -> None:
+        moving = {coordinate.func.__name__ for coordinate in self.coordinates}
+        for constant in self.constants:
+            if constant.name in moving:
+                raise ModelError(f"{self.name}: {constant} is both a coordinate and a constant")
+        if self.matrix.has(sp.I) or any(c.has(sp.I) for c in self.constraints):
+            raise ModelError(f"{self.name}: a rotation is real; its matrix holds the number i")
 
     def _check_coordinates(self) -> None:
         for place, coordinate in enumerate(self.coordinates):
@@ -162,8 +171,9 @@ class RotationModel:
 
     @property
     def constants(self) -> tuple[sp.Symbol, ...]:
-        """The symbols in R that do not move: fixed angles, components of an axis."""
-        return tuple(sp.ordered(self.matrix.free_symbols - {TIME}))
+        """The symbols in R or its conditions that do not move: fixed angles, parts of an axis."""
+        bound = (constraint.free_symbols for constraint in self.constraints)
+        return tuple(sp.ordered(self.matrix.free_symbols.union(*bound) - {TIME}))
 
     @property
     def coordinate_units(self) -> tuple[str, ...]:
