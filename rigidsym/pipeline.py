@@ -36,12 +36,6 @@ class Product:
         return self.files[f"{self.name}.json"]
 
 
-def products(spec: DerivationSpec) -> Iterator[Product]:
-    """The products of a derivation file, one after the other as they are asked for."""
-    for single in spec.singles():
-        yield product(single)
-
-
 def product(spec: DerivationSpec) -> Product:
     """The product of a specification that names one rotation."""
     (model,) = spec.models

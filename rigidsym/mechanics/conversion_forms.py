@@ -209,6 +209,7 @@ def _modified(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
     )
 
 
+# Every closed form is made from the coordinates; this one needs none of them.
 def _cosines(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:  # noqa: ARG001
     return ClosedForm(
         rule="direction_cosines",

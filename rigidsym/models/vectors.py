@@ -91,13 +91,9 @@ def ModifiedRodrigues(
 
 
 def _vector(names: Sequence[str]) -> tuple[tuple[sp.Expr, ...], sp.Matrix, sp.Expr]:
-    components = tuple(time_function(name) for name in three_names(names))
+    components = tuple(time_function(name) for name in distinct_names(names, 3))
     vector = sp.Matrix(components)
     return components, vector, vector.dot(vector)
-
-
-def three_names(names: Sequence[str]) -> tuple[str, ...]:
-    return distinct_names(names, 3)
 
 
 def distinct_names(names: Sequence[str], count: int) -> tuple[str, ...]:

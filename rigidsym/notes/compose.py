@@ -36,11 +36,12 @@ from rigidsym.notes.figure import figure_of
 from rigidsym.notes.formula import markup
 from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.notation import notation_of
-from rigidsym.notes.prose import DETERMINANTS, equal, motion, product, proofs_in_words, turn, zeros
+from rigidsym.notes.prose import DETERMINANTS, motion, product, proofs_in_words, turn, zeros
 from rigidsym.notes.rewriting import in_manner
 from rigidsym.notes.vector_words import sum_of_vectors, where
 from rigidsym.notes.words import (
     convention,
+    equal,
     singular,
     symbols_of,
     unit_in_words,

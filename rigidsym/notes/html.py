@@ -34,9 +34,9 @@ from rigidsym.notes.formula import text
 from rigidsym.notes.layout import Display, display
 from rigidsym.notes.mathml import mathml
 from rigidsym.notes.plain import cleaned
-from rigidsym.notes.prose import announcement, equal
+from rigidsym.notes.prose import announcement
 from rigidsym.notes.svg import svg
-from rigidsym.notes.words import plain
+from rigidsym.notes.words import equal, plain
 
 TEMPLATE = "note.html.jinja"
 _PAGE = 39.5  # ems of a display on a page, some less than there are: browsers differ in fonts

@@ -12,7 +12,7 @@ from rigidsym.notes.document import Block, Cited, Equation, Paragraph, Text
 from rigidsym.notes.formula import markup
 from rigidsym.notes.layout import Done
 from rigidsym.notes.notation import Notation
-from rigidsym.notes.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION, listed, words
+from rigidsym.notes.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION, equal, listed, words
 
 _MOTION = lecture("15", "section 3.2")
 _VELOCITY = Markup(r"\dot{\mathbf{x}}", "ẋ")
@@ -33,10 +33,6 @@ def product(factors: Sequence[Markup]) -> Markup:
     return Markup(
         r"\,".join(factor.latex for factor in factors), " ".join(factor.text for factor in factors)
     )
-
-
-def equal(*sides: Markup) -> Markup:
-    return Markup(" = ".join(s.latex for s in sides), " = ".join(s.text for s in sides))
 
 
 def turn(turn: Turn, notation: Notation) -> Markup:

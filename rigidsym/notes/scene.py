@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.drawing import Kind
-from rigidsym.notes.prose import equal
 from rigidsym.notes.space import (
     STANDARD,
     Frame,
@@ -25,6 +24,7 @@ from rigidsym.notes.space import (
     sweep,
     turned,
 )
+from rigidsym.notes.words import equal
 
 BODY = tuple(Markup(f"{axis}'", f"{axis}′") for axis in AXES)
 

@@ -18,9 +18,9 @@ from rigidsym.notes.grid import grid
 from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.measure import columns
 from rigidsym.notes.notation import notation_of
-from rigidsym.notes.prose import DETERMINANTS, equal, product, turn, zeros
+from rigidsym.notes.prose import DETERMINANTS, product, turn, zeros
 from rigidsym.notes.vector_words import sum_of_vectors, where
-from rigidsym.notes.words import convention, plain, singular, unit_in_words
+from rigidsym.notes.words import convention, equal, plain, singular, unit_in_words
 
 Style = Callable[[str, Literal["heading", "dim"]], str]
 

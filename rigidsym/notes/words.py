@@ -101,11 +101,12 @@ def _conditions(derivation: Derivation, manner: Manner) -> Iterator[Text]:
     for constraint in derivation.model.constraints:
         number, rest = constraint.as_coeff_Add()
         sides = (markup(rest, notation), markup(-number, notation))
-        yield words("All that is proved is proved under the condition {}.", equal_sides(*sides))
+        yield words("All that is proved is proved under the condition {}.", equal(*sides))
 
 
-def equal_sides(left: Markup, right: Markup) -> Markup:
-    return fill("{0} = {1}", "{0} = {1}", left, right)
+def equal(*sides: Markup) -> Markup:
+    """The sides of an equation, with signs of equality between them."""
+    return Markup(" = ".join(s.latex for s in sides), " = ".join(s.text for s in sides))
 
 
 def _direction(*, passive: bool) -> Text:
@@ -146,7 +147,7 @@ def singular(point: Singularity, derivation: Derivation) -> Text:
     """What is lost at a singular angle, and what remains determined."""
     notation = notation_of(derivation.arguments)
     coordinate, value = markup(point.coordinate, notation), markup(point.value, notation)
-    at = fill("{0} = {1}", "{0} = {1}", coordinate, value)
+    at = equal(coordinate, value)
     return (
         *words("At {} ", at),
         *_determined(point, derivation, notation),
