@@ -31,6 +31,12 @@ class NotARotation(RigidsymError):
     """A 3x3 matrix whose R Rᵀ − 1 or det R − 1 does not vanish; the message shows what is left."""
 
 
+class BodyError(RigidsymError):
+    """A body that cannot be: no positive mass, an unphysical inertia tensor, an open mesh."""
+
+    exit_code: ClassVar[int] = 2
+
+
 class DerivationError(RigidsymError):
     """A claim of the derivation that is false; the message shows what is left over."""
 

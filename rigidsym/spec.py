@@ -6,15 +6,18 @@ import errno
 import keyword
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from rigidsym import resources
+from rigidsym.body_table import read_body
 from rigidsym.errors import Fault, ModelError, SpecError
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities import QUANTITY_NAMES
+from rigidsym.models.body import RigidBody
+from rigidsym.models.catalogue import EulerAngles
 from rigidsym.models.rotation import RotationModel
 from rigidsym.names import offer
 from rigidsym.notes.manner import CHOICES, DEFAULT, Manner
@@ -25,12 +28,10 @@ from rigidsym.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
 NOTE_FORMATS = ("tex", "html", "md", "ipynb", "pdf")
 
 _OUTPUT = {"quantities": QUANTITY_NAMES, "kernels": tuple(TARGETS), "note": NOTE_FORMATS}
-_FILE = ("title", "rotation", "notation", "output")
+_FILE = ("title", "rotation", "parameters", "body", "notation", "output")
 _HINTS = {
     **dict.fromkeys(CHOICES, "it belongs in [notation]"),
-    **dict.fromkeys(
-        ("parameters", "body", "potential"), f"not read yet (known: {', '.join(_FILE)})"
-    ),
+    "potential": f"not read yet (known: {', '.join(_FILE)})",
     **dict.fromkeys(_FILE, "it belongs at the top of the file, outside the tables"),
     **dict.fromkeys(KEYS, "it belongs in [rotation]"),
     **dict.fromkeys((*_OUTPUT, "conversions"), "it belongs in [output]"),
@@ -52,6 +53,7 @@ class DerivationSpec:
     name: str
     title: str | None = None  # None: the rotation's own
     models: tuple[RotationModel, ...]
+    body: RigidBody | None = None  # what turns, where the file says
     quantities: tuple[str, ...] = ()  # empty: all
     kernels: tuple[str, ...] = ("numpy",)
     note: tuple[str, ...] = ("tex", "html")
@@ -72,6 +74,8 @@ class DerivationSpec:
             faults.add(("models",), message)
         for place, model in enumerate(self.models):
             _check_notation(self.manner, model, faults, place)
+            for message in _names_of_both(model, self.body):
+                faults.add(("models", place), message)
         if len(self.models) == 1 and (message := _fault_of_name(self.name)):
             faults.add(("name",), message)
         faults.raise_if_any()
@@ -96,6 +100,7 @@ class DerivationSpec:
             "quantities": list(self.quantities) or None,
             "kernels": list(self.kernels),
             "note": list(self.note),
+            **(dict(self.body.request) if self.body else {}),
             **({"conversions": True} if self.conversions else {}),
             **({"notation": asdict(self.manner)} if self.manner != DEFAULT else {}),
         }
@@ -107,15 +112,18 @@ class DerivationSpec:
             raise SpecError(source, [Fault(line=0, path="", message="expected an object")])
         faults = Faults(source)
         table = Table(data, (), faults)
-        table.refuse_others(("name", "title", "rotations", "notation", "conversions", *_OUTPUT))
+        own = ("name", "title", "rotations", "parameters", "body", "notation", "conversions")
+        table.refuse_others((*own, *_OUTPUT))
         rotations = table.tables("rotations", "a list of objects with sequence and angles")
         name, title, output = table.text("name"), _read_title(table), _read_output(table)
         models = [m for rotation in rotations for m in _read_rotation(rotation, name or "")]
         if table.value("name") is None:
             table.fault("missing; expected the name of the derivation", "name")
-        manner = _read_notation(table)
+        manner, body = _read_notation(table), _read_body(table, name or "")
         faults.raise_if_any()
-        return cls(name=name or "", title=title, models=tuple(models), manner=manner, **output)
+        return cls(
+            name=name or "", title=title, models=tuple(models), body=body, manner=manner, **output
+        )
 
 
 def spec_for(
@@ -165,9 +173,10 @@ def read_spec(text: str, *, source: str, name: str) -> DerivationSpec:
     table.refuse_others(_FILE, _HINTS)
     title = _read_title(table)
     rotation, output = table.table("rotation"), table.table("output")
-    if table.value("rotation") is None:
+    if table.value("rotation") is None and table.value("body") is None:
         table.fault('missing; expected [rotation] with sequence = "ZXZ" or another', "rotation")
-    models = _read_rotation(rotation, name) if rotation else []
+    models = _read_rotation(rotation, name) if rotation else [EulerAngles("ZXZ")]
+    body = _read_body(table, name)
     if output:
         output.refuse_others((*_OUTPUT, "conversions"), _HINTS)
     choices = _read_output(output) if output else {}
@@ -177,7 +186,31 @@ def read_spec(text: str, *, source: str, name: str) -> DerivationSpec:
         table.fault(f"the file's name names the derivation: {message}")
     faults.raise_if_any()
     name = models[0].name if is_list and len(models) == 1 else name
-    return DerivationSpec(name=name, title=title, models=tuple(models), manner=manner, **choices)
+    return DerivationSpec(
+        name=name, title=title, models=tuple(models), body=body, manner=manner, **choices
+    )
+
+
+def _read_body(table: Table, name: str) -> RigidBody | None:
+    """The body of [body] in the symbols of [parameters], where there is one."""
+    body, parameters = table.table("body"), table.table("parameters")
+    if body is None:
+        if table.value("parameters") is not None:
+            table.fault("parameters go with a [body]", "parameters")
+        return None
+    found = read_body(body, parameters, name)
+    if found is None:
+        return None
+    asked = {"parameters": parameters.data} if parameters else {}
+    return replace(found, request={**asked, "body": body.data})
+
+
+def _names_of_both(model: RotationModel, body: RigidBody | None) -> Iterator[str]:
+    """What is said of names that a rotation and its body both have."""
+    moving = {coordinate.func.__name__ for coordinate in model.coordinates}
+    for parameter in body.parameters if body else ():
+        if parameter.symbol.name in moving or parameter.symbol in model.constants:
+            yield f"{parameter.symbol} names a parameter of the body, and is in the rotation too"
 
 
 def _read_rotation(table: Table, name: str) -> list[RotationModel]:

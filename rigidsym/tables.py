@@ -56,6 +56,11 @@ class Table:
     def value(self, key: str) -> object:
         return self._data.get(key)
 
+    @property
+    def data(self) -> Mapping[str, object]:
+        """All keys and values, as the file has them."""
+        return self._data
+
     def fault(self, message: str, *at: str | int) -> None:
         """Note a fault at a path below this table."""
         self._faults.add((*self._path, *at), message)
@@ -76,6 +81,13 @@ class Table:
         if value is None or isinstance(value, str):
             return value
         self.mistyped(value, "a text in quotes", key)
+        return None
+
+    def number(self, key: str) -> float | None:
+        value = self.value(key)
+        if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
+            return value
+        self.mistyped(value, "a number", key)
         return None
 
     def flag(self, key: str) -> bool | None:

@@ -54,6 +54,8 @@ ORDER = (
     "toml_lines",
     "tables",
     "rotation_table",
+    "body_reader",
+    "body_table",
     "spec",
     "api",
     "detective",

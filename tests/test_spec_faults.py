@@ -50,7 +50,7 @@ kernels = []
 note = "tex"
 title = "Top"
 [body]
-principal_moments = ["A", "A", "C"]
+principal_moments = ["A", "A"]
 """
 
 ALL_OF_THEM = """\
@@ -81,7 +81,7 @@ angular_velocity_body or angular_velocity_space?
   line 17: output.kernels: the list is empty; expected a list of names such as ["numpy"]
   line 18: output.note: expected a list of names such as ["tex"], got the text "tex"
   line 19: output.title: unknown key; it belongs at the top of the file, outside the tables
-  line 20: body: unknown key; not read yet (known: title, rotation, notation, output)"""
+  line 21: body.principal_moments: expected three moments of inertia, got a list"""
 
 
 def test_every_fault_is_reported_at_once():
@@ -185,7 +185,7 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
         (
             f"{ZXZ}[potential]",
             "line 3: potential: unknown key; not read yet "
-            "(known: title, rotation, notation, output)",
+            "(known: title, rotation, parameters, body, notation, output)",
         ),
         (
             "a = 1\nb = \nc = 2",

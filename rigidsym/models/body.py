@@ -1,0 +1,214 @@
+"""What has mass: the mass, the centre and the inertia tensor of a rigid body, as data."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from rigidsym.errors import BodyError
+from rigidsym.models.physical import check_inertia, check_mass
+from rigidsym.models.rotation import Citation, lecture
+from rigidsym.models.so3 import TIME
+
+_MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
+_AXES = ("x", "y", "z")
+SOURCE = lecture("4", "section 2.2")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Parameter:
+    """A constant of a body: a mass, a length, a density, a moment of inertia."""
+
+    symbol: sp.Symbol
+    about: str = ""
+    unit: str = ""  # SI; "" for a pure number
+    positive: bool = True
+    value: float | None = None  # where the body was given in numbers
+
+    def __post_init__(self) -> None:
+        if self.value is not None and self.positive and not self.value > 0:
+            raise BodyError(
+                f"{self.symbol}, {self.about or 'a parameter'}, is {self.value:g}; expected a "
+                "positive number"
+            )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RigidBody:
+    """The mass, the centre of mass and the inertia tensor about it, in axes fixed in the body.
+
+    The inertia tensor is that of the lecture, section 2.2: products of inertia with a minus sign.
+    Raises BodyError for what no distribution of mass has; `allow` lets unphysical numbers pass.
+    """
+
+    name: str  # lower case, digits, underscores
+    title: str  # "Solid cylinder"
+    mass: sp.Expr  # kg
+    inertia: sp.ImmutableMatrix  # (3, 3), about the centre of mass, kg m²
+    centre: sp.ImmutableMatrix = field(default_factory=lambda: sp.ImmutableMatrix.zeros(3, 1))
+    parameters: tuple[Parameter, ...] = ()  # every symbol above, in the order of kernels
+    source: Citation = SOURCE
+    allow: bool = False
+    request: Mapping[str, Any] = field(
+        default_factory=dict, hash=False
+    )  # what asks for it in a file
+
+    def __post_init__(self) -> None:
+        if not _MODULE_NAME.fullmatch(self.name):
+            raise BodyError(
+                f"{self.name!r} cannot name a body: expected lower-case letters, digits and "
+                "underscores, a letter first"
+            )
+        for what, matrix, shape in (
+            ("an inertia tensor", self.inertia, (3, 3)),
+            ("a centre of mass", self.centre, (3, 1)),
+        ):
+            if matrix.shape != shape:
+                raise BodyError(f"{self.name}: {what} is {shape}, got {matrix.shape}")
+        self._check_symbols()
+        self._check_symmetry()
+        if not self.allow:
+            check_mass(self.name, self.in_numbers(self.mass))
+            check_inertia(self.name, self.in_numbers(self.inertia))
+
+    @property
+    def values(self) -> dict[sp.Symbol, sp.Float]:
+        """The parameters that are known in numbers."""
+        return {p.symbol: sp.Float(p.value, 17) for p in self.parameters if p.value is not None}
+
+    def in_numbers(self, expression: Any) -> Any:
+        """An expression or a matrix with the parameters that have a value put in."""
+        return expression.xreplace(self.values)
+
+    def _check_symbols(self) -> None:
+        known = {parameter.symbol for parameter in self.parameters}
+        if len(known) != len(self.parameters):
+            raise BodyError(f"{self.name}: a parameter is named twice")
+        for entry in (self.mass, *self.inertia, *self.centre):
+            if entry.has(TIME, AppliedUndef) or entry.has(sp.I, sp.nan, sp.oo, sp.zoo):
+                raise BodyError(f"{self.name}: {entry} is no real constant")
+            for symbol in sorted(entry.free_symbols - known, key=str):
+                raise BodyError(f"{self.name}: {symbol} is not among the parameters")
+
+    def _check_symmetry(self) -> None:
+        for row, column in ((0, 1), (0, 2), (1, 2)):
+            left = sp.expand(self.inertia[row, column] - self.inertia[column, row])
+            if left != 0:
+                places = _AXES[row] + _AXES[column], _AXES[column] + _AXES[row]
+                raise BodyError(
+                    f"{self.name}: the inertia tensor is not symmetric: "
+                    f"I_{places[0]} − I_{places[1]} = {left}"
+                )
+
+    def __str__(self) -> str:
+        return self.name
+
+
+def principal_moments(
+    A: sp.Expr,
+    B: sp.Expr,
+    C: sp.Expr,
+    *,
+    mass: sp.Expr | None = None,
+    name: str = "body",
+    parameters: Sequence[Parameter] = (),
+    allow: bool = False,
+) -> RigidBody:
+    """A body whose axes are its principal axes: general, symmetric (A = B) or spherical.
+
+    The moments (kg m²) are about the centre of mass; the mass is the symbol M where none is given.
+    `parameters` describes symbols beyond what their places say. Raises BodyError.
+    """
+    moments = [sp.sympify(moment, strict=True) for moment in (A, B, C)]
+    total = sp.Symbol("M") if mass is None else sp.sympify(mass, strict=True)
+    kinds = {1: "Spherical body", 2: "Symmetric body", 3: "Body in its principal axes"}
+    return RigidBody(
+        name=name,
+        title=kinds[len(set(moments))],
+        mass=total,
+        inertia=sp.ImmutableMatrix(sp.diag(*moments)),
+        parameters=described(
+            parameters, mass_slot(total), *((m, "principal moment of inertia") for m in moments)
+        ),
+        allow=allow,
+    )
+
+
+def general_inertia(*, mass: sp.Expr | None = None, name: str = "body") -> RigidBody:
+    """A body with any inertia tensor: the six symbols I_11, I_12, I_13, I_22, I_23, I_33."""
+    total = sp.Symbol("M") if mass is None else sp.sympify(mass, strict=True)
+    entries = sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"I_{min(i, j) + 1}{max(i, j) + 1}"))
+    return given_inertia(entries, mass=total, name=name)
+
+
+def given_inertia(
+    inertia: sp.MatrixBase,
+    *,
+    mass: sp.Expr,
+    centre: sp.MatrixBase | None = None,
+    name: str = "body",
+    parameters: Sequence[Parameter] = (),
+    allow: bool = False,
+) -> RigidBody:
+    """A body by its inertia tensor about the centre of mass, (3, 3), in kg m². Raises BodyError."""
+    place = sp.ImmutableMatrix.zeros(3, 1) if centre is None else sp.ImmutableMatrix(centre)
+    return RigidBody(
+        name=name,
+        title="Body with a given inertia tensor",
+        mass=mass,
+        inertia=sp.ImmutableMatrix(inertia),
+        centre=place,
+        parameters=described(
+            parameters,
+            mass_slot(mass),
+            *((entry, _kind_of_entry(k)) for k, entry in enumerate(inertia)),
+            *((entry, "coordinate of the centre of mass") for entry in place),
+        ),
+        allow=allow,
+    )
+
+
+def mass_slot(mass: sp.Expr) -> tuple[sp.Expr, str]:
+    return mass, "mass"
+
+
+def _kind_of_entry(place: int) -> str:
+    return "moment of inertia" if place in (0, 4, 8) else "product of inertia, with its sign"
+
+
+_UNITS = {
+    "mass": "kg",
+    "principal moment of inertia": "kg m^2",
+    "moment of inertia": "kg m^2",
+    "product of inertia, with its sign": "kg m^2",
+    "coordinate of the centre of mass": "m",
+}
+_SIGNED = {"product of inertia, with its sign", "coordinate of the centre of mass"}
+
+
+def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[Parameter, ...]:
+    """The parameters of all expressions, in the order of their places.
+
+    What is `given` goes before; a symbol that stands alone in its place is described by it.
+    """
+    known = {parameter.symbol: parameter for parameter in given}
+    found: dict[sp.Symbol, Parameter] = {}
+    for expression, about in slots:
+        for symbol in _symbols(expression):
+            alone = Parameter(
+                symbol=symbol,
+                about=about if expression == symbol else "",
+                unit=_UNITS.get(about, "") if expression == symbol else "",
+                positive=expression == symbol and about not in _SIGNED,
+            )
+            found.setdefault(symbol, known.get(symbol, alone))
+    return tuple(found.values())
+
+
+def _symbols(expression: sp.Expr) -> Iterable[sp.Symbol]:
+    return sorted(expression.free_symbols, key=str)
