@@ -377,11 +377,11 @@ def _show(product: Product, written: list[Path]) -> None:
     from rigidsym.notes.terminal import show
 
     width = shutil.get_terminal_size((88, 24)).columns
-    click.echo(show(product.motion, width=min(width, 120), manner=product.motion.manner))
+    motion, conversions = product.motion, product.conversions
+    click.echo(show(motion, width=min(width, 120), manner=motion.manner, conversions=conversions))
     click.echo("\nWritten: " + "\n         ".join(str(path) for path in written))
 
 
 def _summary(product: Product, written: list[Path]) -> str:
-    proofs = list(product.motion.proofs)
-    exact = sum(proof.is_exact for proof in proofs)
-    return f"{product.name:<28} {exact} of {len(proofs)} claims proved  {written[0].parent}"
+    exact = sum(proof.is_exact for proof in product.proofs)
+    return f"{product.name:<28} {exact} of {len(product.proofs)} claims proved  {written[0].parent}"

@@ -10,6 +10,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 
 from rigidsym.api import Motion, derive
+from rigidsym.mechanics.conversions import Conversions
+from rigidsym.mechanics.derivation import Proof
 from rigidsym.notes.note import Note
 from rigidsym.record import record
 from rigidsym.spec import DerivationSpec
@@ -24,12 +26,18 @@ class Product:
     """One derivation and the text files that are printed from it."""
 
     motion: Motion
+    conversions: Conversions | None  # where they were asked for
     files: Mapping[str, str]  # file name -> content, for the folder that is named motion.name
     wants_pdf: bool
 
     @property
     def name(self) -> str:
         return self.motion.name
+
+    @property
+    def proofs(self) -> tuple[Proof, ...]:
+        """All that was claimed, of the conversions too where they were asked for."""
+        return (*self.motion.proofs, *(self.conversions.proofs if self.conversions else ()))
 
     @property
     def record_text(self) -> str:
@@ -39,19 +47,22 @@ class Product:
 def product(spec: DerivationSpec) -> Product:
     """The product of a specification that names one rotation."""
     (model,) = spec.models
-    motion = derive(model)
+    motion = derive(model, only=spec.quantities)
     motion = replace(motion, name=spec.name, title=spec.title or motion.title)
     motion = motion.written(**asdict(spec.manner))
-    if spec.quantities:
-        motion = motion.select(spec.quantities)
+    conversions = motion.conversions if spec.conversions else None
+    texts = _texts(motion, conversions, spec)
     return Product(
         motion=motion,
-        files={f"{spec.name}.{ending}": text for ending, text in _texts(motion, spec)},
+        conversions=conversions,
+        files={f"{spec.name}.{ending}": text for ending, text in texts},
         wants_pdf=PDF in spec.note,
     )
 
 
-def _texts(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
+def _texts(
+    motion: Motion, conversions: Conversions | None, spec: DerivationSpec
+) -> Iterator[tuple[str, str]]:
     """(ending, content) of each text file, the record last, since it speaks for the others."""
     for target in spec.kernels:
         module = motion.kernels(target, conversions=spec.conversions)
@@ -60,6 +71,5 @@ def _texts(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
     for ending, printed in _PRINTERS.items():
         if ending in spec.note or (ending == "tex" and PDF in spec.note):
             yield ending, printed(note)
-    converting = motion.conversions if spec.conversions else None
-    data = record(motion, spec.to_data(), converting)
+    data = record(motion, spec.to_data(), conversions)
     yield "json", json.dumps(data, indent=1, ensure_ascii=False) + "\n"

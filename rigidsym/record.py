@@ -48,7 +48,7 @@ def record(
         "presentation": "passive" if derivation.model.passive else "active",
         "convention": list(derivation.model.convention),
         "source": str(derivation.model.source),
-        "is_proved": derivation.is_proved,
+        "is_proved": derivation.is_proved and (not conversions or conversions.is_proved),
         "request": dict(request),
         "arguments": [_argument(argument) for argument in derivation.arguments],
         "quantities": [_step(step, names) for step in derivation.steps],

@@ -28,11 +28,6 @@ from rigidsym.mechanics.derivation import Derivation, Singularities, Step
 from rigidsym.models.rotation import RotationModel
 
 MARGIN = "singularity_margin"
-_RATES = frozenset(
-    f"{quantity}_{frame}"
-    for quantity in ("rate_matrix", "inverse_rate_matrix", "rates_from_angular_velocity")
-    for frame in ("space", "body")
-)
 Monomial = tuple[Fraction, Factors]  # a number times nodes of the graph, ~node dividing
 
 _QUOTIENTS: Mapping[type, tuple[str, str]] = {  # numerator and denominator; "" for one
@@ -117,8 +112,7 @@ class _Lowering:
     def margin(self) -> Iterator[ir.Kernel]:
         """How far the rate matrix is from failing, where it is among the quantities and may."""
         found = self.derivation.singularities
-        names = {step.quantity.name for step in self.derivation.steps}
-        if found is None or not _can_fail(found) or names.isdisjoint(_RATES):
+        if found is None or not _can_fail(found):
             return
         (determinant,) = self._rewritten([found.determinant])
         scale, about = _largest(determinant)

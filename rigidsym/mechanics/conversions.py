@@ -82,6 +82,10 @@ class Conversions:
         forward = self.quaternion.proofs if self.quaternion else ()
         return (*forward, *(self.backward.proofs if self.backward else ()), self.from_matrix)
 
+    @property
+    def is_proved(self) -> bool:
+        return all(proof.is_exact for proof in self.proofs)
+
 
 def conversions_of(model: RotationModel) -> Conversions:
     """The conversions of one model, each proved in its ring."""

@@ -13,6 +13,12 @@ from rigidsym.models.rotation import Citation, RotationModel
 
 Status = Literal["exact", "unproved"]
 
+OF_RATES = frozenset(  # the quantities that the singularities are about
+    f"{quantity}_{frame}"
+    for quantity in ("rate_matrix", "inverse_rate_matrix", "rates_from_angular_velocity")
+    for frame in ("space", "body")
+)
+
 
 @dataclass(frozen=True, slots=True)
 class Markup:
@@ -146,12 +152,13 @@ class Derivation:
     def select(self, names: Sequence[str]) -> Self:
         """The derivation with these quantities alone, numbered anew in the order of the steps.
 
-        Raises QuantityError for a name that is not here.
+        Singularities go with the rates. Raises QuantityError for a name that is not here.
         """
         chosen = {self.step(name).quantity.name for name in names}
         kept = [step for step in self.steps if step.quantity.name in chosen]
         numbered = tuple(replace(step, number=place) for place, step in enumerate(kept, start=1))
-        return replace(self, steps=numbered)
+        kept_singularities = None if chosen.isdisjoint(OF_RATES) else self.singularities
+        return replace(self, steps=numbered, singularities=kept_singularities)
 
     def argument(self, name: str) -> Argument:
         return next(argument for argument in self.arguments if argument.name == name)

@@ -17,6 +17,7 @@ from rigidsym.errors import QuantityError
 from rigidsym.mechanics import claims, composition
 from rigidsym.mechanics.composition import hat
 from rigidsym.mechanics.derivation import (
+    OF_RATES,
     Derivation,
     Markup,
     Proof,
@@ -50,19 +51,27 @@ def derive(model: RotationModel, only: Collection[str] = ()) -> Derivation:
     `only` names the quantities to derive; all that the model has where it is empty.
 
     Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over,
-    AlgebraError for expressions that the ring cannot hold, and QuantityError for unknown names.
+    AlgebraError for expressions that the ring cannot hold, and QuantityError for unknown names
+    and for quantities that the model has not.
     """
     unknown = ", ".join(name for name in only if name not in _STEPS)
     if unknown:
         raise QuantityError(f"no quantity {unknown}; there are {', '.join(_STEPS)}")
     work = _Kinematics(Values(model))
+    steps = tuple(_numbered(work, only))
+    absent = ", ".join(sorted(set(only) - {step.quantity.name for step in steps}))
+    if absent:
+        raise QuantityError(
+            f"{model.name} has no quantity {absent}: its rate matrix has no inverse, since its "
+            "rates do not give every angular velocity"
+        )
     return Derivation(
         name=model.name,
         title=model.title,
         model=model,
         arguments=tuple(work.values.arguments.values()),
-        steps=tuple(_numbered(work, only)),
-        singularities=None if only and not _RATE_NAMES & set(only) else work.singularities(),
+        steps=steps,
+        singularities=None if only and OF_RATES.isdisjoint(only) else work.singularities(),
     )
 
 
@@ -321,4 +330,3 @@ _STEPS: Mapping[str, Callable[[_Kinematics], _Found | None]] = MappingProxyType(
         "angular_acceleration_body": _Kinematics.angular_acceleration_body,
     }
 )
-_RATE_NAMES = frozenset(name for name in _STEPS if "rate" in name and name != "rotation_rate")

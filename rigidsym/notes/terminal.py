@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Literal
 
 import sympy as sp
 
+from rigidsym.mechanics.conversions import Conversions
 from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Proof, Step
 from rigidsym.mechanics.quantities import ROTATION
 from rigidsym.notes.breaking import break_lines
@@ -20,7 +22,15 @@ from rigidsym.notes.measure import columns
 from rigidsym.notes.notation import notation_of
 from rigidsym.notes.prose import DETERMINANTS, product, turn, zeros
 from rigidsym.notes.vector_words import sum_of_vectors, where
-from rigidsym.notes.words import convention, equal, plain, singular, unit_in_words
+from rigidsym.notes.words import (
+    convention,
+    equal,
+    plain,
+    singular,
+    symbols_of,
+    unit_in_words,
+    with_symbols,
+)
 
 Style = Callable[[str, Literal["heading", "dim"]], str]
 
@@ -40,12 +50,14 @@ def show(
     width: int = 88,
     style: Style = unstyled,
     manner: Manner = DEFAULT,
+    conversions: Conversions | None = None,
 ) -> str:
     """The derivation as plain text, at most `width` columns wide where formulas allow.
 
-    `style` is given each heading and each aside, and returns it with the codes of the terminal.
+    `style` is given each heading and each aside, and returns it with the codes of the terminal;
+    `conversions` adds a section on the unit quaternion and the matrix, and its proofs.
     """
-    screen = _Screen(derivation, width, style, manner)
+    screen = _Screen(derivation, width, style, manner, conversions)
     return "\n".join(screen.lines())
 
 
@@ -139,9 +151,21 @@ class _Steps:
 class _Screen(_Steps):
     """The lines of one derivation."""
 
-    def __init__(self, derivation: Derivation, width: int, style: Style, manner: Manner) -> None:
+    def __init__(
+        self,
+        derivation: Derivation,
+        width: int,
+        style: Style,
+        manner: Manner,
+        conversions: Conversions | None,
+    ) -> None:
         super().__init__(derivation.arguments, width, style, manner)
         self.derivation = derivation
+        self.conversions = conversions
+        self.steps = derivation.steps
+        if conversions and conversions.quaternion:  # its number is the next one, as in the note
+            numbered = replace(conversions.quaternion, number=len(derivation.steps) + 1)
+            self.steps = (*self.steps, numbered)
 
     def lines(self) -> Iterator[str]:
         yield self.style(self.derivation.title, "heading")
@@ -151,6 +175,7 @@ class _Screen(_Steps):
             yield ""
             yield from self.step(step)
         yield from self._singularities()
+        yield from self._conversions()
         yield from self._proofs()
 
     def _convention(self) -> Iterator[str]:
@@ -173,16 +198,34 @@ class _Screen(_Steps):
         for point in found.points:
             yield from self._wrapped(singular(point, self.derivation))
 
+    def _conversions(self) -> Iterator[str]:
+        """To the unit quaternion and back, or why there is no way back."""
+        found = self.conversions
+        if found is None:
+            return
+        yield ""
+        yield self.style("Conversions", "heading")
+        for step in self.steps[len(self.derivation.steps) :]:
+            yield from self.step(step)
+        back = found.backward
+        for sentence in (back.because, back.branch) if back else (found.without,):
+            yield from self._wrapped(with_symbols(sentence, symbols_of(self.derivation)))
+
     def _proofs(self) -> Iterator[str]:
         yield ""
         yield self.style("What was proved", "heading")
-        for step in self.derivation.steps:
+        for step in self.steps:
             for proof in step.proofs:
-                yield from self._proof(step.number, proof)
+                yield from self._proof(f"({step.number})", proof)
+        back = self.conversions and self.conversions.backward
+        for proof in back.proofs if back else ():
+            yield from self._proof("", proof)
+        if self.conversions:
+            yield from self._proof("", self.conversions.from_matrix)
 
-    def _proof(self, number: int, proof: Proof) -> Iterator[str]:
+    def _proof(self, label: str, proof: Proof) -> Iterator[str]:
         mark, status = ("✓", "exact") if proof.is_exact else ("✗", "unproved")
-        yield f"{_INDENT}{mark} {f'({number})':<5}{status:<10}{self.written(proof.claim.text)}"
+        yield f"{_INDENT}{mark} {label:<5}{status:<10}{self.written(proof.claim.text)}"
         if proof.residual is not None:
             yield f"{_DEEPER}left over:"
             names = indexed(RESIDUAL, proof.residual.shape)
