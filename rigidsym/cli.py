@@ -11,8 +11,7 @@ import json
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,80 +19,23 @@ import click
 
 from rigidsym import __version__
 from rigidsym.errors import RigidsymError, SpecError
+from rigidsym.options import (
+    FOR_TARGETS,
+    JSON,
+    OUT,
+    PDF,
+    TEMPLATES,
+    WITH_CONVERSIONS,
+    as_chosen,
+    in_notation,
+    names_of,
+)
 
 if TYPE_CHECKING:
     from rigidsym.pipeline import Product
     from rigidsym.spec import DerivationSpec
 
 _INTERRUPTED = 130
-_OUT = click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("out"),
-    show_default=True,
-    metavar="DIR",
-    help="The folder that receives DIR/NAME/.",
-)
-_PDF = click.option("--pdf", is_flag=True, help="Typeset the note too; needs TeX.")
-_JSON = click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
-
-
-def _use_templates(context: click.Context, _: click.Parameter, own: Path | None) -> None:
-    """Let the templates of a folder stand in for the shipped ones until the command is done."""
-    from rigidsym.resources import overridden_by
-
-    if own is not None:
-        context.with_resource(overridden_by(own))
-
-
-_TEMPLATES = click.option(
-    "--templates",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    metavar="DIR",
-    expose_value=False,
-    callback=_use_templates,
-    help="Templates of your own; `rigidsym templates DIR` copies the shipped ones.",
-)
-
-
-_NOTATION = {  # written out here, so that --help loads nothing; a test compares
-    "rates": ("dot", "fraction"),
-    "vectors": ("bold", "arrow"),
-    "body": ("prime", "superscript"),
-    "angular_velocity": ("Omega", "omega"),
-}
-
-
-def _keep_choice(context: click.Context, option: click.Parameter, value: str | None) -> None:
-    if value is not None:
-        context.meta.setdefault(__name__, {})[option.name] = value
-
-
-def _in_notation(command: Callable[..., None]) -> Callable[..., None]:
-    """Options for the notation of the note and the terminal; they go before those of a file."""
-    for name, known in reversed(_NOTATION.items()):
-        command = click.option(
-            f"--{name.replace('_', '-')}",
-            type=click.Choice(known),
-            expose_value=False,
-            callback=_keep_choice,
-            help=f"Notation: {known[0]}, where nothing is said.",
-        )(command)
-    return command
-
-
-def _keep_conversions(context: click.Context, _: click.Parameter, is_wanted: bool) -> None:
-    context.meta[_CONVERSIONS] = is_wanted
-
-
-_CONVERSIONS = f"{__name__}.conversions"
-_WITH_CONVERSIONS = click.option(
-    "--conversions",
-    is_flag=True,
-    expose_value=False,
-    callback=_keep_conversions,
-    help="Functions to and from the unit quaternion and the matrix, and unwrap.",
-)
 
 
 def main() -> None:
@@ -139,12 +81,13 @@ def commands(context: click.Context) -> None:
 @click.option("--constants", metavar="A,B", help="Names in turns that are constants.")
 @click.option("--scalar-last", is_flag=True, help="Quaternions as (x, y, z, w).")
 @click.option("--passive", is_flag=True, help="Present the direction cosine matrix A = Rᵀ.")
-@_WITH_CONVERSIONS
-@_in_notation
-@_TEMPLATES
-@_OUT
-@_PDF
-@_JSON
+@WITH_CONVERSIONS
+@FOR_TARGETS
+@in_notation
+@TEMPLATES
+@OUT
+@PDF
+@JSON
 def derive(
     rotation: str,
     angles: str | None,
@@ -164,8 +107,8 @@ def derive(
 
     spec = spec_for(
         rotation,
-        angles=_names(angles),
-        constants=_names(constants) or (),
+        angles=None if angles is None else names_of(angles),
+        constants=names_of(constants) if constants else (),
         scalar_last=scalar_last,
         passive=passive,
     )
@@ -174,12 +117,13 @@ def derive(
 
 @commands.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@_WITH_CONVERSIONS
-@_in_notation
-@_TEMPLATES
-@_OUT
-@_PDF
-@_JSON
+@WITH_CONVERSIONS
+@FOR_TARGETS
+@in_notation
+@TEMPLATES
+@OUT
+@PDF
+@JSON
 def run(files: tuple[str, ...], out: Path, pdf: bool, as_json: bool) -> None:
     """Run derivation files, given by path or by the name of a shipped one.
 
@@ -219,7 +163,7 @@ def templates(folder: Path) -> None:
     metavar="PATH...",
     type=click.Path(exists=True, path_type=Path),
 )
-@_TEMPLATES
+@TEMPLATES
 @click.pass_context
 def check(context: click.Context, paths: tuple[Path, ...]) -> None:
     """Compare generated files with a fresh derivation.
@@ -253,7 +197,7 @@ def check(context: click.Context, paths: tuple[Path, ...]) -> None:
 @click.option("--columns", metavar="NAME,...", help="Names of the columns of FILE; - skips one.")
 @click.option("--tolerance", type=float, metavar="RADIANS", help="Else from the digits given.")
 @click.option("--all", "everything", is_flag=True, help="Show all readings, with all calls.")
-@_JSON
+@JSON
 @click.pass_context
 def identify(
     context: click.Context,
@@ -284,10 +228,6 @@ def identify(
         context.exit(1)
 
 
-def _names(text: str | None) -> list[str] | None:
-    return None if text is None else [name.strip() for name in text.split(",")]
-
-
 def _read_all(files: Iterable[str]) -> list[DerivationSpec]:
     """Read every file; faults of all files are raised together."""
     from rigidsym.spec import read_file
@@ -309,7 +249,7 @@ def _read_all(files: Iterable[str]) -> list[DerivationSpec]:
 
 def _produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool) -> None:
     """Derive, write, and show what was asked for."""
-    singles = [single for spec in map(_in_chosen_notation, specs) for single in spec.singles()]
+    singles = [single for spec in map(as_chosen, specs) for single in spec.singles()]
     shown_in_full = len(singles) == 1
     missing: RigidsymError | None = None
     for product in _with_progress(singles):
@@ -323,17 +263,6 @@ def _produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool
             click.echo(_summary(product, written))
     if missing:
         raise missing
-
-
-def _in_chosen_notation(spec: DerivationSpec) -> DerivationSpec:
-    """The specification with the choices of the command line in place of its own."""
-    kept = click.get_current_context().meta
-    chosen, converts = kept.get(__name__, {}), kept.get(_CONVERSIONS, False)
-    return replace(
-        spec,
-        manner=replace(spec.manner, **chosen),
-        conversions=spec.conversions or converts,
-    )
 
 
 def _with_progress(singles: list[DerivationSpec]) -> Iterator[Product]:

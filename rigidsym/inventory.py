@@ -23,10 +23,7 @@ def inventory() -> str:
         ("Presets", _presets()),
         ("Turns of any number, about any axes", [_TURNS]),
         ("Quantities", _quantities()),
-        (
-            "Targets of the kernels",
-            [f"{name:<12} {target.about}" for name, target in TARGETS.items()],
-        ),
+        ("Targets of the kernels (--target NAME,...)", _targets()),
         ("Shipped derivations (rigidsym run NAME)", _shipped()),
     )
     blocks = ["\n".join([title, *(f"  {line}" for line in lines)]) for title, lines in sections]
@@ -62,6 +59,14 @@ def _quantities() -> list[str]:
 def _padded(text: str, width: int) -> str:
     """The text and blanks, by the columns that it takes on a screen."""
     return text + " " * (width - columns(text))
+
+
+def _targets() -> list[str]:
+    return [
+        f"{name:<12} {target.about}" + (f"; {lacking} is missing here" if lacking else "")
+        for name, target in TARGETS.items()
+        for lacking in [target.missing]
+    ]
 
 
 def _shipped() -> list[str]:

@@ -55,7 +55,7 @@ def product(spec: DerivationSpec) -> Product:
     return Product(
         motion=motion,
         conversions=conversions,
-        files={f"{spec.name}.{ending}": text for ending, text in texts},
+        files=dict(texts),
         wants_pdf=PDF in spec.note,
     )
 
@@ -63,13 +63,12 @@ def product(spec: DerivationSpec) -> Product:
 def _texts(
     motion: Motion, conversions: Conversions | None, spec: DerivationSpec
 ) -> Iterator[tuple[str, str]]:
-    """(ending, content) of each text file, the record last, since it speaks for the others."""
+    """(name, content) of each text file, the record last, since it speaks for the others."""
     for target in spec.kernels:
-        module = motion.kernels(target, conversions=spec.conversions)
-        yield module.ending, module.source
+        yield from motion.kernels(target, conversions=spec.conversions).files.items()
     note = motion.note(with_kernels="numpy" in spec.kernels, conversions=spec.conversions)
     for ending, printed in _PRINTERS.items():
         if ending in spec.note or (ending == "tex" and PDF in spec.note):
-            yield ending, printed(note)
+            yield f"{spec.name}.{ending}", printed(note)
     data = record(motion, spec.to_data(), conversions)
-    yield "json", json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+    yield f"{spec.name}.json", json.dumps(data, indent=1, ensure_ascii=False) + "\n"

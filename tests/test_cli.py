@@ -272,3 +272,12 @@ def test_an_interrupt_leaves_whole_files_and_says_so(tmp_path):
     assert errors.strip() == "rigidsym: interrupted"
     for folder in (tmp_path / "out").iterdir():
         assert not [file for file in folder.iterdir() if file.name.startswith(".")]
+
+
+def test_a_target_is_chosen_by_name(tmp_path):
+    done = call("derive", "ZXZ", "--target", "numpy", "--out", str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "euler_zxz_intrinsic" / "euler_zxz_intrinsic.py").is_file()
+    wrong = call("derive", "ZXZ", "--target", "numpy,fortran", "--out", str(tmp_path))
+    assert wrong.returncode == 2
+    assert wrong.stderr.startswith("rigidsym: no target 'fortran'; there is numpy")

@@ -63,6 +63,7 @@ ORDER = (
     "pipeline",
     "checking",
     "typeset",
+    "options",
     "cli",
 )
 SIBLINGS = (("kernels", "notes"),)  # neither has to know of the other

@@ -143,14 +143,18 @@ def test_text_of_a_person_cannot_leave_the_docstring():
 def test_an_unknown_target_is_named_with_those_there_are():
     with pytest.raises(KernelError) as caught:
         generate(derived("ZXZ"), "fortran")
-    assert str(caught.value) == "no target 'fortran'; there is numpy"
+    assert str(caught.value).startswith("no target 'fortran'; there is numpy")
     assert caught.value.exit_code == 2
 
 
 def test_a_module_knows_its_name_and_ending():
     kernels = derived("zyx").kernels(target="numpy")
     assert isinstance(kernels, KernelModule)
-    assert (kernels.name, kernels.target, kernels.ending) == ("euler_zyx_extrinsic", "numpy", "py")
+    assert (kernels.name, kernels.target, kernels.main) == (
+        "euler_zyx_extrinsic",
+        "numpy",
+        "euler_zyx_extrinsic.py",
+    )
     loaded = kernels.load()
     assert loaded.__name__ == "euler_zyx_extrinsic"
     assert loaded.__name__ not in sys.modules

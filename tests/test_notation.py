@@ -13,7 +13,7 @@ from conftest import derived
 from test_typeset import tex  # noqa: F401
 
 import rigidsym as rs
-from rigidsym import cli
+from rigidsym import options
 from rigidsym.errors import ModelError, SpecError
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.catalogue import EulerAngles
@@ -179,7 +179,7 @@ def test_options_go_before_the_file_and_check_knows_them(tmp_path: Path):
 
 
 def test_the_command_line_offers_every_choice():
-    assert cli._NOTATION == CHOICES
+    assert options._NOTATION == CHOICES
     shown = CliRunner().invoke(cli.commands, ["derive", "--help"]).output
     for name, known in CHOICES.items():
         assert re.search(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
 from rigidsym.kernels.conversions import lower_conversions
 from rigidsym.kernels.lower import lower
-from rigidsym.kernels.targets import TARGETS, printer
+from rigidsym.kernels.targets import printer
 from rigidsym.mechanics.conversions import conversions_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.writing import write_text
@@ -16,30 +17,41 @@ from rigidsym.writing import write_text
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class KernelModule:
-    """The functions of one derivation, as the text of one file."""
+    """The functions of one derivation, as the texts of one file or more."""
 
-    name: str  # of the derivation, and of the file without its ending
+    name: str  # of the derivation
     target: str
-    source: str
+    files: Mapping[str, str]  # file name -> text, the main file first
 
     @property
-    def ending(self) -> str:
-        """Of the file, without a dot: "py"."""
-        return TARGETS[self.target].ending
+    def main(self) -> str:
+        """The name of the main file: "euler_zxz_intrinsic.py"."""
+        return next(iter(self.files))
+
+    @property
+    def source(self) -> str:
+        """The text of the main file."""
+        return self.files[self.main]
 
     def load(self) -> ModuleType:
-        """The functions as a Python module, without a file."""
-        return printer(self.target).load(self.name, self.source)
+        """The functions as a Python module, without a file of the user's.
+
+        Raises MissingTool or MissingExtra where what the target needs for it is not installed.
+        """
+        return printer(self.target).load(self.name, self.files)
 
     def write(self, path: str | Path) -> Path:
-        """Write the file, whole or not at all, and return its path.
+        """Write the files, each whole or not at all, and return the path of the main one.
 
-        In a folder that exists, the file takes the name of the derivation.
+        In a folder that exists they take their own names. Else the path is that of the file, or,
+        of a target with several files, that of a folder to be made.
         """
         place = Path(path)
-        return write_text(
-            place / f"{self.name}.{self.ending}" if place.is_dir() else place, self.source
-        )
+        if len(self.files) == 1 and not place.is_dir():
+            return write_text(place, self.source)
+        for name, text in self.files.items():
+            write_text(place / name, text)
+        return place / self.main
 
 
 def generate(
@@ -57,5 +69,5 @@ def generate(
         converting = lower_conversions(
             derivation, conversions_of(derivation.model), chosen.RESERVED
         )
-    source = chosen.render(program, converting)
-    return KernelModule(name=derivation.name, target=target, source=source)
+    files = chosen.render(program, converting)
+    return KernelModule(name=derivation.name, target=target, files=files)

@@ -1,14 +1,17 @@
 """The targets that kernels can be printed for: one file and one template each.
 
-The file defines `RESERVED`, the words of its language that no name may be, `render(program)`, the
-text of a module, and `load(name, source)`, the module itself. It is imported when it is asked for.
+The file defines `RESERVED`, the words of its language that no name may be, `render(program,
+conversions)`, the texts of its files by their names, the main one first, and `load(name, files)`,
+a Python module of the functions. It is imported when it is asked for.
 """
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
+from importlib.util import find_spec
 from types import MappingProxyType, ModuleType
 from typing import Protocol, cast
 
@@ -19,14 +22,24 @@ from rigidsym.kernels.ir import Program
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Target:
-    """One language that kernels are printed in."""
+    """One language that kernels are printed in, and what loading them needs, printing not."""
 
     about: str
-    ending: str  # of the file, without a dot
+    package: str = ""  # of Python, which the extra of the target's name brings
+    programs: tuple[str, ...] = ()  # of which one will do
+
+    @property
+    def missing(self) -> str:
+        """What is not installed here of what loading needs; empty where nothing is."""
+        if self.package and find_spec(self.package) is None:
+            return f"the package {self.package}"
+        if self.programs and not any(map(shutil.which, self.programs)):
+            return " or ".join(self.programs)
+        return ""
 
 
 TARGETS: Mapping[str, Target] = MappingProxyType(
-    {"numpy": Target(about="a Python module that needs NumPy alone", ending="py")}
+    {"numpy": Target(about="NAME.py: a Python module that needs NumPy alone")}
 )
 
 
@@ -35,13 +48,20 @@ class Printer(Protocol):
 
     RESERVED: frozenset[str]
 
-    def render(self, program: Program, conversions: ConversionProgram | None = None) -> str: ...
+    def render(
+        self, program: Program, conversions: ConversionProgram | None = None
+    ) -> Mapping[str, str]: ...
 
-    def load(self, name: str, source: str) -> ModuleType: ...
+    def load(self, name: str, files: Mapping[str, str]) -> ModuleType: ...
+
+
+def check_target(target: str) -> None:
+    """Raises KernelError, naming the targets that there are, where this is none of them."""
+    if target not in TARGETS:
+        raise KernelError(f"no target {target!r}; there is {', '.join(TARGETS)}")
 
 
 def printer(target: str) -> Printer:
-    """The file of a target; raises KernelError, naming those there are, where there is none."""
-    if target not in TARGETS:
-        raise KernelError(f"no target {target!r}; there is {', '.join(TARGETS)}")
+    """The file of a target; raises KernelError where there is none of this name."""
+    check_target(target)
     return cast(Printer, import_module(f"{__name__}.{target}"))

@@ -26,13 +26,13 @@ _MATH: Mapping[str, str] = {name: name for name in FUNCTIONS}
 _show = partial(infix, functions=_MATH)
 
 
-def render(program: Program, conversions: ConversionProgram | None = None) -> str:
-    """The text of the module, with the conversions where they are asked for."""
+def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
+    """The module, with the conversions where they are asked for."""
     added = _additions(program, conversions)
     converting = conversions.kernels if conversions else ()
     kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
     template = resources.environment().get_template(TEMPLATE)
-    return template.render(
+    text = template.render(
         about=docstring([*_about(program), *added.remarks]),
         imports=_import(singular.imports(kernels) | added.imports),
         exports=_lines(f'"{name}",' for name in sorted((*_exports(kernels), *added.exports))),
@@ -42,6 +42,7 @@ def render(program: Program, conversions: ConversionProgram | None = None) -> st
             f"\n\n{text}" for text in (*singular.helpers(kernels), added.helpers) if text
         ),
     )
+    return {f"{program.name}.py": text}
 
 
 def _import(names: set[str]) -> str:
@@ -62,8 +63,14 @@ def _additions(program: Program, conversions: ConversionProgram | None) -> Addit
     return additions(conversions, f"({len(coordinates[0].components)},)")
 
 
-def load(name: str, source: str) -> ModuleType:
+def load(name: str, files: Mapping[str, str]) -> ModuleType:
     """The module itself; it is not entered in `sys.modules`."""
+    (source,) = files.values()
+    return python_module(name, source)
+
+
+def python_module(name: str, source: str) -> ModuleType:
+    """A Python module from its text."""
     from importlib.abc import ExecutionLoader
     from importlib.util import module_from_spec, spec_from_loader
 

@@ -1,0 +1,118 @@
+"""Options that several commands share, and what they change in a specification."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from rigidsym.spec import DerivationSpec
+
+OUT = click.option(
+    "--out",
+    type=click.Path(file_okay=False, path_type=Path),
+    default=Path("out"),
+    show_default=True,
+    metavar="DIR",
+    help="The folder that receives DIR/NAME/.",
+)
+PDF = click.option("--pdf", is_flag=True, help="Typeset the note too; needs TeX.")
+JSON = click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
+
+
+def _use_templates(context: click.Context, _: click.Parameter, own: Path | None) -> None:
+    """Let the templates of a folder stand in for the shipped ones until the command is done."""
+    from rigidsym.resources import overridden_by
+
+    if own is not None:
+        context.with_resource(overridden_by(own))
+
+
+TEMPLATES = click.option(
+    "--templates",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    metavar="DIR",
+    expose_value=False,
+    callback=_use_templates,
+    help="Templates of your own; `rigidsym templates DIR` copies the shipped ones.",
+)
+
+
+_NOTATION = {  # written out here, so that --help loads nothing; a test compares
+    "rates": ("dot", "fraction"),
+    "vectors": ("bold", "arrow"),
+    "body": ("prime", "superscript"),
+    "angular_velocity": ("Omega", "omega"),
+}
+
+
+def _keep_choice(context: click.Context, option: click.Parameter, value: str | None) -> None:
+    if value is not None:
+        context.meta.setdefault(__name__, {})[option.name] = value
+
+
+def in_notation(command: Callable[..., None]) -> Callable[..., None]:
+    """Options for the notation of the note and the terminal; they go before those of a file."""
+    for name, known in reversed(_NOTATION.items()):
+        command = click.option(
+            f"--{name.replace('_', '-')}",
+            type=click.Choice(known),
+            expose_value=False,
+            callback=_keep_choice,
+            help=f"Notation: {known[0]}, where nothing is said.",
+        )(command)
+    return command
+
+
+def _keep_conversions(context: click.Context, _: click.Parameter, is_wanted: bool) -> None:
+    context.meta[_CONVERSIONS] = is_wanted
+
+
+_CONVERSIONS = f"{__name__}.conversions"
+WITH_CONVERSIONS = click.option(
+    "--conversions",
+    is_flag=True,
+    expose_value=False,
+    callback=_keep_conversions,
+    help="Functions to and from the unit quaternion and the matrix, and unwrap.",
+)
+
+
+def _keep_targets(context: click.Context, _: click.Parameter, targets: str | None) -> None:
+    if targets is not None:
+        from rigidsym.kernels.targets import check_target
+
+        context.meta[_TARGETS] = chosen = names_of(targets)
+        for target in chosen:
+            check_target(target)
+
+
+_TARGETS = f"{__name__}.targets"
+FOR_TARGETS = click.option(
+    "--target",
+    metavar="A,B",
+    expose_value=False,
+    callback=_keep_targets,
+    help="Languages of the functions, numpy where nothing is said; `rigidsym list` has them.",
+)
+
+
+def as_chosen(spec: DerivationSpec) -> DerivationSpec:
+    """The specification with the choices of the command line in place of its own."""
+    kept = click.get_current_context().meta
+    chosen, converts = kept.get(__name__, {}), kept.get(_CONVERSIONS, False)
+    targets = kept.get(_TARGETS)
+    return replace(
+        spec,
+        manner=replace(spec.manner, **chosen),
+        conversions=spec.conversions or converts,
+        kernels=spec.kernels if targets is None else tuple(targets),
+    )
+
+
+def names_of(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",")]
