@@ -13,7 +13,7 @@ from conftest import derived
 from test_typeset import tex  # noqa: F401
 
 import rigidsym as rs
-from rigidsym import options
+from rigidsym import cli, options
 from rigidsym.errors import ModelError, SpecError
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.catalogue import EulerAngles
