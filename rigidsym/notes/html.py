@@ -48,23 +48,32 @@ _WITH_POINTS = re.compile(rf"\({_MATH}[.,;:)]*|{_MATH}[.,;:)]+")
 
 def print_html(document: Document) -> str:
     """The note as an HTML file; the same document gives the same bytes."""
-    printer = _Printer(document)
-    template = resources.environment().get_template(TEMPLATE)
-    return template.render(
-        title=escape(document.title),
-        subtitle=escape(document.subtitle),
-        sections=[
-            {
-                "title": escape(section.title),
-                "key": f"section-{place}",
-                "body": printer.body(section),
-            }
-            for place, section in enumerate(document.sections, start=1)
-        ],
-        sources=[
-            {"key": f"source-{place}", "text": escape(source)}
-            for place, source in enumerate(document.sources, start=1)
-        ],
+    return rendered(TEMPLATE, Printer(document))
+
+
+def rendered(template: str, printer: Printer, **more: object) -> str:
+    """A template with the note in it; `more` is what else the template places."""
+    document = printer.document
+    return (
+        resources.environment()
+        .get_template(template)
+        .render(
+            title=escape(document.title),
+            subtitle=escape(document.subtitle),
+            sections=[
+                {
+                    "title": escape(section.title),
+                    "key": f"section-{place}",
+                    "body": printer.body(section),
+                }
+                for place, section in enumerate(document.sections, start=1)
+            ],
+            sources=[
+                {"key": f"source-{place}", "text": escape(source)}
+                for place, source in enumerate(document.sources, start=1)
+            ],
+            **more,
+        )
     )
 
 
@@ -73,7 +82,7 @@ def escape(words: str) -> str:
     return escape_markup(cleaned(words))
 
 
-class _Printer:
+class Printer:
     """Blocks and spans of one document in HTML."""
 
     def __init__(self, document: Document) -> None:
@@ -94,7 +103,7 @@ class _Printer:
             case Equation():
                 return "\n".join(self._equation(block))
             case EquationRow():
-                displays = (self._forms(equation) for equation in block.equations)
+                displays = (self.forms(equation) for equation in block.equations)
                 return f'<div class="row">{"".join(displays)}</div>'
             case Table():
                 return self._table(block)
@@ -105,26 +114,31 @@ class _Printer:
 
     def _equation(self, equation: Equation) -> Iterator[str]:
         if not equation.number:
-            yield f'<div class="equation">{self._forms(equation)}</div>'
+            yield f'<div class="equation">{self.forms(equation)}</div>'
             return
         label, number = escape(equation.label), equation.number
         yield f'<div class="equation" id="{label}" role="group" aria-label="Equation {number}">'
-        yield self._forms(equation)
+        yield self.forms(equation)
         yield f'<a class="number" href="#{label}">({number})</a>'
         yield "</div>"
         yield f'<p class="remark">{self._claims(equation)}{self._function(equation)}</p>'
+        yield from filter(None, [self.tools(equation)])
 
-    def _forms(self, equation: Equation) -> str:
+    def forms(self, equation: Equation) -> str:
         """The display for a page and the one for a phone, or one that does for both."""
         page = display(equation, self.document.notation, _PAGE)
         phone = display(equation, self.document.notation, _PHONE)
         if page.latex == phone.latex:
-            return self._display(equation, page, "display")
-        return self._display(equation, page, "display page") + self._display(
+            return self.display(equation, page, "display")
+        return self.display(equation, page, "display page") + self.display(
             equation, phone, "display phone"
         )
 
-    def _display(self, equation: Equation, shown: Display, kind: str) -> str:
+    def tools(self, equation: Equation) -> str:  # noqa: ARG002  (a page has some)
+        """What stands behind a numbered equation, to be used on it."""
+        return ""
+
+    def display(self, equation: Equation, shown: Display, kind: str) -> str:
         announced = self._text(announcement(equation, shown.done))
         lead = f"<p>{announced}</p>" if announced else ""
         formula = mathml(shown.latex, self._spoken(equation), is_display=True)
