@@ -7,7 +7,7 @@ expressions, and leave as the generators of a ring.
 from __future__ import annotations
 
 from enum import IntEnum
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -70,6 +70,7 @@ class Request:
         self._angles: list[Combination] = []
         self._atoms: set[sp.Expr] = set()  # what sines and cosines are taken of
         self._underived: list[sp.Expr] = []
+        self._seen: set[sp.Expr] = set()
 
     def generators(self) -> list[tuple[sp.Expr, Kind]]:
         """All generators in the order of their kinds, sines and cosines over common fractions."""
@@ -79,10 +80,17 @@ class Request:
             found.append((sp.cos(fraction * atom), Kind.COSINE))
         return sorted(found, key=lambda pair: pair[1])
 
-    @property
+    @cached_property
     def fractions(self) -> Combination:
-        """{atom: fraction}: sines and cosines are generators at fraction·atom."""
-        return common_fractions(self._angles)
+        """{atom: fraction}: sines and cosines are generators at fraction·atom.
+
+        In the order of the rates of the atoms, where those were asked for, so that rotations of
+        the same coordinates share a ring. To be read once all is collected.
+        """
+        found = common_fractions(self._angles)
+        places = {expression: place for place, expression in enumerate(self.kinds)}
+        in_order = sorted(found, key=lambda atom: places.get(rate_of(atom), len(places)))
+        return {atom: found[atom] for atom in in_order}
 
     @property
     def needs_fractions(self) -> bool:
@@ -102,6 +110,9 @@ class Request:
 
     def collect(self, expression: sp.Expr) -> None:
         """Note what one expression asks for; raises AlgebraError for what no ring can hold."""
+        if expression in self._seen:
+            return
+        self._seen.add(expression)
         quotient = as_sine_cosine(expression)
         if quotient is not None:
             self.collect(quotient[0])

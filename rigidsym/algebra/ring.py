@@ -52,8 +52,7 @@ class Ring:
         self.relations: tuple[PolyElement, ...] = ()
         self.derivatives: dict[int, PolyElement] = {}
         self.relation_terms: list[tuple[Monomial, list[tuple[int, int]], Any, PolyElement]] = []
-        self._rules: list[Rule] = []
-        self._normal_forms: dict[Monomial, Terms | None] = {}
+        self._normal_forms = _NormalForms([])
         self._monomial_rates: dict[Monomial, PolyElement] = {}
 
     @property
@@ -70,14 +69,13 @@ class Ring:
         basis = groebner(list(self.relations), self.polynomials) if self.relations else []
         if any(element.is_ground for element in basis):
             raise AlgebraError("the relations contradict one another: they imply 1 = 0")
-        self._rules = [_rewriting_rule(element) for element in basis]
+        self._normal_forms = _NormalForms([_rewriting_rule(element) for element in basis])
         self.relation_terms = [
             (term, _powers(term), coefficient, relation)
             for relation in self.relations
             for term, coefficient in relation.items()
             if any(term)
         ]
-        self._normal_forms = {}
         self._monomial_rates = {}
 
     def set_derivatives(self, derivatives: Mapping[int, PolyElement]) -> None:
@@ -86,7 +84,7 @@ class Ring:
 
     def reduce(self, element: PolyElement) -> PolyElement:
         """The normal form of a polynomial: zero exactly for members of the ideal."""
-        if all(self._normal_form(monomial) is None for monomial in element):
+        if self._normal_forms.standard.issuperset(element):
             return element
         return self._settled(element)
 
@@ -111,35 +109,16 @@ class Ring:
         return self.zero.new({m: c for m, c in result.items() if c})
 
     def _settled(self, terms: Terms) -> PolyElement:
+        """The polynomial of these terms, in normal form."""
+        forms = self._normal_forms
         result: Terms = {}
         for monomial, coefficient in terms.items():
-            form = self._normal_form(monomial)
+            form = forms[monomial]
             if form is None:
                 result[monomial] = result.get(monomial, 0) + coefficient
             else:
                 _add(result, coefficient, form)
         return self.zero.new({m: c for m, c in result.items() if c})
-
-    def _normal_form(self, monomial: Monomial) -> Terms | None:
-        """Normal form of one monomial, remembered, since reduction is linear in the monomials.
-
-        None where the monomial is its own normal form.
-        """
-        if monomial not in self._normal_forms:
-            self._normal_forms[monomial] = self._rewrite(monomial)
-        return self._normal_forms[monomial]
-
-    def _rewrite(self, monomial: Monomial) -> Terms | None:
-        for leading, needed, tail in self._rules:
-            if all(monomial[place] >= power for place, power in needed):
-                rest = tuple(map(sub, monomial, leading))
-                result: Terms = {}
-                for term, coefficient in tail.items():
-                    product = tuple(map(add, rest, term))
-                    form = self._normal_form(product)
-                    _add(result, coefficient, {product: 1} if form is None else form)
-                return {m: c for m, c in result.items() if c}
-        return None
 
     def is_zero(self, element: PolyElement) -> bool:
         return not self.reduce(element)
@@ -174,6 +153,35 @@ class Ring:
                 rest = (*monomial[:place], power - 1, *monomial[place + 1 :])
                 total += self.derivatives[place].mul_term((rest, power))
         return self.reduce(total)
+
+
+class _NormalForms(dict[Monomial, Terms | None]):
+    """Normal forms of monomials, each worked out once, since reduction is linear in them.
+
+    None where the monomial is its own normal form; `standard` are those met so far.
+    """
+
+    def __init__(self, rules: Sequence[Rule]) -> None:
+        self.standard: set[Monomial] = set()
+        self._rules = rules
+
+    def __missing__(self, monomial: Monomial) -> Terms | None:
+        form = self[monomial] = self._rewritten(monomial)
+        if form is None:
+            self.standard.add(monomial)
+        return form
+
+    def _rewritten(self, monomial: Monomial) -> Terms | None:
+        for leading, needed, tail in self._rules:
+            if all(monomial[place] >= power for place, power in needed):
+                rest = tuple(map(sub, monomial, leading))
+                result: Terms = {}
+                for term, coefficient in tail.items():
+                    product = tuple(map(add, rest, term))
+                    form = self[product]
+                    _add(result, coefficient, {product: 1} if form is None else form)
+                return {m: c for m, c in result.items() if c}
+        return None
 
 
 def _rewriting_rule(element: PolyElement) -> Rule:

@@ -29,7 +29,7 @@ class Values:
         inputs = [s for name, a in self.arguments.items() if name != "q" for s in a.symbols]
         turns = self._many_turns
         held = [e for turn in turns for e in turn.matrix] or [*model.matrix]
-        self.codec = codec_for([*held, *inputs], constraints=model.constraints, order=2)
+        self.codec = codec_for([*inputs, *held], constraints=model.constraints, order=2)
         self.ring = self.codec.ring
         self.one = RingMatrix.identity(self.ring, 3)
 
