@@ -6,7 +6,7 @@ The result is a sum of products, each of which may hold a sum in turn.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -15,6 +15,7 @@ from math import gcd, lcm
 from rigidsym.algebra.ring import Monomial
 
 Terms = Mapping[Monomial, Fraction]
+Weights = Mapping[int, int]  # place of a generator -> operations that one use of it costs
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,11 +27,8 @@ class Product:
     bracket: tuple[Product, ...] = ()
 
 
-def collect(terms: Terms, weights: Sequence[int]) -> tuple[Product, ...]:
-    """The terms as a sum of products with common factors taken out.
-
-    `weights[k]` is the number of operations that one use of generator k costs.
-    """
+def collect(terms: Terms, weights: Weights) -> tuple[Product, ...]:
+    """The terms as a sum of products with common factors taken out."""
     factor = _best_factor(terms, weights)
     if factor is None:
         return tuple(Product(coefficient, powers) for powers, coefficient in terms.items())
@@ -40,7 +38,7 @@ def collect(terms: Terms, weights: Sequence[int]) -> tuple[Product, ...]:
     return (_take_out(inside, weights), *(collect(outside, weights) if outside else ()))
 
 
-def _best_factor(terms: Terms, weights: Sequence[int]) -> tuple[int, int] | None:
+def _best_factor(terms: Terms, weights: Weights) -> tuple[int, int] | None:
     """(generator, sign of its power) that saves most, of those that occur in several terms.
 
     A term saves the factor where its lowest power takes all of it; what is taken out is written
@@ -58,7 +56,7 @@ def _best_factor(terms: Terms, weights: Sequence[int]) -> tuple[int, int] | None
     return best if best and savings[best] else None
 
 
-def _take_out(terms: Terms, weights: Sequence[int]) -> Product:
+def _take_out(terms: Terms, weights: Weights) -> Product:
     """All that the terms have in common, times what is left of them."""
     common = reduce(_common_powers, terms)
     number = _content(terms.values())

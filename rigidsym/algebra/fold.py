@@ -21,12 +21,18 @@ Terms = dict[Monomial, Fraction]
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """first + sign · second = folded, for products of two generators."""
+    """first + sign · second = function(alpha ± beta), for products of two generators."""
 
     first: tuple[int, int]
     second: tuple[int, int]
     sign: int
-    folded: sp.Expr
+    function: type[sp.sin] | type[sp.cos]
+    angles: tuple[sp.Expr, sp.Expr]  # α and ±β
+
+    @property
+    def folded(self) -> sp.Expr:
+        """The function of the sum; SymPy takes long to make one, and few are ever needed."""
+        return self.function(sp.Add(*self.angles))
 
 
 def rules(angles: Sequence[Angle], expressions: Sequence[sp.Expr]) -> tuple[Rule, ...]:
@@ -37,10 +43,11 @@ def rules(angles: Sequence[Angle], expressions: Sequence[sp.Expr]) -> tuple[Rule
 def _of_two(a: Angle, b: Angle, expressions: Sequence[sp.Expr]) -> Iterator[Rule]:
     alpha, beta = expressions[a[0]].args[0], expressions[b[0]].args[0]
     (s, c), (sine, cosine) = a, b
-    yield Rule((c, cosine), (s, sine), -1, sp.cos(alpha + beta))
-    yield Rule((c, cosine), (s, sine), 1, sp.cos(alpha - beta))
-    yield Rule((s, cosine), (c, sine), 1, sp.sin(alpha + beta))
-    yield Rule((s, cosine), (c, sine), -1, sp.sin(alpha - beta))
+    plus, minus = (alpha, beta), (alpha, -beta)
+    yield Rule((c, cosine), (s, sine), -1, sp.cos, plus)
+    yield Rule((c, cosine), (s, sine), 1, sp.cos, minus)
+    yield Rule((s, cosine), (c, sine), 1, sp.sin, plus)
+    yield Rule((s, cosine), (c, sine), -1, sp.sin, minus)
 
 
 def folded(terms: Mapping[Monomial, Fraction], found: Iterable[Rule]) -> Terms:

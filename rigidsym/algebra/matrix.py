@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from operator import add, sub
+from operator import add
 
 from sympy.polys.rings import PolyElement
 
@@ -66,7 +66,7 @@ class RingMatrix:
         return self._entrywise(add, other)
 
     def __sub__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(sub, other)
+        return self._entrywise(self.ring.difference, other)
 
     def _entrywise(
         self, operation: Callable[[PolyElement, PolyElement], PolyElement], other: RingMatrix

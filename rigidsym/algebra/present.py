@@ -18,7 +18,7 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.factor import Product, collect
-from rigidsym.algebra.fold import folded, rules
+from rigidsym.algebra.fold import Rule, folded, rules
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.ring import Monomial
@@ -40,8 +40,8 @@ class Presenter:
         self.ring = codec.ring
         generators = [gen.expression for gen in self.ring.generators]
         self._sums = rules(codec.angle_pairs, generators)
-        self._expressions = [*generators, *(rule.folded for rule in self._sums)]
-        self._weights = [int(sp.count_ops(expression)) for expression in self._expressions]
+        self._expressions = _Expressions(generators, self._sums)
+        self._weights = _Weights(self._expressions)
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
 
     def matrix(
@@ -50,7 +50,7 @@ class Presenter:
         """The matrix, or the matrix divided by `denominator`, entry by entry."""
         below = self.ring.one if denominator is None else denominator
         entries = [self.quotient(Quotient(self.ring, entry, below)) for entry in matrix.entries]
-        return sp.ImmutableMatrix(*matrix.shape, entries)
+        return sp.ImmutableMatrix(*matrix.shape, entries, copy=False)  # the list is ours
 
     def element(self, element: PolyElement) -> sp.Expr:
         """The textbook form of one element."""
@@ -94,14 +94,14 @@ class Presenter:
         powers = list(product.powers)
         number = product.coefficient
         factors = [sp.Rational(number.numerator, number.denominator), *self._ratios(powers)]
-        factors += [
-            expression if power == 1 else expression**power
-            for expression, power in zip(self._expressions, powers, strict=False)
-            if power  # the places of folded sums are there where one was folded
-        ]
+        factors += [self._power(place, power) for place, power in enumerate(powers) if power]
         if product.bracket:
             factors.append(self._sum(product.bracket))
         return sp.Mul(*factors)
+
+    def _power(self, place: int, power: int) -> sp.Expr:
+        expression = self._expressions[place]
+        return expression if power == 1 else expression**power
 
     def _ratios(self, powers: list[int]) -> list[sp.Expr]:
         """tan and cot for sines over cosines and the reverse, taken out of `powers`."""
@@ -115,6 +115,30 @@ class Presenter:
                 powers[above] -= times
                 powers[cosine if above == sine else sine] += times
         return found
+
+
+class _Expressions(dict[int, sp.Expr]):
+    """What stands at each place of a monomial: generators, then folded sums when asked for."""
+
+    def __init__(self, generators: Sequence[sp.Expr], sums: Sequence[Rule]) -> None:
+        super().__init__(enumerate(generators))
+        self._first = len(generators)
+        self._sums = sums
+
+    def __missing__(self, place: int) -> sp.Expr:
+        expression = self[place] = self._sums[place - self._first].folded
+        return expression
+
+
+class _Weights(dict[int, int]):
+    """Operations in the expression at each place, counted when asked for."""
+
+    def __init__(self, expressions: _Expressions) -> None:
+        self._expressions = expressions
+
+    def __missing__(self, place: int) -> int:
+        weight = self[place] = int(sp.count_ops(self._expressions[place]))
+        return weight
 
 
 def _divide(monomial: Monomial, divisor: Monomial) -> Monomial:

@@ -101,6 +101,12 @@ class Ring:
                     total[product] = total.get(product, 0) + coefficient * factor
         return self._settled(total)
 
+    def difference(self, first: PolyElement, second: PolyElement) -> PolyElement:
+        """The difference of two normal forms; most are equal, since most differences are proofs."""
+        if not second or first is second:
+            return self.zero if second else first
+        return self.zero if dict.__eq__(first, second) else first - second
+
     def total(self, elements: Iterable[PolyElement]) -> PolyElement:
         """The sum of elements in normal form, which is in normal form."""
         result: Terms = {}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
@@ -172,8 +173,7 @@ class RotationModel:
     @property
     def constants(self) -> tuple[sp.Symbol, ...]:
         """The symbols in R or its conditions that do not move: fixed angles, parts of an axis."""
-        bound = (constraint.free_symbols for constraint in self.constraints)
-        return tuple(sp.ordered(self.matrix.free_symbols.union(*bound) - {TIME}))
+        return _constants((self.matrix, *self.constraints))
 
     @property
     def coordinate_units(self) -> tuple[str, ...]:
@@ -181,3 +181,9 @@ class RotationModel:
 
     def __str__(self) -> str:
         return self.name
+
+
+@lru_cache(maxsize=256)
+def _constants(held: tuple[sp.Basic, ...]) -> tuple[sp.Symbol, ...]:
+    """The symbols that do not move; asked for again and again in one derivation."""
+    return tuple(sp.ordered(set().union(*(part.free_symbols for part in held)) - {TIME}))
