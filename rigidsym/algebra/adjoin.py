@@ -37,6 +37,12 @@ class Kind(IntEnum):
     CONSTANT = 6
 
 
+_QUOTIENTS = {  # function: numerator, denominator
+    sp.tan: (sp.sin, sp.cos),
+    sp.cot: (sp.cos, sp.sin),
+    sp.sec: (None, sp.cos),
+    sp.csc: (None, sp.sin),
+}
 _MONIC = frozenset({Kind.SINE, Kind.COSINE, Kind.TIME_FUNCTION, Kind.CONSTANT})
 
 
@@ -48,16 +54,11 @@ def rate_of(expression: sp.Expr) -> sp.Expr:
 
 def as_sine_cosine(expression: sp.Expr) -> tuple[sp.Expr, sp.Expr] | None:
     """Numerator and denominator of tan, cot, sec and csc; None for anything else."""
-    for function, numerator, denominator in (
-        (sp.tan, sp.sin, sp.cos),
-        (sp.cot, sp.cos, sp.sin),
-        (sp.sec, None, sp.cos),
-        (sp.csc, None, sp.sin),
-    ):
-        if isinstance(expression, function):
-            argument = expression.args[0]
-            return numerator(argument) if numerator else sp.Integer(1), denominator(argument)
-    return None
+    parts = _QUOTIENTS.get(expression.func)
+    if parts is None:
+        return None
+    argument = expression.args[0]
+    return parts[0](argument) if parts[0] else sp.S.One, parts[1](argument)
 
 
 class Request:

@@ -118,4 +118,6 @@ class RingMatrix:
 
 def cross(ring: Ring, u: Row, v: Row) -> Row:
     """The cross product of two triples, in normal form."""
-    return tuple(ring.dot(((u[j], v[k]), (-u[k], v[j]))) for j, k in ((1, 2), (2, 0), (0, 1)))
+    return tuple(
+        ring.dot(((u[j], v[k]),), minus=((u[k], v[j]),)) for j, k in ((1, 2), (2, 0), (0, 1))
+    )

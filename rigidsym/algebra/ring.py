@@ -23,6 +23,7 @@ from rigidsym.errors import AlgebraError
 
 Monomial = tuple[int, ...]
 Terms = dict[Monomial, Any]  # coefficients in Z or Q
+Pair = tuple[PolyElement, PolyElement]
 Rule = tuple[Monomial, list[tuple[int, int]], Terms]  # leading monomial, its powers, the rest
 
 
@@ -88,18 +89,27 @@ class Ring:
             return element
         return self._settled(element)
 
-    def dot(self, pairs: Iterable[tuple[PolyElement, PolyElement]]) -> PolyElement:
-        """The sum of the products, in normal form."""
-        times = self.polynomials.monomial_mul
+    def dot(self, pairs: Iterable[Pair], minus: Iterable[Pair] = ()) -> PolyElement:
+        """The sum of the products, less those of `minus`, in normal form."""
         total: Terms = {}
         for first, second in pairs:
-            if not second:
-                continue
-            for monomial, coefficient in first.items():
-                for other, factor in second.items():
-                    product = times(monomial, other)
-                    total[product] = total.get(product, 0) + coefficient * factor
-        return self._settled(total)
+            self._add_product(total, 1, first, second)
+        for first, second in minus:
+            self._add_product(total, -1, first, second)
+        return self._settled(total) if total else self.zero
+
+    def _add_product(
+        self, total: Terms, sign: int, first: PolyElement, second: PolyElement
+    ) -> None:
+        """Add first · second to a total, in place, term by term as they multiply."""
+        if not second:
+            return
+        times = self.polynomials.monomial_mul
+        for monomial, coefficient in first.items():
+            coefficient *= sign
+            for other, factor in second.items():
+                product = times(monomial, other)
+                total[product] = total.get(product, 0) + coefficient * factor
 
     def difference(self, first: PolyElement, second: PolyElement) -> PolyElement:
         """The difference of two normal forms; most are equal, since most differences are proofs."""
@@ -125,6 +135,16 @@ class Ring:
             else:
                 _add(result, coefficient, form)
         return self.zero.new({m: c for m, c in result.items() if c})
+
+    def partial(self, element: PolyElement, place: int) -> PolyElement:
+        """∂/∂g by the generator at one place, the others held; of a normal form it is one."""
+        return self.zero.new(
+            {
+                (*m[:place], m[place] - 1, *m[place + 1 :]): c * m[place]
+                for m, c in element.items()
+                if m[place]
+            }
+        )
 
     def is_zero(self, element: PolyElement) -> bool:
         return not self.reduce(element)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import sympy as sp
 from sympy.printing.conventions import split_super_sub
@@ -89,6 +89,7 @@ def _per_second(unit: str, order: int) -> str:
     return unit if order == 0 else f"{unit or '1'}/s{'^' + str(order) if order > 1 else ''}"
 
 
+@cache
 def _angular_velocity(
     frame: str, symbols: tuple[sp.Symbol, ...], latex: str, text: str
 ) -> Argument:

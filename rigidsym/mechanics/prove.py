@@ -61,8 +61,8 @@ class Prover:
 
     def _unless_zero(self, divisor: PolyElement | None, claim: Markup) -> Proof:
         """Exact, unless the divisor may be zero everywhere; it is then what is left over."""
-        if divisor is not None:
-            left = sp.ImmutableMatrix([[self.codec.decode(divisor)]])
+        if divisor is not None and not self._is_decided:
+            left = self._decoded(RingMatrix.of(self.codec.ring, [[divisor]]))
             if not self._is_refuted(left):
                 return Proof(claim=claim, status="unproved", residual=left)
         return Proof(claim=claim, status="exact")
@@ -81,13 +81,17 @@ class Prover:
         decode = self.codec.decode
         return sp.ImmutableMatrix([[decode(entry) for entry in row] for row in residual.rows])
 
+    @property
+    def _is_decided(self) -> bool:
+        """Whether what does not reduce to zero is not zero."""
+        return self.codec.ring.complete and not self.model.constraints
+
     def _is_refuted(self, left: sp.ImmutableMatrix) -> bool:
         """Whether what is left is certainly not zero.
 
         A ring that knows every relation can tell. Where it does not, and under constraints, whose
         ideal need not hold all that vanishes with them, a value at a point tells.
         """
-        constraints = self.model.constraints
-        if self.codec.ring.complete and not constraints:
-            return True
-        return any(is_nonzero_somewhere(entry, constraints) for entry in left if entry != 0)
+        return self._is_decided or any(
+            is_nonzero_somewhere(entry, self.model.constraints) for entry in left if entry != 0
+        )

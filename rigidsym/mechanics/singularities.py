@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
-from math import ceil, prod
+from math import ceil
+from typing import Any
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -14,6 +15,7 @@ from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.entire import at_zero, rewriter_for
 from rigidsym.algebra.matrix import RingMatrix, Row, cross
 from rigidsym.algebra.present import Presenter
+from rigidsym.algebra.ring import Monomial
 from rigidsym.algebra.shorten import shortest
 from rigidsym.mechanics.derivation import Singularities, Singularity
 
@@ -155,6 +157,7 @@ def _at(zero: Zero, matrix: RingMatrix, rotation: RingMatrix, presenter: Present
     there = matrix.map(lambda entry: reduce(_substituted(entry, becomes)))
     lost = _normal_to(there.T)
     idle = _normal_to(there)
+    rank = 2 if idle is not None else int(any(there.entries))  # less than 3, since det W vanishes
     body = None
     if lost is not None:
         turned = rotation.map(lambda entry: _substituted(entry, becomes))
@@ -162,30 +165,25 @@ def _at(zero: Zero, matrix: RingMatrix, rotation: RingMatrix, presenter: Present
     return Singularity(
         coordinate=coordinate,
         value=value,
-        rank=_rank(there),
+        rank=rank,
         lost_space=_presented(lost, matrix, presenter),
         lost_body=None if body is None else presenter.matrix(body),
         undetermined=_presented(idle, matrix, presenter),
-        reached=_presented(_line(there), matrix, presenter),
+        reached=_presented(_line(there) if rank == 1 else None, matrix, presenter),
     )
 
 
 def _substituted(element: PolyElement, becomes: dict[int, int]) -> PolyElement:
     """The element with some generators replaced by whole numbers."""
-    result = element.ring.zero
+    terms: dict[Monomial, Any] = {}
     for monomial, coefficient in element.items():
-        factor = prod(value ** monomial[place] for place, value in becomes.items())
-        rest = [0 if place in becomes else power for place, power in enumerate(monomial)]
-        result += element.ring.term_new(tuple(rest), coefficient * factor)
-    return result
-
-
-def _rank(matrix: RingMatrix) -> int:
-    if matrix.det():
-        return 3
-    if any(matrix.adjugate().entries):
-        return 2
-    return int(any(matrix.entries))
+        powers = list(monomial)
+        for place, value in becomes.items():
+            coefficient *= value ** powers[place]
+            powers[place] = 0
+        rest = tuple(powers)
+        terms[rest] = terms.get(rest, 0) + coefficient
+    return element.new({monomial: c for monomial, c in terms.items() if c})
 
 
 def _normal_to(matrix: RingMatrix) -> Row | None:
@@ -197,10 +195,8 @@ def _normal_to(matrix: RingMatrix) -> Row | None:
     return None
 
 
-def _line(matrix: RingMatrix) -> Row | None:
-    """The direction of the columns of a matrix of rank one; None for any other."""
-    if _rank(matrix) != 1:
-        return None
+def _line(matrix: RingMatrix) -> Row:
+    """The direction of the columns of a matrix of rank one."""
     column = next(row for row in matrix.T.rows if any(row))
     return _primitive([shortest(matrix.ring, entry) for entry in column])
 
@@ -211,8 +207,11 @@ def _primitive(entries: Sequence[PolyElement]) -> Row:
     for entry in entries:
         common = common.gcd(entry)
     first = next(entry for entry in entries if entry)
-    common *= 1 if first.exquo(common).LC > 0 else -1
-    return tuple(entry.exquo(common) for entry in entries)
+    sign = 1 if first.LC * common.LC > 0 else -1
+    if common.is_ground:
+        number = sign * common.LC
+        return tuple(entry.quo_ground(number) for entry in entries)
+    return tuple(entry.exquo(sign * common) for entry in entries)
 
 
 def _presented(

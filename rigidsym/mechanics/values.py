@@ -27,8 +27,8 @@ class Values:
         self.model = model
         self.arguments = {argument.name: argument for argument in arguments_of(model)}
         inputs = [s for name, a in self.arguments.items() if name != "q" for s in a.symbols]
-        turns = self._many_turns
-        held = [e for turn in turns for e in turn.matrix] or [*model.matrix]
+        # a ring that holds the turns holds their product, and they are shorter to read
+        held = [e for turn in model.turns for e in turn.matrix] or [*model.matrix]
         self.codec = codec_for([*inputs, *held], constraints=model.constraints, order=2)
         self.ring = self.codec.ring
         self.one = RingMatrix.identity(self.ring, 3)
@@ -118,8 +118,10 @@ class Values:
     def _jacobian(self, omega: RingMatrix) -> RingMatrix:
         """∂Ω/∂q̇, by the generators of the rates themselves: a constraint may relate them."""
         ring = self.ring
-        rates = [ring.generator(ring.index[rate]) for rate in self.arguments["q_dot"].symbols]
-        return RingMatrix.of(ring, [[o.diff(rate) for rate in rates] for o in omega.entries])
+        places = [ring.index[rate] for rate in self.arguments["q_dot"].symbols]
+        return RingMatrix(
+            ring, tuple(tuple(ring.partial(o, place) for place in places) for o in omega.entries)
+        )
 
     def argument(self, name: str) -> RingMatrix:
         """The components of an argument as a column."""
