@@ -331,5 +331,5 @@ def test_without_the_option_a_module_is_what_it_was():
     plain, more = derived("ZXZ").kernels().source, derived("ZXZ").kernels(conversions=True).source
     assert "from_quaternion" not in plain
     assert "unwrap" not in plain
-    functions = plain[plain.index("def ") : plain.index("# What follows")]
+    functions = plain[plain.index("def ") : plain.index("# Signatures")]
     assert functions in more

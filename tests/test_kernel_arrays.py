@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tracemalloc
 
 import numpy as np
@@ -274,3 +275,33 @@ def test_memory_is_the_outputs_and_two_megabytes(name, dtype):
 def test_a_million_orientations_need_no_more():
     q, q_dot = (np.zeros((1_000_000, 3)) for _ in range(2))
     assert peak(lambda: module().rotation_rate(q, q_dot)) <= 72e6 + 2e6
+
+
+@pytest.mark.parametrize("name", ["angular_velocity_body", "rotation_matrix"])
+@pytest.mark.parametrize("threads", [2, 3, 100])
+def test_threads_give_the_same_numbers(name, threads):
+    arrays = inputs(name, (3, 10_001))
+    function = getattr(module(), name)
+    assert_array_equal(function(*arrays, threads=threads), function(*arrays))
+    assert function(*(a[0, 0] for a in arrays), threads=threads).shape == QUANTITIES[name][1]
+    assert function(*(a[:0] for a in arrays), threads=threads).shape[:2] == (0, 10_001)
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1.5, None, "2"])
+def test_threads_that_are_refused(threads):
+    message = f"threads: got {threads!r}; expected a whole number from 1 up"
+    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
+        module().rotation_matrix(Q, threads=threads)
+
+
+def test_threads_may_fill_an_out_that_overlaps():
+    q, q_dot = inputs("angular_velocity_body", (50_000,))
+    expected = module().angular_velocity_body(q, q_dot)
+    assert_array_equal(module().angular_velocity_body(q, q_dot, out=q[::-1], threads=2), expected)
+
+
+@pytest.mark.parametrize("shape", [(2, 3, 9000), (9000, 3), (20_000, 1, 2), (1, 1, 20_001)])
+def test_axes_of_any_lengths_over_many_blocks(shape):
+    q = inputs("rotation_matrix", shape)[0]
+    found = module().rotation_matrix(np.asfortranarray(q))
+    assert_array_equal(found, module().rotation_matrix(q.reshape(-1, 3)).reshape(*shape, 3, 3))

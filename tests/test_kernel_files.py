@@ -81,7 +81,7 @@ GENERATES = """
 import sys
 import rigidsym as rs
 source = rs.derive(rs.EulerAngles("ZXZ")).kernels().source
-assert "def angular_velocity_body(q, q_dot, *, out=None):" in source
+assert "def angular_velocity_body(q, q_dot, *, out=None, threads=1):" in source
 assert "numpy" not in sys.modules
 """
 
@@ -99,7 +99,9 @@ def test_every_function_is_documented_and_exported(sequence):
     assert functions.__all__ == sorted([*names, *(f"{name}_scalar" for name in names)])
     for number, (name, (arguments, shape)) in enumerate(QUANTITIES.items(), start=1):
         function = getattr(functions, name)
-        assert list(inspect.signature(function).parameters) == [*arguments, "out"]
+        assert list(inspect.signature(function).parameters) == [*arguments, "out", "threads"]
+        inputs = ",".join("(3)" for _ in arguments)
+        assert function.signature == f"{inputs}->({','.join(map(str, shape))})"
         about = inspect.getdoc(function)
         assert f"Equation ({number}) of the note; " in about
         (returned,) = (line for line in about.splitlines() if line.startswith("  returns "))

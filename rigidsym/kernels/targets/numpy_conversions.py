@@ -11,7 +11,7 @@ from rigidsym import resources
 from rigidsym.kernels.conversions import ConversionProgram, Formula, Unwrapping
 from rigidsym.kernels.formulas import MATRIX, QUATERNION
 from rigidsym.kernels.layout import WIDTH, bracketed, docstring, exploded
-from rigidsym.kernels.targets.numpy_function import Function
+from rigidsym.kernels.targets.numpy_function import OPTIONS, Function
 
 _HELPERS = "kernels_numpy_conversions.jinja"
 _UNWRAP = "kernels_numpy_unwrap_{}.jinja"
@@ -110,20 +110,31 @@ def _function(formula: Formula, shape: str) -> Function:
     result = _shape(formula, shape)
     passed = [f"{a}={_GIVEN.get(a, a)}" for a in formula.arguments]
     return Function(
-        signature=f"def {name}({', '.join(formula.arguments)}, *, out=None):",
+        signature=bracketed(0, f"def {name}(", [*formula.arguments, "*", *OPTIONS], "):"),
         about=docstring(_about(formula), indent=4),
-        body=bracketed(4, "return _apply(", [block, scalar, result, "out", *passed], ")"),
+        body=bracketed(
+            4, "return _apply(", [block, scalar, result, "out", "threads", *passed], ")"
+        ),
         scalar_signature=bracketed(0, f"def {scalar}(", inputs, "):"),
         scalar_about=f"`{name}` of one orientation; floats to a tuple.",
         scalar_body="\n".join(_body(formula, 8, _FLOATS)),
         exceptional=bracketed(8, "return _exceptional(", [block, result, *inputs], ")"),
         block_signature=bracketed(0, f"def {block}(", inputs, "):"),
         block_body="\n".join(_body(formula, 4, _ARRAYS)),
+        ufunc=f'{name}.signature = "{_ufunc(formula, shape)}"',
     )
 
 
 def _shape(formula: Formula, shape: str) -> str:
     return "(4,)" if formula.name == "quaternion" else shape
+
+
+def _ufunc(formula: Formula, shape: str) -> str:
+    """The signature as a generalised ufunc; `shape` is that of the coordinates, "(3,)"."""
+    sizes = {"p": "(4)", "matrix": "(3,3)", "q": shape.replace(",)", ")")}
+    parameters = f"({len(formula.inputs) - 1})"
+    inputs = ",".join(sizes.get(argument, parameters) for argument in formula.arguments)
+    return f"{inputs}->({len(formula.outputs)})"
 
 
 def _about(formula: Formula) -> list[str | Sequence[str]]:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 
+OPTIONS = ("out=None", "threads=1")  # of every function of arrays
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Function:
     """The pieces of text that stand for one kernel in the template."""
@@ -18,3 +21,4 @@ class Function:
     exceptional: str
     block_signature: str
     block_body: str
+    ufunc: str  # the line that states its signature as a generalised ufunc
