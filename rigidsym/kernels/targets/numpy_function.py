@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-
 OPTIONS = ("out=None", "threads=1")  # of every function of arrays
 
 
