@@ -48,6 +48,7 @@ ORDER = (
     "mechanics",
     "kernels",
     "notes",
+    "page",
     "record",
     "expression",
     "rotations",

@@ -39,7 +39,12 @@ class Target:
 
 
 TARGETS: Mapping[str, Target] = MappingProxyType(
-    {"numpy": Target(about="NAME.py: a Python module that needs NumPy alone")}
+    {
+        "numpy": Target(about="NAME.py: a Python module that needs NumPy alone"),
+        "javascript": Target(
+            about="NAME.mjs: an ES module without dependencies", programs=("node",)
+        ),
+    }
 )
 
 

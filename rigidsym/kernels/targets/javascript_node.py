@@ -60,7 +60,7 @@ def _caller(source: str, function: str) -> Callable[..., NDArray[np.float64]]:
             np.broadcast_to(a, (*leading, a.shape[-1])).reshape(-1, a.shape[-1]) for a in arrays
         ]
         shape, values = _run(source, function, rows)
-        return values.reshape(*leading, *shape)
+        return values.reshape((*leading, *shape))
 
     return call
 

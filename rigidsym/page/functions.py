@@ -1,0 +1,68 @@
+"""What a live page has to evaluate: R, Ω, Ω′, the margin, the turns, and what binds the inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import sympy as sp
+
+from rigidsym.kernels.lower import lower
+from rigidsym.kernels.targets import javascript
+from rigidsym.mechanics import kinematics
+from rigidsym.mechanics.derivation import Derivation, Markup, Quantity, Step
+from rigidsym.models.rotation import RotationModel
+
+SHOWN = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
+TURNS = "turns"
+CONDITIONS = ("conditions", "condition_slopes")
+
+_WITH_A_MARGIN = "rate_matrix_space"
+_NAMELESS = Markup("", "")
+
+
+def functions_of(model: RotationModel) -> str:
+    """JavaScript functions of all that the page of a model evaluates."""
+    derivation = kinematics.derive(model, (*SHOWN, _WITH_A_MARGIN))
+    steps = (replace(step, number=0) for step in (*derivation.steps, *_more(derivation)))
+    program = lower(replace(derivation, steps=tuple(steps)), javascript.RESERVED)
+    return javascript.bare([k for k in program.kernels if k.name != _WITH_A_MARGIN])
+
+
+def _more(derivation: Derivation) -> Iterator[Step]:
+    model = derivation.model
+    if model.turns:
+        rows = [[*turn.direction, turn.angle] for turn in model.turns]
+        about = "axis and angle of each turn, a turn a row"
+        yield _step(TURNS, sp.ImmutableMatrix(rows), about, ("q",), model)
+    bound = sp.Matrix(_conditions(model))
+    if bound:
+        inputs = [*model.coordinates, *model.constants]
+        yield _step(CONDITIONS[0], bound, "what has to vanish", ("q",), model)
+        slopes = bound.jacobian(inputs)
+        yield _step(CONDITIONS[1], slopes, "its derivatives by all inputs", ("q",), model)
+
+
+def _conditions(model: RotationModel) -> tuple[sp.Expr, ...]:
+    """What vanishes for all that the inputs may be; where they are bound by R itself, R Rᵀ − 1."""
+    if model.pullback is None:
+        return model.constraints
+    left_over = model.matrix * model.matrix.T - sp.eye(3)
+    return tuple(left_over[i, j] for i in range(3) for j in range(i, 3))
+
+
+def _step(
+    name: str, matrix: sp.MatrixBase, about: str, inputs: tuple[str, ...], model: RotationModel
+) -> Step:
+    """Something that is evaluated as the quantities are, and stands in no note."""
+    quantity = Quantity(
+        name=name,
+        symbol=Markup(name, name),
+        definition=_NAMELESS,
+        about=about,
+        unit="",
+        inputs=(*inputs, "parameters") if model.constants else inputs,
+    )
+    return Step(
+        number=0, quantity=quantity, expression=matrix.as_immutable(), because="", proofs=()
+    )
