@@ -44,6 +44,7 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
         "javascript": Target(
             about="NAME.mjs: an ES module without dependencies", programs=("node",)
         ),
+        "jax": Target(about="NAME_jax.py: a Python module for JAX; jit, vmap, grad", package="jax"),
     }
 )
 

@@ -35,8 +35,8 @@ def render(program: Program, conversions: ConversionProgram | None = None) -> di
     text = template.render(
         about=docstring([*_about(program), *added.remarks]),
         imports=_import(singular.imports(kernels) | added.imports),
-        exports=_lines(f'"{name}",' for name in sorted((*_exports(kernels), *added.exports))),
-        components=_lines((*map(_entry, _arguments(program, conversions)), *added.components)),
+        exports=lines(f'"{name}",' for name in sorted((*_exports(kernels), *added.exports))),
+        components=lines((*map(entry, _arguments(program, conversions)), *added.components)),
         functions=[*map(_function, kernels), *added.functions],
         helpers="".join(
             f"\n\n{text}" for text in (*singular.helpers(kernels), added.helpers) if text
@@ -106,7 +106,7 @@ def _exports(kernels: Sequence[Kernel]) -> Iterator[str]:
         yield f"{kernel.name}_scalar"
 
 
-def _entry(argument: Argument) -> str:
+def entry(argument: Argument) -> str:
     names = [f'"{name}"' for name in argument.components]
     line = f'"{argument.name}": {_in_a_line(names)},'
     if len(line) <= WIDTH - 4:
@@ -114,7 +114,7 @@ def _entry(argument: Argument) -> str:
     return exploded(4, f'"{argument.name}": (', names, "),").lstrip()
 
 
-def _lines(items: Iterable[str]) -> str:
+def lines(items: Iterable[str]) -> str:
     return "\n".join(f"    {item}" for item in items)
 
 
@@ -124,7 +124,7 @@ def _function(kernel: Kernel) -> Function:
     shape = f"({kernel.shape[0]},)" if len(kernel.shape) == 1 else str(kernel.shape)
     return Function(
         signature=bracketed(0, f"def {kernel.name}(", [*vectors, "*", *OPTIONS], "):"),
-        about=docstring(_about_kernel(kernel), indent=4),
+        about=docstring(about_kernel(kernel), indent=4),
         body=bracketed(
             4,
             "return _apply(",
@@ -235,13 +235,12 @@ def _tuple(indent: int, head: str, items: Sequence[str]) -> str:
 
 def _about(program: Program) -> list[str | Sequence[str]]:
     """The paragraphs of the module's docstring."""
-    arguments = [(a.name, f"(..., {len(a.components)})", a.about) for a in program.arguments]
     return [
         f"{program.title}: functions of NumPy arrays.",
         " ".join(program.convention),
         f"Source: {program.source}.",
         "Arguments, with the components on the last axis, in radians and SI units:",
-        _table(arguments),
+        arguments_table(program),
         "All other axes broadcast, and any strides will do. Integers count as float64; the "
         "result is float32 where every argument is, else float64. A given `out` of the "
         "result's shape and dtype is filled and returned; it may overlap the arguments. "
@@ -254,7 +253,12 @@ def _about(program: Program) -> list[str | Sequence[str]]:
     ]
 
 
-def _about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
+def arguments_table(program: Program) -> list[str]:
+    """Lines that say what the arguments of all functions are."""
+    return _table([(a.name, f"(..., {len(a.components)})", a.about) for a in program.arguments])
+
+
+def about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
     """The paragraphs of a function's docstring."""
     is_named = kernel.definition and kernel.definition != kernel.symbol
     definition = f" = {kernel.definition}" if is_named else ""

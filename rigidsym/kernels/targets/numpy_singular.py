@@ -79,20 +79,20 @@ def helpers(kernels: Sequence[Kernel]) -> list[str]:
     found = []
     if any(map(guards_of, kernels)):
         found.append(environment.get_template(_DIVISORS).render())
-    last = _last_order(kernels)
+    last = last_order(kernels)
     if last >= 0:
-        table = [_entry(order) for order in range(FIRST_SERIES, last + 1)]
+        table = [entry(order) for order in range(FIRST_SERIES, last + 1)]
         found.append(environment.get_template(_SERIES).render(series="\n".join(table)))
     return found
 
 
-def _last_order(kernels: Sequence[Kernel]) -> int:
+def last_order(kernels: Sequence[Kernel]) -> int:
     """The highest k of the functions c_k that are called; -1 where there are none."""
     orders = (call.order for kernel in kernels for call in calls_of(kernel).values())
     return max((order for order in orders if order is not None), default=-1)
 
 
-def _entry(order: int) -> str:
+def entry(order: int) -> str:
     """A line of the table: k, the switch, c_{k-2}(0), and the coefficients."""
     series = series_of(order)
     numbers = [series.switch, taylor(order - 2)[0], *series.coefficients]
@@ -115,7 +115,7 @@ _GUARDED = {
 
 def remarks(kernels: Sequence[Kernel]) -> Iterator[str]:
     """What the docstring of the module says of poles and of series."""
-    last = _last_order(kernels)
+    last = last_order(kernels)
     if last >= 0:
         yield (
             "Functions of n = |v| are written in c0 = cos n, c1 = sin n/n and c_(k+2) = "
