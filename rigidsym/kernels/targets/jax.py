@@ -62,6 +62,7 @@ def _fitted(kernel: Kernel) -> Kernel:
 def _function(kernel: Kernel) -> dict[str, str]:
     vectors = [argument.name for argument in kernel.arguments]
     given = [f"{name}={name}" for name in vectors]
+    taken = list(_taken(kernel))
     outputs = [_show(output) for output in kernel.outputs]
     shape = f"({kernel.shape[0]},)" if len(kernel.shape) == 1 else str(kernel.shape)
     return {
@@ -69,8 +70,8 @@ def _function(kernel: Kernel) -> dict[str, str]:
         "about": docstring(python.about_kernel(kernel), indent=4),
         "body": "\n".join(
             [
-                bracketed(4, "like, parts = _components(", given, ")"),
-                *_taken(kernel),
+                bracketed(4, f"like, {'parts' if taken else '_'} = _components(", given, ")"),
+                *taken,
                 *_lines(kernel),
                 bracketed(4, "return _together(", ["like", shape, *outputs], ")"),
             ]
