@@ -11,6 +11,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import BodyError
+from rigidsym.models.distribution import Distribution
 from rigidsym.models.physical import check_inertia, check_mass
 from rigidsym.models.rotation import Citation, lecture
 from rigidsym.models.so3 import TIME
@@ -54,6 +55,7 @@ class RigidBody:
     parameters: tuple[Parameter, ...] = ()  # every symbol above, in the order of kernels
     source: Citation = SOURCE
     allow: bool = False
+    distribution: Distribution | None = None  # of its mass, where that is known
     request: Mapping[str, Any] = field(
         default_factory=dict, hash=False
     )  # what asks for it in a file

@@ -1,0 +1,327 @@
+"""Mass, first and second moments of a distribution of mass, each integrated or summed, and proved.
+
+∫ dm, ∫ x dm and ∫ x xᵀ dm hold all that the motion of a rigid body depends on; the inertia tensor
+is tr(J) 1 − J of the second moments J (lecture, section 2.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache, lru_cache, singledispatch
+from itertools import pairwise
+
+import sympy as sp
+from sympy.polys.rings import PolyElement
+
+from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.integrate import Integrator, integration_codec
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.present import presenter_for
+from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.rational import Rationals
+from rigidsym.errors import BodyError
+from rigidsym.mechanics.derivation import Markup, Proof
+from rigidsym.models.distribution import (
+    Composite,
+    Distribution,
+    Known,
+    Particles,
+    Polyhedron,
+    Solid,
+)
+
+_PAIRS = tuple((i, j) for i in range(3) for j in range(i, 3))
+_ANTIDERIVATIVES = Markup(
+    r"\frac{\partial F}{\partial u} = f \text{ for every integral}", "∂F/∂u = f for every integral"
+)
+_ELEMENT = Markup(
+    r"\left(\frac{dA}{du\,dv}\right)^2 = \det\mathbf{J}^{\mathsf T}\mathbf{J}",
+    "element² = det JᵀJ",
+)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Moments:
+    """∫ dm, ∫ x dm (3, 1) and ∫ x xᵀ dm (3, 3), in the axes of the distribution."""
+
+    mass: sp.Expr
+    first: sp.ImmutableMatrix
+    second: sp.ImmutableMatrix
+    element: sp.Expr | None = None  # of a solid: what is integrated for a density of one
+    proofs: tuple[Proof, ...] = ()
+
+    @property
+    def expressions(self) -> tuple[sp.Expr, ...]:
+        return (self.mass, *self.first, *self.second)
+
+
+@singledispatch
+def moments_of(distribution: Distribution) -> Moments:
+    """The moments of a distribution. Raises BodyError where it has none."""
+    raise BodyError(f"{type(distribution).__name__} is no distribution of mass")
+
+
+@moments_of.register
+def _(given: Particles) -> Moments:
+    """Sums over the particles."""
+    field = Rationals(e for p in given.particles for e in (p.mass, *p.position))
+    masses = [field.read(p.mass) for p in given.particles]
+    places = [[field.read(e) for e in p.position] for p in given.particles]
+    pairs = list(zip(masses, places, strict=True))
+    return _presented(
+        field,
+        field.total(masses),
+        [field.total([m * x[i] for m, x in pairs]) for i in range(3)],
+        [field.total([m * x[i] * x[j] for m, x in pairs]) for i, j in _PAIRS],
+    )
+
+
+@moments_of.register
+def _(given: Known) -> Moments:
+    """What gives the known inertia tensor back: J = ½ tr(I) 1 − I about the centre."""
+    half = given.inertia.trace() / 2
+    about_centre = sp.eye(3) * half - given.inertia
+    second = about_centre + given.mass * given.centre * given.centre.T
+    return Moments(
+        mass=given.mass,
+        first=sp.ImmutableMatrix(given.mass * given.centre),
+        second=sp.ImmutableMatrix(second),
+    )
+
+
+@moments_of.register
+def _(given: Composite) -> Moments:
+    """The parts, each turned, moved and added; a hole is taken away."""
+    found = [moments_of(part.what) for part in given.parts]
+    held = [e for m in found for e in m.expressions]
+    held += [e for part in given.parts for e in (*part.at, *part.turned)]
+    field = Rationals(held, given.conditions)
+    masses, firsts, seconds = [], [], []
+    for part, m in zip(given.parts, found, strict=True):
+        sign = -1 if part.hole else 1
+        mass, at, turn = sign * m.mass, part.at, part.turned
+        moved = turn * m.first
+        cross = moved * at.T
+        whole = sign * (turn * m.second * turn.T + cross + cross.T) + mass * at * at.T
+        masses.append(field.read(mass))
+        firsts.append([field.read(entry) for entry in sign * moved + mass * at])
+        seconds.append(field.read_matrix(whole))
+    return _presented(
+        field,
+        field.total(masses),
+        [field.total([first[i] for first in firsts]) for i in range(3)],
+        [field.total([second[i][j] for second in seconds]) for i, j in _PAIRS],
+        proofs=tuple(dict.fromkeys(proof for m in found for proof in m.proofs)),
+    )
+
+
+@moments_of.register
+@lru_cache(maxsize=64)
+def _(solid: Solid) -> Moments:
+    """Integrals over the coordinates, innermost the last one."""
+    density = sp.S.One if solid.density is None else _in_coordinates(solid.density, solid)
+    held = [*solid.place, density, solid.element or sp.S.One]
+    held += [] if solid.mass is None else [solid.mass]
+    codec = integration_codec(held, solid.coordinates, solid.bounds)
+    work = _Integrals(codec, solid)
+    measure, proofs = work.measure()
+    if not measure:
+        raise BodyError(f"{solid.title}: its points lie in a plane, a line or a point")
+    constant, varying = work.split(measure)
+    weight = codec.ring.dot([(varying, codec.encode(density))])
+    place = [codec.encode(entry) for entry in solid.place]
+    volume = work.integral(weight)
+    first = [work.integral(codec.ring.dot([(weight, x)])) for x in place]
+    second = [
+        work.integral(codec.ring.dot([(weight, codec.ring.dot([(place[i], place[j])]))]))
+        for i, j in _PAIRS
+    ]
+    scale = _scale(codec, solid, volume)
+    if solid.mass is None:
+        scale = Quotient.whole(codec.ring, constant)
+    return _presented(
+        Rationals.over(codec),
+        *_scaled(scale, volume, first, second),
+        element=presenter_for(codec).element(measure),
+        proofs=(*proofs, Proof(claim=_ANTIDERIVATIVES, status="exact")),
+    )
+
+
+def _scale(codec: Codec, solid: Solid | Polyhedron, volume: PolyElement) -> Quotient:
+    """What moments of unit density are multiplied by: the mass over the volume."""
+    ring = codec.ring
+    if not volume:
+        raise BodyError("the solid has no volume, area or length")
+    if solid.mass is None:
+        return Quotient.whole(ring, ring.one)
+    return Quotient(ring, codec.encode(solid.mass), volume)
+
+
+def _scaled(
+    scale: Quotient,
+    volume: PolyElement,
+    first: Sequence[PolyElement],
+    second: Sequence[PolyElement],
+) -> tuple[Quotient, list[Quotient], list[Quotient]]:
+    def times(element: PolyElement) -> Quotient:
+        return Quotient.whole(scale.ring, element) * scale
+
+    return times(volume), [*map(times, first)], [*map(times, second)]
+
+
+def _in_coordinates(density: sp.Expr, solid: Solid) -> sp.Expr:
+    """The density with the place in the place of x, y and z."""
+    axes = dict(zip(sp.symbols("x y z"), solid.place, strict=True))
+    return density.xreplace({s: e for s, e in axes.items() if s not in solid.coordinates})
+
+
+class _Integrals:
+    """The integrals of one solid, with the proof of each antiderivative."""
+
+    def __init__(self, codec: Codec, solid: Solid) -> None:
+        self.codec, self.ring, self.solid = codec, codec.ring, solid
+        self._each = [Integrator(codec, variable) for variable in solid.coordinates]
+
+    def integral(self, element: PolyElement) -> PolyElement:
+        """Over all coordinates. Raises BodyError where an antiderivative is not one."""
+        pairs = list(zip(self._each, self.solid.bounds, strict=True))
+        for integrator, bounds in reversed(pairs):
+            antiderivative = integrator.antiderivative(element)
+            left = self.ring.reduce(integrator.derivative(antiderivative) - element)
+            if left:
+                raise BodyError(f"an integral over {integrator.variable} failed its proof: {left}")
+            element = integrator.between(antiderivative, bounds)
+        return element
+
+    def measure(self) -> tuple[PolyElement, tuple[Proof, ...]]:
+        """The length, area or volume that belongs to a unit of the coordinates."""
+        place = [self.codec.encode(entry) for entry in self.solid.place]
+        columns = [[each.derivative(x) for x in place] for each in self._each]
+        tangents = RingMatrix.of(self.ring, columns)
+        if len(columns) == 3:
+            determinant = tangents.det()
+            return determinant * self._sign(determinant), ()
+        element = self.codec.encode(self.solid.element)
+        residual = self.ring.reduce(element**2) - (tangents @ tangents.T).det()
+        if residual:
+            raise BodyError(
+                f"{self.solid.title}: the element {self.solid.element} is not that of the map; its "
+                f"square differs by {self.codec.decode(self.ring.reduce(residual))}"
+            )
+        return element, (Proof(claim=_ELEMENT, status="exact"),)
+
+    def split(self, measure: PolyElement) -> tuple[PolyElement, PolyElement]:
+        """The measure as a constant times what is integrated: all of it is one or the other."""
+        names = set(self.solid.coordinates)
+        moving = [
+            k for k, g in enumerate(self.ring.generators) if g.expression.free_symbols & names
+        ]
+        if any(monomial[place] for monomial in measure for place in moving):
+            return self.ring.one, measure
+        return measure, self.ring.one
+
+    def _sign(self, determinant: PolyElement) -> int:
+        """Of a determinant, from three places within the bounds; the map may not fold over."""
+        expression = self.codec.decode(determinant)
+        names = expression.free_symbols.union(
+            *(b.free_symbols for p in self.solid.bounds for b in p)
+        )
+        free = sorted(names - set(self.solid.coordinates), key=str)
+        point = {s: sp.Rational(7 + k, 5 + 3 * k) for k, s in enumerate(free)}
+        signs = {sp.sign(expression.xreplace(self._inside(point, k)).evalf()) for k in (3, 4, 5)}
+        signs.discard(sp.S.Zero)
+        if len(signs) > 1:
+            raise BodyError(f"{self.solid.title}: the map folds over: its determinant changes sign")
+        return int(signs.pop()) if signs else 1
+
+    def _inside(self, point: dict[sp.Symbol, sp.Expr], k: int) -> dict[sp.Symbol, sp.Expr]:
+        """A place within the bounds, the coordinates one after the other."""
+        inside = dict(point)
+        for coordinate, (low, high) in zip(self.solid.coordinates, self.solid.bounds, strict=True):
+            below, above = low.xreplace(inside), high.xreplace(inside)
+            inside[coordinate] = below + (above - below) * sp.Rational(k, 7)
+        return inside
+
+
+@cache
+def _simplex() -> tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr]:
+    """∫ 1, ∫ u, ∫ u² and ∫ u v over the unit simplex, integrated."""
+    u, v, w = sp.symbols("u v w")
+    unit = moments_of(
+        Solid(
+            title="simplex",
+            coordinates=(u, v, w),
+            place=sp.ImmutableMatrix([u, v, w]),
+            bounds=((sp.S.Zero, sp.S.One), (sp.S.Zero, 1 - u), (sp.S.Zero, 1 - u - v)),
+            density=sp.S.One,
+        )
+    )
+    return unit.mass, unit.first[0], unit.second[0, 0], unit.second[0, 1]
+
+
+@moments_of.register
+def _(given: Polyhedron) -> Moments:
+    """Sums over tetrahedra between the origin and each face; those outside count negative."""
+    size, single, square, mixed = _simplex()
+    extra = [e for e in (given.mass, given.density) if e is not None]
+    codec = codec_for([*(e for p in given.vertices for e in p), *extra, size, square])
+    ring = codec.ring
+    corners = [tuple(codec.encode(e) for e in vertex) for vertex in given.vertices]
+    volume, first, second = ring.zero, [ring.zero] * 3, [ring.zero] * len(_PAIRS)
+    for triangle in _triangles(given, codec, corners):
+        six = RingMatrix.of(ring, triangle).det()
+        volume += six * codec.encode(size)
+        total = [ring.total(p[i] for p in triangle) for i in range(3)]
+        first = [f + six * t * codec.encode(single) for f, t in zip(first, total, strict=True)]
+        for place, (i, j) in enumerate(_PAIRS):
+            own = ring.dot([(p[i], p[j]) for p in triangle])
+            both = ring.dot([(total[i], total[j])])
+            inside = own * codec.encode(square - mixed) + both * codec.encode(mixed)
+            second[place] += ring.dot([(six, inside)])
+    _refuse_inverted(codec, volume)
+    scale = _scale(codec, given, volume)
+    if given.density is not None:
+        scale = codec.encode_quotient(given.density)
+    reduced = [ring.reduce(f) for f in first]
+    return _presented(Rationals.over(codec), *_scaled(scale, volume, reduced, second))
+
+
+def _triangles(
+    given: Polyhedron, codec: Codec, corners: Sequence[tuple[PolyElement, ...]]
+) -> Iterable[list[tuple[PolyElement, ...]]]:
+    """Each face as triangles about its first corner; raises BodyError where it is not plane."""
+    for number, face in enumerate(given.faces):
+        first, *others = (corners[k] for k in face)
+        sides = [tuple(a - b for a, b in zip(p, first, strict=True)) for p in others]
+        for place, side in enumerate(sides[2:], start=3):
+            if RingMatrix.of(codec.ring, [sides[0], sides[1], side]).det():
+                raise BodyError(f"face {number}: corner {face[place]} is not in its plane")
+        yield from ([first, a, b] for a, b in pairwise(others))
+
+
+def _refuse_inverted(codec: Codec, volume: PolyElement) -> None:
+    value = codec.decode(volume)
+    if value.is_number and value < 0:
+        raise BodyError(
+            f"the surface is inside out: its volume is {float(value):.6g} m³; turn its faces over"
+        )
+
+
+def _presented(
+    field: Rationals,
+    mass: Quotient,
+    first: Sequence[Quotient],
+    second: Sequence[Quotient],
+    *,
+    element: sp.Expr | None = None,
+    proofs: tuple[Proof, ...] = (),
+) -> Moments:
+    entries = dict(zip(_PAIRS, map(field.write, second), strict=True))
+    return Moments(
+        mass=field.write(mass),
+        first=sp.ImmutableMatrix([field.write(q) for q in first]),
+        second=sp.ImmutableMatrix(3, 3, lambda i, j: entries[min(i, j), max(i, j)]),
+        element=element,
+        proofs=proofs,
+    )

@@ -1,0 +1,146 @@
+"""Where mass is: particles, solids, and what is put together from them; data alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from rigidsym.errors import BodyError
+
+Bounds = tuple[sp.Expr, sp.Expr]
+HERE = sp.ImmutableMatrix.zeros(3, 1)
+UPRIGHT = sp.ImmutableMatrix(sp.eye(3))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Particle:
+    """A point mass, in kg, at a position (3, 1), in m."""
+
+    mass: sp.Expr
+    position: sp.ImmutableMatrix
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Particles:
+    """Point masses held together by nothing that has mass."""
+
+    particles: tuple[Particle, ...]
+
+    def __post_init__(self) -> None:
+        if not self.particles:
+            raise BodyError("expected at least one particle")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Solid:
+    """A line, a surface or a volume, by a map from coordinates within bounds to its points.
+
+    The bounds of a coordinate may hold those before it. `element` is the length or the area that
+    belongs to a unit of the coordinates; of a volume it is derived, as the determinant of the map.
+    Where the `mass` is given, the density is uniform; otherwise `density` (kg per m, m² or m³) may
+    hold the coordinates, and x, y, z.
+    """
+
+    title: str
+    coordinates: tuple[sp.Symbol, ...]
+    place: sp.ImmutableMatrix  # (3, 1), in the coordinates
+    bounds: tuple[Bounds, ...]
+    element: sp.Expr | None = None
+    mass: sp.Expr | None = None
+    density: sp.Expr | None = None
+
+    def __post_init__(self) -> None:
+        count = len(self.coordinates)
+        if count not in (1, 2, 3) or len(self.bounds) != count or self.place.shape != (3, 1):
+            raise BodyError(
+                f"{self.title}: expected one to three coordinates, bounds for each, and three "
+                "components of the place"
+            )
+        if (count == 3) == (self.element is not None):
+            raise BodyError(
+                f"{self.title}: an element goes with lines and surfaces, and not with volumes"
+            )
+        if (self.mass is None) == (self.density is None):
+            raise BodyError(f"{self.title}: expected either the mass or the density")
+        for place, pair in enumerate(self.bounds):
+            later = set(self.coordinates[place:])
+            for bound in pair:
+                if bound.free_symbols & later:
+                    raise BodyError(
+                        f"{self.title}: the bounds of {self.coordinates[place]} hold "
+                        f"{', '.join(map(str, bound.free_symbols & later))}; they may hold the "
+                        "coordinates before it alone"
+                    )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Polyhedron:
+    """A solid of uniform density, bounded by plane faces; each named by its corners in order.
+
+    Seen from outside, the corners of a face go round against the clock.
+    """
+
+    vertices: tuple[sp.ImmutableMatrix, ...]  # (3, 1) each
+    faces: tuple[tuple[int, ...], ...]
+    mass: sp.Expr | None = None
+    density: sp.Expr | None = None
+
+    def __post_init__(self) -> None:
+        if (self.mass is None) == (self.density is None):
+            raise BodyError("polyhedron: expected either the mass or the density")
+        edges: dict[tuple[int, int], int] = {}
+        for place, face in enumerate(self.faces):
+            if len(face) < 3 or len(set(face)) != len(face):
+                raise BodyError(f"face {place}: expected three or more different corners")
+            if not all(0 <= corner < len(self.vertices) for corner in face):
+                raise BodyError(
+                    f"face {place}: corners are numbered from 0 to {len(self.vertices) - 1}"
+                )
+            for edge in zip(face, (*face[1:], face[0]), strict=True):
+                if edge in edges:
+                    raise BodyError(
+                        f"faces {edges[edge]} and {place} go along the edge {edge[0]}–{edge[1]} in "
+                        "the same direction; one of them is turned over"
+                    )
+                edges[edge] = place
+        for (start, end), place in edges.items():
+            if (end, start) not in edges:
+                raise BodyError(
+                    f"the surface is open: the edge {start}–{end} of face {place} has no other face"
+                )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Part:
+    """A distribution with a place of its own: turned about its origin, then moved by `at`."""
+
+    what: Distribution
+    at: sp.ImmutableMatrix = HERE  # (3, 1), m
+    turned: sp.ImmutableMatrix = UPRIGHT  # R, from the axes of the part to those of the whole
+    hole: bool = False  # its mass is taken away
+    label: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Composite:
+    """Parts put together."""
+
+    parts: tuple[Part, ...]
+    conditions: tuple[sp.Expr, ...] = ()  # each vanishes: on the symbols in the turns
+
+    def __post_init__(self) -> None:
+        if not self.parts:
+            raise BodyError("expected at least one part")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Known:
+    """A part of which only mass, centre and inertia tensor about the centre are given."""
+
+    mass: sp.Expr
+    centre: sp.ImmutableMatrix
+    inertia: sp.ImmutableMatrix
+
+
+Distribution = Particles | Solid | Polyhedron | Composite | Known
