@@ -8,7 +8,10 @@ derivation stays exact and its formulas short.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
 from math import isfinite
+from pathlib import Path
 
 import sympy as sp
 
@@ -17,8 +20,10 @@ from rigidsym.expression import names_in, parse_expression
 from rigidsym.models.body import Parameter
 from rigidsym.names import check_name
 from rigidsym.tables import Table
+from rigidsym.toml_lines import Path as Place
 
 PARAMETER_KEYS = ("positive", "about", "unit", "value")
+OF_FILES = ("mesh", "particles", "columns", "scale", "density")  # keys of bodies in files
 A_NUMBER = 'a number, or an expression in quotes such as "2*a"'
 
 
@@ -27,10 +32,8 @@ class Declared:
 
     def __init__(self) -> None:
         self._parameters: dict[str, Parameter] = {}
-
-    @property
-    def parameters(self) -> tuple[Parameter, ...]:
-        return tuple(self._parameters.values())
+        self.files: dict[Place, Mapping[str, object]] = {}  # what they hold, by their tables
+        self._notes: dict[str, tuple[str, str]] = {}  # what a name stands for, and its unit
 
     def read(self, table: Table) -> None:
         """The tables of [parameters]: A = { positive = true, about = "...", unit = "kg m^2" }."""
@@ -53,25 +56,44 @@ class Declared:
 
     def measured(self, slot: str, value: float, *, positive: bool) -> sp.Symbol:
         """The parameter that stands for a number in a place; raises BodyError for a wrong one."""
-        if not isfinite(value):
-            raise BodyError(f"expected a finite number, got {value}")
         self._parameters[slot] = Parameter(
             symbol=sp.Symbol(slot), positive=positive or value > 0, value=float(value)
         )
         return sp.Symbol(slot)
 
-    def given(self, about: Mapping[str, tuple[str, str]]) -> tuple[Parameter, ...]:
-        """All parameters, those from numbers described by {name: (about, unit)}."""
-        return tuple(
-            Parameter(
-                symbol=p.symbol,
-                about=p.about or about.get(name, ("", ""))[0],
-                unit=p.unit or about.get(name, ("", ""))[1],
-                positive=p.positive,
-                value=p.value,
-            )
-            for name, p in self._parameters.items()
-        )
+    def without_files(self, data: object, at: Place) -> object:
+        """The data at a path, with what was read from files in the place of their names."""
+        if isinstance(data, list):
+            return [self.without_files(entry, (*at, k)) for k, entry in enumerate(data)]
+        if not isinstance(data, Mapping):
+            return data
+        kept = {key: self.without_files(entry, (*at, key)) for key, entry in data.items()}
+        if at not in self.files:
+            return kept
+        return {k: v for k, v in kept.items() if k not in OF_FILES} | dict(self.files[at])
+
+    def note(self, expression: sp.Expr, about: str, unit: str) -> None:
+        """What a symbol stands for, where the expression is one and nothing was said of it."""
+        if expression.is_Symbol:
+            self._notes.setdefault(expression.name, (about, unit))
+
+    def number(self, expression: sp.Expr) -> float | None:
+        """The value of an expression, where all in it are numbers."""
+        values = {p.symbol: sp.Float(p.value, 17) for p in self.given() if p.value is not None}
+        value = expression.xreplace(values)
+        return float(value) if value.is_number else None
+
+    def given(self) -> tuple[Parameter, ...]:
+        """All parameters that anything is known of."""
+        noted = {
+            name: Parameter(symbol=sp.Symbol(name), positive=unit != "m" or "coord" not in about)
+            for name, (about, unit) in self._notes.items()
+        }
+        found = []
+        for name, p in (noted | self._parameters).items():
+            about, unit = self._notes.get(name, ("", ""))
+            found.append(replace(p, about=p.about or about, unit=p.unit or unit))
+        return tuple(found)
 
 
 def _parameter(entry: Table, name: str) -> Parameter:
@@ -88,10 +110,24 @@ def _parameter(entry: Table, name: str) -> Parameter:
 class BodyReader:
     """Reads the values of one table; what is wrong is noted there, and None is read."""
 
-    def __init__(self, table: Table, declared: Declared, suffix: str = "") -> None:
+    def __init__(
+        self,
+        table: Table,
+        declared: Declared,
+        folder: Path,
+        suffix: str = "",
+        *,
+        exact: bool = False,
+    ) -> None:
         self.table = table
         self.declared = declared
+        self.folder = folder  # that the paths in the file start from
         self.suffix = suffix  # of the names that numbers bring: "_2" in the second part
+        self._exact_only = exact  # whether a number with a point stays a number
+
+    def inside(self, table: Table, suffix: str = "", *, exact: bool = False) -> BodyReader:
+        """The reader of a table within this one."""
+        return BodyReader(table, self.declared, self.folder, self.suffix + suffix, exact=exact)
 
     def expression(
         self, value: object, slot: str, *at: str | int, positive: bool = False
@@ -104,8 +140,10 @@ class BodyReader:
             if isinstance(value, bool) or not isinstance(value, int | float):
                 self.table.mistyped(value, A_NUMBER, *at)
                 return None
-            if isinstance(value, int) or value == 0:
-                return self._exact(int(value), positive=positive)
+            if not isfinite(value):
+                raise BodyError(f"expected a finite number, got {value}")
+            if isinstance(value, int) or value == 0 or self._exact_only:
+                return self._exact(Fraction(str(value)), positive=positive)
             return self.declared.measured(slot + self.suffix, value, positive=positive)
         except ExpressionError as error:
             self.table.fault(f"column {error.column}: {error.message}", *at)
@@ -113,10 +151,10 @@ class BodyReader:
             self.table.fault(str(error), *at)
         return None
 
-    def _exact(self, value: int, *, positive: bool) -> sp.Integer:
+    def _exact(self, value: Fraction, *, positive: bool) -> sp.Rational:
         if positive and value <= 0:
             raise BodyError(f"expected a positive number, got {value}")
-        return sp.Integer(value)
+        return sp.Rational(value.numerator, value.denominator)
 
     def single(self, key: str, slot: str, *, positive: bool = False) -> sp.Expr | None:
         """The expression of a key; None where it is missing or wrong."""

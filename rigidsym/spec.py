@@ -119,7 +119,7 @@ class DerivationSpec:
         models = [m for rotation in rotations for m in _read_rotation(rotation, name or "")]
         if table.value("name") is None:
             table.fault("missing; expected the name of the derivation", "name")
-        manner, body = _read_notation(table), _read_body(table, name or "")
+        manner, body = _read_notation(table), _read_body(table, name or "", Path())
         faults.raise_if_any()
         return cls(
             name=name or "", title=title, models=tuple(models), body=body, manner=manner, **output
@@ -160,13 +160,14 @@ def read_file(file: str) -> DerivationSpec:
         raise SpecError(file, [Fault(line=0, path="", message=missing)]) from None
     except (OSError, UnicodeDecodeError) as error:
         raise SpecError(file, [_unreadable(error)]) from None
-    return read_spec(text, source=file, name=path.stem)
+    return read_spec(text, source=file, name=path.stem, folder=path.parent)
 
 
-def read_spec(text: str, *, source: str, name: str) -> DerivationSpec:
+def read_spec(text: str, *, source: str, name: str, folder: Path | None = None) -> DerivationSpec:
     """The specification that the text of a derivation file holds.
 
-    `source` is the file in messages, `name` names the derivation where the file has only one.
+    `source` is the file in messages, `name` names the derivation where the file has only one;
+    paths in it start from `folder`.
     Raises SpecError with all faults in the text.
     """
     table, faults = read_toml(text, source)
@@ -176,7 +177,7 @@ def read_spec(text: str, *, source: str, name: str) -> DerivationSpec:
     if table.value("rotation") is None and table.value("body") is None:
         table.fault('missing; expected [rotation] with sequence = "ZXZ" or another', "rotation")
     models = _read_rotation(rotation, name) if rotation else [EulerAngles("ZXZ")]
-    body = _read_body(table, name)
+    body = _read_body(table, name, folder or Path())
     if output:
         output.refuse_others((*_OUTPUT, "conversions"), _HINTS)
     choices = _read_output(output) if output else {}
@@ -191,18 +192,14 @@ def read_spec(text: str, *, source: str, name: str) -> DerivationSpec:
     )
 
 
-def _read_body(table: Table, name: str) -> RigidBody | None:
+def _read_body(table: Table, name: str, folder: Path) -> RigidBody | None:
     """The body of [body] in the symbols of [parameters], where there is one."""
     body, parameters = table.table("body"), table.table("parameters")
     if body is None:
         if table.value("parameters") is not None:
             table.fault("parameters go with a [body]", "parameters")
         return None
-    found = read_body(body, parameters, name)
-    if found is None:
-        return None
-    asked = {"parameters": parameters.data} if parameters else {}
-    return replace(found, request={**asked, "body": body.data})
+    return read_body(body, parameters, name, folder)
 
 
 def _names_of_both(model: RotationModel, body: RigidBody | None) -> Iterator[str]:

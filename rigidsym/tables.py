@@ -61,6 +61,14 @@ class Table:
         """All keys and values, as the file has them."""
         return self._data
 
+    @property
+    def path(self) -> Path:
+        return self._path
+
+    def instead(self, data: Mapping[str, object]) -> Table:
+        """A table with other data in this place."""
+        return Table(data, self._path, self._faults)
+
     def fault(self, message: str, *at: str | int) -> None:
         """Note a fault at a path below this table."""
         self._faults.add((*self._path, *at), message)

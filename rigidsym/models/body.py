@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import sympy as sp
@@ -208,7 +208,9 @@ def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[
                 unit=_UNITS.get(about, "") if expression == symbol else "",
                 positive=expression == symbol and about not in _SIGNED,
             )
-            found.setdefault(symbol, known.get(symbol, alone))
+            own = known.get(symbol, alone)
+            named = replace(own, about=own.about or alone.about, unit=own.unit or alone.unit)
+            found.setdefault(symbol, named)
     return tuple(found.values())
 
 

@@ -1,0 +1,130 @@
+"""Mass, centre and inertia tensor of many particles, block by block, in one pass.
+
+Each block is summed about its own centre, where differences of coordinates in double precision
+are exact or nearly so however far from the origin the body is; the few sums of the blocks are then
+moved to the common centre (parallel axes) and added without rounding (`math.fsum`, after J. R.
+Shewchuk, 1997). The merging of blocks is that of T. F. Chan, G. H. Golub and R. J. LeVeque,
+Updating formulae and a pairwise algorithm for computing sample variances (1979).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import fsum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidsym.errors import BodyError
+
+Array = NDArray[np.float64]
+BLOCK = 8192  # particles that are summed at once; they stay in the cache
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """The sums of one block of particles about a place near them."""
+
+    count: int
+    mass: float
+    lightest: float
+    about: Array  # c, (3,)
+    first: Array  # Σ m (x − c), (3,)
+    second: Array  # Σ m (x − c)(x − c)ᵀ, (3, 3)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Cloud:
+    """What a cloud of particles is as a rigid body, in SI units."""
+
+    count: int
+    mass: float  # kg
+    centre: Array  # (3,), m
+    inertia: Array  # (3, 3), about the centre, kg m²
+
+
+def block_of(masses: Array | None, places: Array, start: int = 0) -> Block:
+    """The sums of a block: masses (n,), ones where there are none, and places (3, n).
+
+    `start` is the number of its first particle, for messages. Raises BodyError for NaN.
+    """
+    count = places.shape[1]
+    if masses is None:
+        masses = np.ones(count)
+    mass = float(masses.sum())
+    about = places @ masses / mass if mass else places[:, 0].copy()
+    if not np.isfinite(about).all():
+        about = places[:, 0].copy()
+    apart = places - about[:, None]
+    weighted = apart * masses
+    block = Block(count, mass, float(masses.min()), about, weighted.sum(axis=1), weighted @ apart.T)
+    if not np.isfinite(block.second).all():
+        raise BodyError(_not_finite(masses, places, start))
+    return block
+
+
+def _not_finite(masses: Array, places: Array, start: int) -> str:
+    wrong = ~(np.isfinite(masses) & np.isfinite(places).all(axis=0))
+    if not wrong.any():
+        return f"particles from {start} on: their moments are too large for double precision"
+    row = int(np.argmax(wrong))
+    x, y, z = places[:, row]
+    return (
+        f"particle {start + row}, counted from 0: expected finite numbers, got mass "
+        f"{masses[row]:g} at ({x:g}, {y:g}, {z:g})"
+    )
+
+
+def cloud_of(blocks: Iterable[Block], *, allow: bool = False) -> Cloud:
+    """All blocks as one body; their order does not matter.
+
+    Raises BodyError for no particles, for a total mass that is not positive, and, unless they are
+    to `allow`, for negative masses of single particles.
+    """
+    found = list(blocks)
+    if not found:
+        raise BodyError("expected at least one particle, got none")
+    lightest = min(block.lightest for block in found)
+    if lightest < 0 and not allow:
+        raise BodyError(f"a particle has the mass {lightest:g} kg; expected none that is negative")
+    mass = fsum(block.mass for block in found)
+    if not mass > 0:
+        raise BodyError(f"the total mass is {mass:g} kg; expected a positive mass")
+    masses = np.array([block.mass for block in found])
+    abouts = np.array([block.about for block in found])
+    firsts = np.array([block.first for block in found])
+    near = _sums([masses[:, None] * abouts, firsts]) / mass
+    moved = abouts - near
+    rest = _sums([masses[:, None] * moved, firsts])
+    second = np.empty((3, 3))
+    for i in range(3):
+        for j in range(i, 3):
+            second[i, j] = second[j, i] = fsum(
+                [
+                    *(block.second[i, j] for block in found),
+                    *(firsts[:, i] * moved[:, j]),
+                    *(firsts[:, j] * moved[:, i]),
+                    *(masses * moved[:, i] * moved[:, j]),
+                    -rest[i] * (rest[j] / mass),
+                ]
+            )
+    return Cloud(
+        count=sum(block.count for block in found),
+        mass=mass,
+        centre=near + rest / mass,
+        inertia=inertia_from(second),
+    )
+
+
+def _sums(tables: Sequence[Array]) -> Array:
+    """The sum of all rows of all tables, (3,), rounded once."""
+    return np.array([fsum(np.concatenate([table[:, k] for table in tables])) for k in range(3)])
+
+
+def inertia_from(second: Array) -> Array:
+    """tr(J) 1 − J, without adding what is taken away again."""
+    inertia = -second
+    for k in range(3):
+        inertia[k, k] = second[(k + 1) % 3, (k + 1) % 3] + second[(k + 2) % 3, (k + 2) % 3]
+    return inertia

@@ -1,0 +1,76 @@
+"""What was measured of a body, and how it is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidsym.measured.axes import PrincipalAxes
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Measured:
+    """A body in numbers, SI units."""
+
+    count: int  # particles, or faces of a mesh
+    mass: float  # kg
+    centre: Array  # (3,), m
+    inertia: Array  # (3, 3), about the centre of mass, kg m²
+    principal: PrincipalAxes
+
+    @property
+    def radii(self) -> Array:
+        """Radii of gyration about the principal axes, (3,), m: √(Iₖ/M)."""
+        return np.sqrt(np.maximum(self.principal.moments, 0) / self.mass)
+
+    def text(self, counted: str = "particles") -> str:
+        """A few lines for a terminal."""
+        principal = self.principal
+        lines = [
+            f"{self.count} {counted}",
+            f"mass                 M = {_number(self.mass)} kg",
+            f"centre of mass       c = ({_row(self.centre)}) m",
+            "inertia tensor about the centre of mass, kg m²",
+            *_grid(self.inertia),
+            f"principal moments    {_row(principal.moments)} kg m²",
+            "principal axes, one a column, right-handed",
+            *_grid(principal.axes),
+            f"radii of gyration    {_row(self.radii)} m",
+        ]
+        return "\n".join([*lines, *([principal.repeated] if principal.repeated else [])])
+
+    def record(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        return {
+            "count": self.count,
+            "mass": self.mass,
+            "centre_of_mass": self.centre.tolist(),
+            "inertia_tensor": self.inertia.tolist(),
+            "principal_moments": self.principal.moments.tolist(),
+            "principal_axes": self.principal.axes.tolist(),
+            "radii_of_gyration": self.radii.tolist(),
+            "repeated": self.principal.repeated,
+        }
+
+
+def _number(value: float) -> str:
+    return f"{value:.15g}"
+
+
+def _row(values: Iterable[float]) -> str:
+    return ", ".join(map(_number, values))
+
+
+def _grid(matrix: Array) -> list[str]:
+    rows = [[f"{entry: .12g}" for entry in row] for row in matrix]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  " + "  ".join(entry.ljust(width) for entry, width in zip(row, widths, strict=True))
+        for row in rows
+    ]
