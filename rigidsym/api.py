@@ -85,13 +85,14 @@ class MotionStep(Step):
     """A step that can show itself."""
 
     arguments: tuple[Argument, ...] = field(repr=False)
+    model: RotationModel | None = field(default=None, repr=False)
     manner: Manner = DEFAULT
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
         """What Jupyter shows: the equation with its number, or plain text."""
         from rigidsym.notes.jupyter import step_bundle_of
 
-        return step_bundle_of(self, self.arguments, self.manner)
+        return step_bundle_of(self, self.arguments, self.manner, self.model)
 
     def _repr_latex_(self) -> str:
         return self._repr_mimebundle_()["text/latex"]
@@ -108,7 +109,8 @@ def derive(model: RotationModel | str, only: Collection[str] = ()) -> Motion:
     rotation = rotation_from(model) if isinstance(model, str) else model
     derivation = kinematics.derive(rotation, only)
     steps = tuple(
-        MotionStep(**_values(step), arguments=derivation.arguments) for step in derivation.steps
+        MotionStep(**_values(step), arguments=derivation.arguments, model=rotation)
+        for step in derivation.steps
     )
     return Motion(**(_values(derivation) | {"steps": steps}))
 

@@ -331,10 +331,12 @@ def test_wrong_options_are_refused():
 
 def test_vectors_are_printed_as_vectors():
     motion = motion_of("rotation_vector")
-    line = "Ω = v̇ + (1 − cos n)/n² v × v̇ + (1 − sin n/n)/n² v × (v × v̇), with v = (v₁, v₂, v₃)"
-    assert line in show(motion, width=120)
+    shown = show(motion, width=120)
+    assert "Ω = v̇ + (1 − cos n)/n² v × v̇ + (n − sin n)/n³ v × (v × v̇)" in shown
+    assert "The vector is v = (v₁, v₂, v₃)." in shown
+    assert "The length |v| is written n, so that n² = v·v and n n\u0307 = v·v\u0307." in shown
     assert r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})" in motion.note().latex()
-    assert "with v = " not in show(motion_of("lecture"), width=120)
+    assert "The vector is" not in show(motion_of("lecture"), width=120)
 
 
 def test_the_conditions_of_a_proof_are_said():

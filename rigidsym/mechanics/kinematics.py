@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
@@ -26,6 +27,7 @@ from rigidsym.mechanics.derivation import (
     Step,
     VectorForm,
 )
+from rigidsym.mechanics.isotropic import applied, matrix_form
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import (
     ALPHA,
@@ -138,15 +140,17 @@ class _Kinematics:
         else:
             residual = self._shown(values.R) @ self._shown(values.R).T - values.one
             determinant = values.column([values.R.det() - 1])
-        return _Found(
-            self.present.matrix(self._shown(values.R)),
+        proofs = (
+            self.prove.is_rotation(residual, claims.orthogonal(symbol)),
+            self.prove.is_rotation(determinant, claims.proper(symbol)),
+        )
+        return self._matrix(
+            self._shown(values.R),
             "The turns are multiplied from left to right."
             if self.model.turns
             else "The rotation is given.",
-            (
-                self.prove.is_rotation(residual, claims.orthogonal(symbol)),
-                self.prove.is_rotation(determinant, claims.proper(symbol)),
-            ),
+            *proofs,
+            symbol=symbol,
         )
 
     def rotation_rate(self) -> _Found:
@@ -208,29 +212,31 @@ class _Kinematics:
     def rate_matrix(self, frame: Frame, matrix: RingMatrix, omega: RingMatrix) -> _Found:
         residual = matrix @ self.values.argument("q_dot") - omega
         claim = claims.maps_rates(frame.matrix, RATES, frame.omega)
-        return _Found(
-            self.present.matrix(matrix),
+        return self._matrix(
+            matrix,
             "The angular velocity is linear in the rates; their coefficients are the columns.",
-            (self.prove.vanishes(residual, claim),),
+            self.prove.vanishes(residual, claim),
+            symbol=frame.matrix,
         )
 
     def inverse(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> _Found | None:
         if inverse is None:
             return None
         above, below = inverse
-        return _Found(
-            self.present.matrix(above, below),
+        proof = self.prove.vanishes(
+            matrix @ above - self.values.one.scale(below),
+            claims.inverse_of(frame.matrix, self._inverse_symbol(frame)),
+            divided_by=below,
+        )
+        return self._matrix(
+            above,
             "The adjugate is divided by the determinant."
             if matrix.shape == (3, 3)
             else "Of all rates that give an angular velocity, these are the smallest, or those "
             "that keep to the constraints.",
-            (
-                self.prove.vanishes(
-                    matrix @ above - self.values.one.scale(below),
-                    claims.inverse_of(frame.matrix, self._inverse_symbol(frame)),
-                    divided_by=below,
-                ),
-            ),
+            proof,
+            symbol=self._inverse_symbol(frame),
+            below=below,
         )
 
     def rates(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> _Found | None:
@@ -239,16 +245,18 @@ class _Kinematics:
         above, below = inverse
         given = self.values.argument(f"omega_{frame.name}")
         rates = above @ given
+        proof = self.prove.vanishes(
+            matrix @ rates - given.scale(below),
+            claims.solves(frame.matrix, self._inverse_symbol(frame), frame.omega),
+            divided_by=below,
+        )
+        whole = matrix_form(self.model, above, self.values.codec, frame.inverse, below)
+        form = whole and applied(whole, RATES, frame.omega)
         return _Found(
             self.present.matrix(rates, below),
             "The inverse rate matrix is applied to a given angular velocity.",
-            (
-                self.prove.vanishes(
-                    matrix @ rates - given.scale(below),
-                    claims.solves(frame.matrix, self._inverse_symbol(frame), frame.omega),
-                    divided_by=below,
-                ),
-            ),
+            (proof,) if form is None else (proof, form.proof),
+            form,
         )
 
     def angular_acceleration_space(self) -> _Found:
@@ -280,6 +288,20 @@ class _Kinematics:
             return None
         coordinates = values.arguments["q"].symbols
         return singularities_of(matrix, values.R, self.present, values.codec, coordinates)
+
+    def _matrix(
+        self,
+        matrix: RingMatrix,
+        because: str,
+        *proofs: Proof,
+        symbol: Markup,
+        below: PolyElement | None = None,
+    ) -> _Found:
+        """A matrix over `below`, as a function of the vector too where it is one."""
+        over = self.values.ring.one if below is None else below
+        form = matrix_form(self.model, matrix, self.values.codec, symbol, over)
+        proved = proofs if form is None else (*proofs, form.proof)
+        return _Found(self.present.matrix(matrix, below), because, proved, form)
 
     def _vector(self, frame: Frame, omega: RingMatrix, because: str, proof: Proof) -> _Found:
         form = vector_form(self.model, omega, self.values.codec, frame.omega)

@@ -22,11 +22,11 @@ from rigidsym.models.so3 import TIME
 
 LENGTH = sp.Symbol("n", positive=True)  # |v|
 
-_V = Markup(r"\mathbf{v}", "v")
-_V_DOT = Markup(r"\dot{\mathbf{v}}", "v̇")
-_CROSS = Markup(r"\mathbf{v}\times\dot{\mathbf{v}}", "v × v̇")
-_TWICE = Markup(r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})", "v × (v × v̇)")
-_ALONG = Markup(r"(\mathbf{v}\cdot\dot{\mathbf{v}})\,\mathbf{v}", "(v·v̇) v")
+V = Markup(r"\mathbf{v}", "v")
+V_DOT = Markup(r"\dot{\mathbf{v}}", "v̇")
+CROSS = Markup(r"\mathbf{v}\times\dot{\mathbf{v}}", "v × v̇")
+TWICE = Markup(r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})", "v × (v × v̇)")
+ALONG = Markup(r"(\mathbf{v}\cdot\dot{\mathbf{v}})\,\mathbf{v}", "(v·v̇) v")
 
 Weighted = list[tuple[PolyElement, Markup, RingMatrix]]  # coefficient, its vector, over the ring
 
@@ -37,11 +37,11 @@ def vector_form(
     """Ω or Ω′ in terms of v, v̇, v × v̇ and v × (v × v̇); None where there is no such form."""
     if not model.vector:
         return None
-    work = _Vectors(model.vector, codec)
+    work = Vectors(model.vector, codec)
     forms = [form for form in work.forms(omega) if work.is_equal(form, omega)]
     if not forms:
         return None
-    terms = min((work.terms(form) for form in forms), key=_length)
+    terms = min((work.terms(form) for form in forms), key=length_of_form)
     claim = Markup(
         rf"{symbol.latex} = f\,\dot{{\mathbf{{v}}}} + g\,\mathbf{{v}}\times\dot{{\mathbf{{v}}}}"
         r" + \cdots",
@@ -55,11 +55,18 @@ def vector_form(
     )
 
 
-def _length(terms: Sequence[VectorTerm]) -> int:
+def length_of_form(terms: Sequence[VectorTerm]) -> int:
     return sum(int(sp.count_ops(term.coefficient)) + 1 for term in terms)
 
 
-class _Vectors:
+def one_fraction(coefficient: sp.Expr) -> sp.Expr:
+    """A coefficient over one denominator where that is shorter: (n − sin n)/n³."""
+    together = sp.together(coefficient)
+    # fractions within fractions are worth an operation or two
+    return together if sp.count_ops(together) <= sp.count_ops(coefficient) + 2 else coefficient
+
+
+class Vectors:
     """The vector of one model over its ring, and the point where it lies along its first axis."""
 
     def __init__(self, vector: Sequence[sp.Expr], codec: Codec) -> None:
@@ -74,24 +81,24 @@ class _Vectors:
 
     def forms(self, omega: RingMatrix) -> list[Weighted]:
         """The candidates: with (v·v̇) v, and with v × (v × v̇) in its place."""
-        first, second, _ = (self._special(entry) for entry in omega.entries)
-        rates = [self._special(rate) for rate in self.v_dot]
+        first, second, _ = (self.special(entry) for entry in omega.entries)
+        rates = [self.special(rate) for rate in self.v_dot]
         straight = second.diff(rates[1])
-        across = self._by_length(-second.diff(rates[2]))
-        rest = self._by_length(first - straight * rates[0])
-        along = None if rest is None else self._by_length(rest.diff(rates[0]))
+        across = self.by_length(-second.diff(rates[2]))
+        rest = self.by_length(first - straight * rates[0])
+        along = None if rest is None else self.by_length(rest.diff(rates[0]))
         if across is None or rest is None or along is None:
             return []
         scalar = rest - rest.diff(rates[0]) * rates[0]
-        twice = straight + along * self._special(self.square)
-        v_dot, v = self._column(self.v_dot), self._column(self.v)
+        twice = straight + along * self.special(self.square)
+        v_dot, v = self.column(self.v_dot), self.column(self.v)
         once = self._crossed(self.v_dot)
         dotted = v.scale(self.ring.dot(zip(self.v, self.v_dot, strict=True)))
-        around, ahead = (across, _CROSS, once), (scalar, _V, v)
+        around, ahead = (across, CROSS, once), (scalar, V, v)
         crossed_twice = self._crossed(once.entries)
         return [
-            self._lifted([(straight, _V_DOT, v_dot), around, (along, _ALONG, dotted), ahead]),
-            self._lifted([(twice, _V_DOT, v_dot), around, (along, _TWICE, crossed_twice), ahead]),
+            self.lifted([(straight, V_DOT, v_dot), around, (along, ALONG, dotted), ahead]),
+            self.lifted([(twice, V_DOT, v_dot), around, (along, TWICE, crossed_twice), ahead]),
         ]
 
     def is_equal(self, form: Weighted, omega: RingMatrix) -> bool:
@@ -104,12 +111,12 @@ class _Vectors:
         present = presenter_for(self.codec)
         along_axis = dict(zip(self.vector, (LENGTH, 0, 0), strict=True))
         return tuple(
-            VectorTerm(present.element(coefficient).subs(along_axis), vector)
+            VectorTerm(one_fraction(present.element(coefficient).subs(along_axis)), vector)
             for coefficient, vector, _ in form
             if coefficient
         )
 
-    def _special(self, element: PolyElement) -> PolyElement:
+    def special(self, element: PolyElement) -> PolyElement:
         """The element where v = (|v|, 0, 0); |v| is the root, where the ring has it."""
         first, *others = self._places
         result = self.ring.zero
@@ -123,7 +130,7 @@ class _Vectors:
             result += self.ring.polynomials.term_new(tuple(powers), coefficient)
         return self.ring.reduce(result) if self._root is not None else result
 
-    def _by_length(self, element: PolyElement) -> PolyElement | None:
+    def by_length(self, element: PolyElement) -> PolyElement | None:
         """The element at the special point, divided by |v|; None where that does not divide."""
         if self._root is not None:
             root = self.ring.generators[self._root].expression
@@ -132,7 +139,7 @@ class _Vectors:
         whole, inverse = self._without_inverses(element)
         if any(monomial[self._places[0]] == 0 for monomial in whole):
             return None
-        return self._special(self.ring.reduce(whole.exquo(gen) * inverse)) if whole else whole
+        return self.special(self.ring.reduce(whole.exquo(gen) * inverse)) if whole else whole
 
     def _without_inverses(self, element: PolyElement) -> tuple[PolyElement, PolyElement]:
         """p and i with element = p i, where p holds no 1/d: a power of |v| in it is then seen."""
@@ -141,11 +148,11 @@ class _Vectors:
             power = max((monomial[place] for monomial in element), default=0)
             if power and gen.expression.is_Pow and gen.expression.exp.is_negative:
                 below = self.codec.encode(1 / gen.expression)
-                element = self._special(self.ring.reduce(element * below**power))
+                element = self.special(self.ring.reduce(element * below**power))
                 inverse *= self.ring.generator(place) ** power
         return element, inverse
 
-    def _lifted(self, form: Weighted) -> Weighted:
+    def lifted(self, form: Weighted) -> Weighted:
         """The coefficients as functions of v·v again; empty where one is odd in |v|."""
         if self._root is not None:  # |v| itself stands in them
             return form
@@ -163,8 +170,8 @@ class _Vectors:
             total += term * self.square ** (monomial[first] // 2)
         return self.ring.reduce(total)
 
-    def _column(self, parts: Sequence[PolyElement]) -> RingMatrix:
+    def column(self, parts: Sequence[PolyElement]) -> RingMatrix:
         return RingMatrix.column(self.ring, parts)
 
     def _crossed(self, parts: Sequence[PolyElement]) -> RingMatrix:
-        return self._column(cross(self.ring, tuple(self.v), tuple(parts)))
+        return self.column(cross(self.ring, tuple(self.v), tuple(parts)))

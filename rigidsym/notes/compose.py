@@ -34,11 +34,14 @@ from rigidsym.notes.document import (
 from rigidsym.notes.entries import RESIDUAL, entry_names, indexed
 from rigidsym.notes.figure import figure_of
 from rigidsym.notes.formula import markup
+from rigidsym.notes.layout import PAGE, display
 from rigidsym.notes.manner import DEFAULT, Manner
-from rigidsym.notes.notation import notation_of
+from rigidsym.notes.naming import Namer, Part
+from rigidsym.notes.notation import Notation, notation_of
 from rigidsym.notes.prose import DETERMINANTS, motion, product, proofs_in_words, turn, zeros
 from rigidsym.notes.rewriting import in_manner
-from rigidsym.notes.vector_words import sum_of_vectors, where
+from rigidsym.notes.short import in_short
+from rigidsym.notes.vector_words import sum_of_vectors
 from rigidsym.notes.words import (
     convention,
     equal,
@@ -52,6 +55,9 @@ from rigidsym.notes.words import (
 _OPERATOR = Markup(r"\mathbf{C}(\mathbf{u})", "C(u)")
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
 
+_LINES_AN_ENTRY = 1.5  # of a listing; with more of them, parts get names
+_MOST_LINES = 24  # of one quantity, where there is a short way to say it
+_ROOM_OF_A_NAME = 6.0  # ems
 _CODE_WIDTH = 76  # columns of typewriter type on a page
 
 _ANGULAR_VELOCITY = (
@@ -107,8 +113,9 @@ class _Composer:
         self.model = derivation.model
         self.module = module or ""
         self.functions = functions
-        self.notation = notation_of(derivation.arguments, manner)
+        self.notation = notation_of(derivation.arguments, manner, derivation.model)
         self.symbols = symbols_of(derivation)
+        self.namer = Namer(self.notation)
         self.said: set[str] = set()
 
     def sections(self) -> Iterator[Section]:
@@ -197,7 +204,8 @@ class _Composer:
             )
         )
         yield from self._steps(_RATES)
-        if self.derivation.singularities is None:
+        names = {step.quantity.name for step in self.derivation.steps}
+        if "rate_matrix_space" in names and "inverse_rate_matrix_space" not in names:
             yield Paragraph(("The rate matrices have no inverse; the rates are not solved for.",))
 
     def _singularities(self) -> Iterator[Block]:
@@ -215,15 +223,35 @@ class _Composer:
         for step in self.derivation.steps:
             if step.quantity.name in names:
                 yield Paragraph(self._lead(step))
-                yield self._equation(step)
-                yield from self._as_vectors(step)
+                yield from self._fitted(self._equation(step), step)
 
-    def _as_vectors(self, step: Step) -> Iterator[Block]:
-        """The same as a sum of vectors, where the coordinates hold a vector."""
-        form = step.vector_form
-        if form is not None:
-            yield Paragraph(("With ", *where(form, self.notation), " it is the vector"))
-            yield Equation(sides=(step.quantity.symbol, sum_of_vectors(form, self.notation)))
+    def _fitted(self, equation: Equation, step: Step) -> Iterator[Block]:
+        """An equation; where it would be long, in short, or its parts with their names first."""
+        if equation.matrix is None or not self._is_long(equation):
+            yield equation
+            return
+        short = in_short(step, self.derivation, self.notation)
+        if short is not None and self.model.vector:
+            yield replace(equation, sides=(*equation.sides, *short), matrix=None, entries=())
+            return
+        named = self.namer.named(equation.matrix, PAGE - _ROOM_OF_A_NAME)
+        parts = definitions(named.parts, self.notation) if named.parts else None
+        renamed = replace(equation, matrix=named.matrix)
+        lines = sum(display(e, self.notation, PAGE).lines for e in (parts, renamed) if e)
+        if short is not None and lines > _MOST_LINES:
+            self.namer.forget(named)
+            yield replace(equation, sides=(*equation.sides, *short), matrix=None, entries=())
+            yield Paragraph((f"Written out, this would fill {lines} lines.",))
+            return
+        if parts is not None:
+            yield Paragraph(("With the abbreviations",))
+            yield parts
+        yield renamed
+
+    def _is_long(self, equation: Equation) -> bool:
+        shown = display(equation, self.notation, PAGE)
+        fits = shown.width <= PAGE and shown.lines <= _LINES_AN_ENTRY * len(equation.entries)
+        return shown.done == "listed" and not fits
 
     def _lead(self, step: Step) -> Text:
         """How the quantity follows; what has been said once is not said again."""
@@ -245,7 +273,15 @@ class _Composer:
 
     def _equation(self, step: Step) -> Equation:
         function = _call(step) if step.quantity.name in self.functions else ""
-        return replace(equation_of(step, self.derivation.arguments), function=function)
+        equation = equation_of(step, self.derivation.arguments)
+        form = step.vector_form
+        if form is not None:
+            # the vector says it; its components are what the function evaluates
+            sides = (*equation.sides, sum_of_vectors(form, self.notation))
+            as_vector = replace(equation, sides=sides)
+            is_short = not display(as_vector, self.notation, PAGE).done
+            equation = as_vector if is_short else replace(as_vector, matrix=None, entries=())
+        return replace(equation, function=function)
 
     def _proofs(self) -> Iterator[Block]:
         yield Paragraph(proofs_in_words(is_proved=self.derivation.is_proved))
@@ -303,6 +339,16 @@ class _Composer:
                 f"kinematics.{name}({', '.join(inputs)})",
             ]
         )
+
+
+def definitions(parts: Sequence[Part], notation: Notation) -> Equation:
+    """k₁ = ..., k₂ = ...: what the names of parts stand for."""
+    names, values = zip(*parts, strict=True)
+    return Equation(
+        sides=(),
+        matrix=sp.ImmutableMatrix(values),
+        entries=tuple(markup(name, notation) for name in names),
+    )
 
 
 def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:

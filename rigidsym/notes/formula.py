@@ -49,7 +49,7 @@ def write(expression: sp.Expr, notation: Notation, pen: Pen) -> str:
 @lru_cache(maxsize=8192)
 def _written(expression: sp.Expr, notation: Notation, pen: type[Pen]) -> str:
     """One formula; the terminal, the note and its phone layout ask for the same ones again."""
-    return _Walk(notation, pen()).expression(expression).text
+    return _Walk(notation, pen()).expression(notation.shortened(expression)).text
 
 
 @dataclass(frozen=True, slots=True)

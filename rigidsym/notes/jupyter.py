@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
+from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.compose import equation_of
 from rigidsym.notes.layout import display
 from rigidsym.notes.manner import Manner
@@ -22,7 +23,8 @@ _WIDTH = 44.0  # ems
 
 def bundle_of(derivation: Derivation, note: Note, manner: Manner) -> dict[str, str]:
     """The whole derivation: as the note, as one display of its equations, as plain text."""
-    steps = (latex_of(step, derivation.arguments, manner) for step in derivation.steps)
+    arguments, model = derivation.arguments, derivation.model
+    steps = (latex_of(step, arguments, manner, model) for step in derivation.steps)
     return {
         "text/markdown": note.markdown(),
         "text/latex": "\n\n".join(steps),
@@ -30,16 +32,20 @@ def bundle_of(derivation: Derivation, note: Note, manner: Manner) -> dict[str, s
     }
 
 
-def step_bundle_of(step: Step, arguments: Sequence[Argument], manner: Manner) -> dict[str, str]:
+def step_bundle_of(
+    step: Step, arguments: Sequence[Argument], manner: Manner, model: RotationModel | None = None
+) -> dict[str, str]:
     """One step: its equation, and the lines that a terminal shows of it."""
     return {
-        "text/latex": latex_of(step, arguments, manner),
-        "text/plain": show_step(step, arguments, manner=manner),
+        "text/latex": latex_of(step, arguments, manner, model),
+        "text/plain": show_step(step, arguments, manner=manner, model=model),
     }
 
 
-def latex_of(step: Step, arguments: Sequence[Argument], manner: Manner) -> str:
+def latex_of(
+    step: Step, arguments: Sequence[Argument], manner: Manner, model: RotationModel | None = None
+) -> str:
     """The equation of a step between dollar signs, with its number."""
     equation = equation_in_manner(equation_of(step, arguments), manner)
-    shown = display(equation, notation_of(arguments, manner), _WIDTH)
+    shown = display(equation, notation_of(arguments, manner, model), _WIDTH)
     return f"$$\n{formula(shown.latex)}\n\\tag{{{step.number}}}\n$$"

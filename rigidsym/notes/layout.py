@@ -12,11 +12,14 @@ from typing import Literal
 
 import sympy as sp
 
-from rigidsym.notes.breaking import break_lines
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.notes.breaking import Line, break_lines
 from rigidsym.notes.document import Equation
 from rigidsym.notes.formula import latex
 from rigidsym.notes.measure import ems, matrix_ems
 from rigidsym.notes.notation import Notation
+
+PAGE = 38.6  # ems of a display on a page, beside a number such as (13)
 
 Rows = Sequence[Sequence[str]]
 Done = Literal["", "abbreviated", "listed"]
@@ -34,6 +37,7 @@ class Display:
     latex: str
     width: float  # ems; it may be more than was asked for, where there is no place to break
     done: Done = ""
+    lines: int = 1  # of a listing
 
 
 def display(equation: Equation, notation: Notation, width: float) -> Display:
@@ -41,6 +45,8 @@ def display(equation: Equation, notation: Notation, width: float) -> Display:
     if equation.matrix is None:
         return Display(*_chain(equation, width))
     full = _rows(equation.matrix, notation, shorthand=False)
+    if not equation.sides:
+        return _definitions(equation, full, width)
     for form, needed in _forms(equation, full):
         if needed <= width:
             return Display(form, needed)
@@ -48,7 +54,8 @@ def display(equation: Equation, notation: Notation, width: float) -> Display:
         for form, needed in _forms(equation, _rows(equation.matrix, notation, shorthand=True)):
             if needed <= width:
                 return Display(form, needed, "abbreviated")
-    return Display(*_listing(equation, full, width), "listed")
+    lines, widest = _listing(equation, full, width)
+    return Display(_environment("aligned", _ROW.join(lines)), widest, "listed", len(lines))
 
 
 def pack(equations: Sequence[Equation], notation: Notation, width: float) -> str:
@@ -97,20 +104,53 @@ def _matrix(rows: Rows) -> str:
     return _environment("pmatrix", text)
 
 
-def _listing(equation: Equation, rows: Rows, width: float) -> tuple[str, float]:
+def _definitions(equation: Equation, rows: Rows, width: float) -> Display:
+    """Short ones side by side, as many as fit on a line; long ones broken, below one another."""
+    lines: list[str] = []
+    room = widest = 0.0
+    for name, (value,) in zip(equation.entries, rows, strict=True):
+        needed = ems(name.latex) + _EQUAL + ems(value)
+        if needed + 2 * _QUAD <= room:
+            lines[-1] += rf" \qquad {name.latex} = {value}"
+            room -= needed + 2 * _QUAD
+            continue
+        broken, own = _listing(_one(name), [[value]], width)
+        lines += [line.replace("&=", "=", 1).replace("&", "", 1) for line in broken]
+        room = width - own if len(broken) == 1 else 0.0
+        widest = max(widest, own)
+    return Display(_environment("gathered", _ROW.join(lines)), widest, lines=len(lines))
+
+
+def _one(name: Markup) -> Equation:
+    return Equation(sides=(), entries=(name,))
+
+
+def broken(formula: str, width: float) -> list[Line]:
+    """The lines of a formula in LaTeX; no line can end between \\left and \\right."""
+    lines = break_lines(formula, width, ems, _QUAD)
+    if len(lines) > 1 or ems(formula) <= width:
+        return lines
+    loose = formula.replace(r"\left(", r"\Bigl(").replace(r"\right)", r"\Bigr)")
+    return break_lines(loose, width, ems, _QUAD)
+
+
+def broken_ems(formula: str, width: float) -> float:
+    """The width of the widest line of a formula that is broken to fit into `width` ems."""
+    first, *others = broken(formula, width)
+    return max(ems(first.text), *(_QUAD * (1 + o.depth) + ems(o.text) for o in others), 0.0)
+
+
+def _listing(equation: Equation, rows: Rows, width: float) -> tuple[list[str], float]:
     """One entry after the other, long ones broken at + and −; with its width."""
     entries = [entry for row in rows for entry in row]
     head = max(ems(name.latex) for name in equation.entries) + _EQUAL
     widest = 0.0
     lines: list[str] = []
     for name, entry in zip(equation.entries, entries, strict=True):
-        first, *others = break_lines(entry, width - head - _QUAD, ems, _QUAD)
-        lines.append(f"{name.latex} &= {first.text}")
-        lines += ["&" + r"\quad" * (1 + line.depth) + f" {{}}{line.text}" for line in others]
-        depths = [0, *(1 + line.depth for line in others)]
-        texts = [line.text for line in (first, *others)]
-        widest = max(widest, *(_QUAD * d + ems(t) for d, t in zip(depths, texts, strict=True)))
-    return _environment("aligned", _ROW.join(lines)), head + widest
+        (first, *others), own = _hanging("=", [entry], width - head)
+        lines += [name.latex + first, *others]
+        widest = max(widest, own)
+    return lines, head + widest
 
 
 def _chain(equation: Equation, width: float) -> tuple[str, float]:
@@ -120,8 +160,23 @@ def _chain(equation: Equation, width: float) -> tuple[str, float]:
     if ems(whole) <= width:
         return whole, ems(whole)
     first, *others = sides
-    lines = _environment("aligned", f"{first} &= " + f"{_ROW}&= ".join(others))
-    return lines, ems(first) + _EQUAL + max(map(ems, others))
+    head = ems(first) + _EQUAL
+    lines, widest = _hanging("=", others, width - head)
+    return _environment("aligned", first + _HIGH_ROW.join(lines)), head + widest
+
+
+def _hanging(sign: str, formulas: Sequence[str], room: float) -> tuple[list[str], float]:
+    """Each formula behind a sign, long ones broken at + and −; with the width of the widest."""
+    lines: list[str] = []
+    widest = 0.0
+    for formula in formulas:
+        first, *others = broken(formula, room - _QUAD)
+        lines.append(f" &{sign} {first.text}")
+        lines += ["&" + r"\quad" * (1 + line.depth) + f" {{}}{line.text}" for line in others]
+        depths = [0, *(1 + line.depth for line in others)]
+        texts = [line.text for line in (first, *others)]
+        widest = max(widest, *(_QUAD * d + ems(t) for d, t in zip(depths, texts, strict=True)))
+    return lines, widest
 
 
 def _environment(name: str, inside: str) -> str:

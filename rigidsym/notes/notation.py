@@ -13,6 +13,8 @@ from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.errors import AlgebraError
 from rigidsym.mechanics.derivation import Argument, Markup
+from rigidsym.models.rotation import RotationModel
+from rigidsym.notes.lengths import Length, length_of
 from rigidsym.notes.manner import DEFAULT, Manner
 
 Place = tuple[int, int]  # order of the time derivative, index of the component
@@ -34,6 +36,11 @@ class Notation:
     names: Mapping[sp.Expr, Markup] = field(default_factory=dict)
     places: Mapping[sp.Expr, Place] = field(default_factory=dict)
     manner: Manner = DEFAULT
+    length: Length | None = None  # written in place of the components that make it up
+
+    def shortened(self, expression: sp.Expr) -> sp.Expr:
+        """What is printed in place of an expression: the same, with the length where it has one."""
+        return self.length.shortened(expression) if self.length else expression
 
     def name(self, symbol: sp.Expr) -> Markup:
         """The name of a symbol; raises AlgebraError for what is neither known nor a symbol."""
@@ -49,24 +56,38 @@ class Notation:
         return Markup(words_in_italics(sp.latex(sp.Symbol(label))), pretty_symbol(label))
 
 
-def notation_of(arguments: Iterable[Argument], manner: Manner = DEFAULT) -> Notation:
-    """The notation of a derivation, from its arguments, in the manner of the user."""
-    return _notation(tuple(arguments), manner)
+def notation_of(
+    arguments: Iterable[Argument], manner: Manner = DEFAULT, model: RotationModel | None = None
+) -> Notation:
+    """The notation of a derivation, from its arguments, in the manner of the user.
+
+    With the model, the length of its vector is written for what its components make up.
+    """
+    length = length_of(model) if model is not None and model.vector else None
+    return _notation(tuple(arguments), manner, length)
 
 
 @lru_cache(maxsize=64)
-def _notation(arguments: tuple[Argument, ...], manner: Manner) -> Notation:
+def _notation(arguments: tuple[Argument, ...], manner: Manner, length: Length | None) -> Notation:
+    known = length.names if length else {}
     return Notation(
         manner=manner,
+        length=length,
         names={
-            symbol: (manner.rate if argument.name in _ORDERS else manner.symbol)(markup)
-            for argument in arguments
-            for symbol, markup in zip(argument.symbols, argument.notation, strict=True)
+            **{symbol: manner.rate(markup) for symbol, markup in known.items()},
+            **{
+                symbol: (manner.rate if argument.name in _ORDERS else manner.symbol)(markup)
+                for argument in arguments
+                for symbol, markup in zip(argument.symbols, argument.notation, strict=True)
+            },
         },
         places={
-            symbol: (_ORDERS.get(argument.name, _GIVEN_RATE), index)
-            for argument in arguments
-            for index, symbol in enumerate(argument.symbols)
+            **({length.rate: (_GIVEN_RATE, -1)} if length else {}),
+            **{
+                symbol: (_ORDERS.get(argument.name, _GIVEN_RATE), index)
+                for argument in arguments
+                for index, symbol in enumerate(argument.symbols)
+            },
         },
     )
 

@@ -12,6 +12,7 @@ import sympy as sp
 from rigidsym.mechanics.conversions import Conversions
 from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Proof, Step
 from rigidsym.mechanics.quantities import ROTATION
+from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.breaking import break_lines
 from rigidsym.notes.document import Text
 from rigidsym.notes.entries import RESIDUAL, entry_names, indexed
@@ -19,9 +20,9 @@ from rigidsym.notes.formula import markup, text
 from rigidsym.notes.grid import grid
 from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.measure import columns
-from rigidsym.notes.notation import notation_of
+from rigidsym.notes.notation import Notation, notation_of
 from rigidsym.notes.prose import DETERMINANTS, product, turn, zeros
-from rigidsym.notes.vector_words import sum_of_vectors, where
+from rigidsym.notes.vector_words import sum_of_vectors
 from rigidsym.notes.words import (
     convention,
     equal,
@@ -62,23 +63,29 @@ def show(
 
 
 def show_step(
-    step: Step, arguments: Sequence[Argument], *, width: int = 88, manner: Manner = DEFAULT
+    step: Step,
+    arguments: Sequence[Argument],
+    *,
+    width: int = 88,
+    manner: Manner = DEFAULT,
+    model: RotationModel | None = None,
 ) -> str:
     """One step of a derivation as plain text."""
-    return "\n".join(_Steps(arguments, width, unstyled, manner).step(step))
+    notation = notation_of(arguments, manner, model)
+    return "\n".join(_Steps(arguments, width, unstyled, notation).step(step))
 
 
 class _Steps:
     """The lines of single steps."""
 
     def __init__(
-        self, arguments: Sequence[Argument], width: int, style: Style, manner: Manner
+        self, arguments: Sequence[Argument], width: int, style: Style, notation: Notation
     ) -> None:
         self.arguments = arguments
         self.width = width
         self.style = style
-        self.notation = notation_of(arguments, manner)
-        self.written = manner.text  # formulas that were composed elsewhere
+        self.notation = notation
+        self.written = notation.manner.text  # formulas that were composed elsewhere
 
     def step(self, step: Step) -> Iterator[str]:
         yield from self._headline(step)
@@ -86,11 +93,11 @@ class _Steps:
         yield from self._as_vectors(step)
 
     def _as_vectors(self, step: Step) -> Iterator[str]:
-        """Ω = v̇ + ..., with v = ..., where the coordinates hold a vector."""
+        """Ω = v̇ + ..., where the coordinates hold a vector."""
         form = step.vector_form
         if form is not None:
             total = equal(step.quantity.symbol, sum_of_vectors(form, self.notation))
-            yield from self._wrapped((total, ", with ", *where(form, self.notation)))
+            yield from self._wrapped((total,))
 
     def _wrapped(self, sentence: Text) -> list[str]:
         whole = (_unbroken(span) if isinstance(span, Markup) else span for span in sentence)
@@ -159,7 +166,8 @@ class _Screen(_Steps):
         manner: Manner,
         conversions: Conversions | None,
     ) -> None:
-        super().__init__(derivation.arguments, width, style, manner)
+        notation = notation_of(derivation.arguments, manner, derivation.model)
+        super().__init__(derivation.arguments, width, style, notation)
         self.derivation = derivation
         self.conversions = conversions
         self.steps = derivation.steps

@@ -14,12 +14,14 @@ from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.document import Cited, Code, EquationReference, Span, Strong, Text
 from rigidsym.notes.formula import markup
+from rigidsym.notes.lengths import length_of
 from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.notation import Notation, notation_of
 
 POSITION = Markup(r"\mathbf{x}", "x")
 BODY_POSITION = Markup(r"\mathbf{x}'", "x′")
 COORDINATES = Markup(r"\mathbf{q}", "q")
+VECTOR = Markup(r"\mathbf{v}", "v")
 ACTIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", POSITION, ROTATION, BODY_POSITION)
 PASSIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", BODY_POSITION, COSINES, POSITION)
 TRANSPOSED = fill(r"{0} = {1}^{{\mathsf T}}", "{0} = {1}ᵀ", COSINES, ROTATION)
@@ -67,6 +69,9 @@ def symbols_of(derivation: Derivation) -> dict[str, Markup]:
         (step.quantity.symbol for step in derivation.steps),
         (SPACE.omega, BODY.omega, RATES),
     )
+    if derivation.model.vector:
+        length = length_of(derivation.model)
+        named = chain(named, (VECTOR,), (length.names[length.symbol],) if length else ())
     return {symbol.text: symbol for symbol in named if symbol.text not in _ALSO_WORDS}
 
 
@@ -91,13 +96,38 @@ def convention(derivation: Derivation, manner: Manner = DEFAULT) -> tuple[Text, 
             BODY.omega,
         ),
         _coordinates(derivation.argument("q"), has_dots=manner.rates == "dot"),
+        *_vector(derivation, manner),
         *_conditions(derivation, manner),
     )
 
 
+def _vector(derivation: Derivation, manner: Manner) -> Iterator[Text]:
+    """The vector, and the letter for its length, where they stand in the formulas."""
+    notation = notation_of(derivation.arguments, manner, derivation.model)
+    length, parts = notation.length, derivation.model.vector
+    if any(step.vector_form for step in derivation.steps):
+        yield ("The vector is ", VECTOR, " = ", *vector(parts, notation), ".")
+    if length is None:
+        return
+    n, rate = length.names.values()
+    v = VECTOR if length.components == parts else COORDINATES
+    whole = fill("|{0}|", "|{0}|", v)
+    yield (
+        *words("The length {} is written {}, so that {}", whole, n, _square(n, v)),
+        *words(
+            " and {}.",
+            fill(r"{0}\,{1} = {2}\cdot\dot{{{2}}}", "{0} {1} = {2}·{2}\u0307", n, rate, v),
+        ),
+    )
+
+
+def _square(length: Markup, of: Markup) -> Markup:
+    return fill(r"{0}^{{2}} = {1}\cdot{1}", "{0}² = {1}·{1}", length, of)
+
+
 def _conditions(derivation: Derivation, manner: Manner) -> Iterator[Text]:
     """What the coordinates and constants are bound by, which the proofs make use of."""
-    notation = notation_of(derivation.arguments, manner)
+    notation = notation_of(derivation.arguments, manner, derivation.model)
     for constraint in derivation.model.constraints:
         number, rest = constraint.as_coeff_Add()
         sides = (markup(rest, notation), markup(-number, notation))
@@ -145,7 +175,7 @@ def vector(entries: Iterable[sp.Expr], notation: Notation) -> Text:
 
 def singular(point: Singularity, derivation: Derivation) -> Text:
     """What is lost at a singular angle, and what remains determined."""
-    notation = notation_of(derivation.arguments)
+    notation = notation_of(derivation.arguments, model=derivation.model)
     coordinate, value = markup(point.coordinate, notation), markup(point.value, notation)
     at = equal(coordinate, value)
     return (
