@@ -55,14 +55,17 @@ def folded(terms: Mapping[Monomial, Fraction], found: Iterable[Rule]) -> Terms:
 
     Places for all rules are added, unless no rule can apply.
     """
+    if len(terms) < 2:
+        return dict(terms)
     found = tuple(found)
     highest = tuple(map(max, zip(*terms, strict=True)))
+    present = {place for place, power in enumerate(highest) if power > 0}
     may = [
         (place, rule)
         for place, rule in enumerate(found, start=len(highest))
-        if all(highest[k] > 0 for k in (*rule.first, *rule.second))
+        if present.issuperset(rule.first) and present.issuperset(rule.second)
     ]
-    if len(terms) < 2 or not may:
+    if not may:
         return dict(terms)
     result = {(*monomial, *[0] * len(found)): value for monomial, value in terms.items()}
     for place, rule in may:

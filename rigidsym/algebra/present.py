@@ -42,6 +42,7 @@ class Presenter:
         self._sums = rules(codec.angle_pairs, generators)
         self._expressions = _Expressions(generators, self._sums)
         self._weights = _Weights(self._expressions)
+        self._products: dict[Product, sp.Expr] = {}
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
 
     def matrix(
@@ -80,6 +81,8 @@ class Presenter:
             over, under = _leading_number(above), _leading_number(below)
             number = sp.Rational(*(over / under).as_integer_ratio())
             return sp.Mul(number, self._terms(above, over), 1 / self._terms(below, under))
+        if below == self.ring.one:
+            return self._terms(above)
         ((divisor, scale),) = below.items()
         return self._terms({_divide(m, divisor): c for m, c in above.items()}, _fraction(scale))
 
@@ -91,6 +94,12 @@ class Presenter:
         return sp.Add(*(self._product(product) for product in products))
 
     def _product(self, product: Product) -> sp.Expr:
+        known = self._products.get(product)
+        if known is None:
+            known = self._products[product] = self._multiplied(product)
+        return known
+
+    def _multiplied(self, product: Product) -> sp.Expr:
         powers = list(product.powers)
         number = product.coefficient
         factors = [sp.Rational(number.numerator, number.denominator), *self._ratios(powers)]

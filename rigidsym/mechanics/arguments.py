@@ -8,9 +8,9 @@ import sympy as sp
 from sympy.printing.conventions import split_super_sub
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
+from rigidsym.algebra.adjoin import rate_of
 from rigidsym.mechanics.derivation import Argument, Markup
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import TIME
 
 _DOTS = (  # order of the derivative: suffix of the name, LaTeX accent, combining character
     ("", "{}", ""),
@@ -65,7 +65,7 @@ def _coordinates(model: RotationModel, order: int, name: str, about: str) -> Arg
 
 @lru_cache(maxsize=1024)
 def _derivative(coordinate: sp.Expr, order: int) -> sp.Expr:
-    return sp.diff(coordinate, TIME, order)
+    return rate_of(_derivative(coordinate, order - 1)) if order else coordinate
 
 
 @lru_cache(maxsize=1024)
