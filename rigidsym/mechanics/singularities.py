@@ -160,8 +160,8 @@ def _at(zero: Zero, matrix: RingMatrix, rotation: RingMatrix, presenter: Present
     rank = 2 if idle is not None else int(any(there.entries))  # less than 3, since det W vanishes
     body = None
     if lost is not None:
-        turned = rotation.map(lambda entry: _substituted(entry, becomes))
-        body = turned.T @ RingMatrix.column(matrix.ring, lost)
+        turned = rotation.T @ RingMatrix.column(matrix.ring, lost)
+        body = turned.map(lambda entry: _substituted(entry, becomes))
     return Singularity(
         coordinate=coordinate,
         value=value,
@@ -203,15 +203,16 @@ def _line(matrix: RingMatrix) -> Row:
 
 def _primitive(entries: Sequence[PolyElement]) -> Row:
     """The entries without their common factor, the first of them with a plus sign."""
-    common = entries[0].ring.zero
-    for entry in entries:
-        common = common.gcd(entry)
-    first = next(entry for entry in entries if entry)
-    sign = 1 if first.LC * common.LC > 0 else -1
-    if common.is_ground:
-        number = sign * common.LC
-        return tuple(entry.quo_ground(number) for entry in entries)
-    return tuple(entry.exquo(sign * common) for entry in entries)
+    first, *others = (entry for entry in entries if entry)
+    common = first
+    for entry in others:
+        if not common.is_ground:  # a search that can find nothing
+            common = common.gcd(entry)
+    common *= 1 if first.LC * common.LC > 0 else -1
+    if len(common) == 1:
+        (term,) = common.items()
+        return tuple(entry.quo_term(term) for entry in entries)
+    return tuple(entry.exquo(common) for entry in entries)
 
 
 def _presented(
