@@ -86,8 +86,7 @@ class Request:
         """All generators in the order of their kinds, sines and cosines over common fractions."""
         found = list(self.kinds.items())
         for atom, fraction in self.fractions.items():
-            found.append((sp.sin(fraction * atom), Kind.SINE))
-            found.append((sp.cos(fraction * atom), Kind.COSINE))
+            found += _sine_and_cosine(atom, fraction)
         return sorted(found, key=lambda pair: pair[1])
 
     @cached_property
@@ -205,6 +204,12 @@ def is_time_function(expression: sp.Expr) -> bool:
     return isinstance(expression, AppliedUndef) and expression.args == (TIME,)
 
 
+@lru_cache(maxsize=1024)
+def _sine_and_cosine(atom: sp.Expr, fraction: sp.Rational) -> tuple[tuple[sp.Expr, Kind], ...]:
+    return (sp.sin(fraction * atom), Kind.SINE), (sp.cos(fraction * atom), Kind.COSINE)
+
+
+@lru_cache(maxsize=1024)
 def _kind(expression: sp.Expr) -> Kind:
     if expression is sp.I:
         return Kind.RADICAL

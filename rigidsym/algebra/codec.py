@@ -38,7 +38,7 @@ def codec_for(
     """
     held_to = tuple(sp.sympify(constraint, strict=True) for constraint in constraints)
     request = Request(order)
-    for expression in (*expressions, *held_to):
+    for expression in dict.fromkeys((*expressions, *held_to)):
         request.collect(sp.sympify(expression, strict=True))
     request.close()
     return _shared(

@@ -87,7 +87,9 @@ class Presenter:
         return self._terms({_divide(m, divisor): c for m, c in above.items()}, _fraction(scale))
 
     def _terms(self, terms: Mapping[Monomial, Any], scale: Fraction = Fraction(1)) -> sp.Expr:
-        fractions = {monomial: _fraction(c) / scale for monomial, c in terms.items()}
+        fractions = {monomial: _fraction(c) for monomial, c in terms.items()}
+        if scale != 1:
+            fractions = {monomial: value / scale for monomial, value in fractions.items()}
         return self._sum(collect(folded(fractions, self._sums), self._weights))
 
     def _sum(self, products: Sequence[Product]) -> sp.Expr:

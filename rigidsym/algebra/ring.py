@@ -91,25 +91,17 @@ class Ring:
 
     def dot(self, pairs: Iterable[Pair], minus: Iterable[Pair] = ()) -> PolyElement:
         """The sum of the products, less those of `minus`, in normal form."""
-        total: Terms = {}
-        for first, second in pairs:
-            self._add_product(total, 1, first, second)
-        for first, second in minus:
-            self._add_product(total, -1, first, second)
-        return self._settled(total) if total else self.zero
-
-    def _add_product(
-        self, total: Terms, sign: int, first: PolyElement, second: PolyElement
-    ) -> None:
-        """Add first · second to a total, in place, term by term as they multiply."""
-        if not second:
-            return
         times = self.polynomials.monomial_mul
-        for monomial, coefficient in first.items():
-            coefficient *= sign
-            for other, factor in second.items():
-                product = times(monomial, other)
-                total[product] = total.get(product, 0) + coefficient * factor
+        total: Terms = {}
+        for sign, group in ((1, pairs), (-1, minus)):
+            for first, second in group:
+                if not second:
+                    continue
+                for monomial, coefficient in first.items():
+                    for other, factor in second.items():
+                        product = times(monomial, other)
+                        total[product] = total.get(product, 0) + sign * coefficient * factor
+        return self._settled(total) if total else self.zero
 
     def difference(self, first: PolyElement, second: PolyElement) -> PolyElement:
         """The difference of two normal forms; most are equal, since most differences are proofs."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from itertools import combinations
 from math import ceil
 from typing import Any
@@ -27,7 +28,7 @@ def singularities_of(
     rotation: RingMatrix,
     presenter: Presenter,
     codec: Codec,
-    coordinates: Sequence[sp.Expr],
+    coordinates: tuple[sp.Expr, ...],
 ) -> Singularities:
     """The zeros of det W, for a square rate matrix in space components.
 
@@ -49,7 +50,8 @@ def singularities_of(
     )
 
 
-def _length(coordinates: Sequence[sp.Expr]) -> sp.Expr:
+@lru_cache(maxsize=128)
+def _length(coordinates: tuple[sp.Expr, ...]) -> sp.Expr:
     return sp.sqrt(sp.Add(*(coordinate**2 for coordinate in coordinates)))
 
 
@@ -61,7 +63,7 @@ def _is_regular_at_zero(determinant: sp.Expr, codec: Codec) -> bool:
 
 
 def _zeros(
-    determinant: PolyElement, codec: Codec, coordinates: Sequence[sp.Expr]
+    determinant: PolyElement, codec: Codec, coordinates: tuple[sp.Expr, ...]
 ) -> tuple[list[Zero], bool]:
     zeros: list[Zero] = []
     is_solved = True
@@ -81,7 +83,7 @@ def _factors(element: PolyElement) -> list[PolyElement]:
 
 
 def _zeros_of_factor(
-    factor: PolyElement, codec: Codec, coordinates: Sequence[sp.Expr]
+    factor: PolyElement, codec: Codec, coordinates: tuple[sp.Expr, ...]
 ) -> list[Zero] | None:
     """Zeros of one irreducible factor in (−π, π]; None where they are not known.
 

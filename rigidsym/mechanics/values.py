@@ -28,7 +28,7 @@ class Values:
         self.arguments = {argument.name: argument for argument in arguments_of(model)}
         inputs = [s for name, a in self.arguments.items() if name != "q" for s in a.symbols]
         # a ring that holds the turns holds their product, and they are shorter to read
-        held = [e for turn in model.turns for e in turn.matrix] or [*model.matrix]
+        held = [e for turn in model.turns for e in turn.matrix.flat()] or [*model.matrix]
         self.codec = codec_for([*inputs, *held], constraints=model.constraints, order=2)
         self.ring = self.codec.ring
         self.one = RingMatrix.identity(self.ring, 3)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import reduce
+from functools import lru_cache, reduce
 
 import sympy as sp
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
@@ -96,7 +96,13 @@ def _three_names(angles: Sequence[str]) -> Sequence[str]:
 
 
 def _product(turns: Sequence[Turn]) -> sp.ImmutableMatrix:
-    return reduce(lambda a, b: a * b, (elementary(turn.axis, turn.angle) for turn in turns))
+    return reduce(_times, (elementary(turn.axis, turn.angle) for turn in turns))
+
+
+@lru_cache(maxsize=128)
+def _times(first: sp.ImmutableMatrix, second: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """The product, remembered, since several sequences begin with the same two turns."""
+    return first * second
 
 
 def _order_in_words(manner: str, turns: Sequence[Turn]) -> str:
