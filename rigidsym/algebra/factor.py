@@ -29,7 +29,7 @@ class Product:
 
 def collect(terms: Terms, weights: Weights) -> tuple[Product, ...]:
     """The terms as a sum of products with common factors taken out."""
-    factor = _best_factor(terms, weights)
+    factor = _best_factor(terms, weights) if len(terms) > 1 else None
     if factor is None:
         return tuple(Product(coefficient, powers) for powers, coefficient in terms.items())
     place, sign = factor

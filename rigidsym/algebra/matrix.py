@@ -62,6 +62,17 @@ class RingMatrix:
             ),
         )
 
+    def gram(self) -> RingMatrix:
+        """M Mᵀ, the products of every two rows, each worked out once."""
+        half = [
+            [self.ring.dot(zip(row, other, strict=True)) for other in self.rows[: place + 1]]
+            for place, row in enumerate(self.rows)
+        ]
+        places = range(len(half))
+        return RingMatrix(
+            self.ring, tuple(tuple(half[max(i, j)][min(i, j)] for j in places) for i in places)
+        )
+
     def __add__(self, other: RingMatrix) -> RingMatrix:
         return self._entrywise(add, other)
 

@@ -42,7 +42,7 @@ def omega_body(factors: Sequence[Factor]) -> RingMatrix:
 def orthogonality(factors: Sequence[Factor]) -> RingMatrix:
     """F Fᵀ − 1 of every turn, one below the other."""
     one = RingMatrix.identity(factors[0].matrix.ring, 3)
-    return _stacked([factor.matrix @ factor.matrix.T - one for factor in factors])
+    return _stacked([factor.matrix.gram() - one for factor in factors])
 
 
 def determinants(factors: Sequence[Factor]) -> RingMatrix:

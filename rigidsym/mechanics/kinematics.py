@@ -138,7 +138,7 @@ class _Kinematics:
             residual = composition.orthogonality(values.factors)
             determinant = composition.determinants(values.factors)
         else:
-            residual = self._shown(values.R) @ self._shown(values.R).T - values.one
+            residual = self._shown(values.R).gram() - values.one
             determinant = values.column([values.R.det() - 1])
         proofs = (
             self.prove.is_rotation(residual, claims.orthogonal(symbol)),

@@ -27,7 +27,7 @@ def right_inverse(matrix: RingMatrix, bound: RingMatrix | None) -> Inverse | Non
         return None
     if count == 3 and bound is None:
         return _if_regular(matrix.adjugate(), matrix.det())
-    gram = matrix @ matrix.T
+    gram = matrix.gram()
     least = _if_regular(matrix.T @ gram.adjugate(), gram.det())
     if least is None or bound is None or (bound @ least[0]).is_zero():
         return least
