@@ -15,6 +15,7 @@ from rigidsym.rotations import rotation_from
 if TYPE_CHECKING:
     from rigidsym.kernels.module import KernelModule
     from rigidsym.mechanics.conversions import Conversions
+    from rigidsym.models.body import RigidBody
     from rigidsym.notes.note import Note
 
 
@@ -98,21 +99,32 @@ class MotionStep(Step):
         return self._repr_mimebundle_()["text/latex"]
 
 
-def derive(model: RotationModel | str, only: Collection[str] = ()) -> Motion:
+def derive(
+    model: RotationModel | str, only: Collection[str] = (), *, body: RigidBody | None = None
+) -> Motion:
     """The proved kinematics of a rotation model; `only` names the quantities that are wanted.
 
-    A text is read as on the command line: "ZXZ", "z(phi) x(theta)", "quaternion".
+    A text is read as on the command line: "ZXZ", "z(phi) x(theta)", "quaternion". With a `body`
+    its kinetic energy and angular momentum follow, in the principal axes or any others.
 
     Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over, and
     AlgebraError for expressions that the ring cannot hold.
     """
     rotation = rotation_from(model) if isinstance(model, str) else model
-    derivation = kinematics.derive(rotation, only)
+    derivation = _derivation(rotation, only, body)
     steps = tuple(
         MotionStep(**_values(step), arguments=derivation.arguments, model=rotation)
         for step in derivation.steps
     )
     return Motion(**(_values(derivation) | {"steps": steps}))
+
+
+def _derivation(model: RotationModel, only: Collection[str], body: RigidBody | None) -> Derivation:
+    if body is None:
+        return kinematics.derive(model, only)
+    from rigidsym.mechanics import energy
+
+    return energy.derive(model, body, only)
 
 
 def _values(data: Derivation | Step) -> dict[str, Any]:

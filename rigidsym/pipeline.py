@@ -47,7 +47,7 @@ class Product:
 def product(spec: DerivationSpec) -> Product:
     """The product of a specification that names one rotation."""
     (model,) = spec.models
-    motion = derive(model, only=spec.quantities)
+    motion = derive(model, only=spec.quantities, body=spec.body)
     motion = replace(motion, name=spec.name, title=spec.title or motion.title)
     motion = motion.written(**asdict(spec.manner))
     conversions = motion.conversions if spec.conversions else None

@@ -104,7 +104,7 @@ def _step(step: Step, names: Names) -> dict[str, Any]:
         "symbol": _markup(quantity.symbol),
         "inputs": list(quantity.inputs),
         "shape": list(step.shape),
-        "expression": _entries(step.expression, names, is_vector=quantity.is_vector),
+        "expression": _expression(step, names),
         "vector_form": _vector_form(step.vector_form, names),
         "because": step.because,
         "source": str(quantity.source) if quantity.source else None,
@@ -164,6 +164,13 @@ def _markup(markup: Markup) -> dict[str, str]:
 
 def _vector(column: sp.ImmutableMatrix | None, names: Names) -> list[str] | None:
     return None if column is None else [_plain(entry, names) for entry in column]
+
+
+def _expression(step: Step, names: Names) -> Any:
+    """A string, a list of them, or a list of rows, as the shape is."""
+    if step.quantity.is_scalar:
+        return _plain(step.expression[0], names)
+    return _entries(step.expression, names, is_vector=step.quantity.is_vector)
 
 
 def _entries(matrix: sp.ImmutableMatrix, names: Names, *, is_vector: bool) -> list[Any]:

@@ -15,6 +15,7 @@ from rigidsym import resources
 from rigidsym.body_table import read_body
 from rigidsym.errors import Fault, ModelError, SpecError
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.mechanics.energy_quantities import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities import QUANTITY_NAMES
 from rigidsym.models.body import RigidBody
 from rigidsym.models.catalogue import EulerAngles
@@ -27,7 +28,8 @@ from rigidsym.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
 
 NOTE_FORMATS = ("tex", "html", "md", "ipynb", "pdf")
 
-_OUTPUT = {"quantities": QUANTITY_NAMES, "kernels": tuple(TARGETS), "note": NOTE_FORMATS}
+QUANTITIES = (*QUANTITY_NAMES, *ENERGY_QUANTITIES)
+_OUTPUT = {"quantities": QUANTITIES, "kernels": tuple(TARGETS), "note": NOTE_FORMATS}
 _FILE = ("title", "rotation", "parameters", "body", "notation", "output")
 _HINTS = {
     **dict.fromkeys(CHOICES, "it belongs in [notation]"),

@@ -63,7 +63,7 @@ FORMS = [
     ),
     # powers and roots
     (A * sin(theta) ** 2, r"A \sin^{2}\theta", "A sin² θ"),
-    (phi_dot**2 / 2, r"\frac{1}{2}\,\dot{\phi}^{2}", "(1/2) φ̇²"),
+    (phi_dot**2 / 2, r"\frac{1}{2}\,\dot{\phi}^{2}", "½φ̇²"),
     (omega_body[0] ** 2, r"{\Omega'_1}^{2}", "Ω′₁²"),
     ((A + m) ** 2, r"(A + m_{1})^{2}", "(A + m₁)²"),
     (sp.sqrt(A), r"\sqrt{A}", "√A"),

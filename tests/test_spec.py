@@ -11,9 +11,8 @@ import pytest
 
 from rigidsym import resources
 from rigidsym.errors import ModelError, RigidsymError, SpecError
-from rigidsym.mechanics.quantities import QUANTITY_NAMES
 from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
-from rigidsym.spec import DerivationSpec, read_file, read_spec, spec_for
+from rigidsym.spec import QUANTITIES, DerivationSpec, read_file, read_spec, spec_for
 
 SHIPPED = Path(__file__).resolve().parent.parent / "derivations"
 
@@ -199,7 +198,7 @@ def test_a_specification_checks_itself():
     assert [str(fault) for fault in caught.value.faults] == [
         'kernels: the list is empty; expected a list of names such as ["numpy"]',
         "models: writes the folder euler_zxz_intrinsic, as entry 0 does",
-        f'quantities[0]: unknown name "mass"; known: {", ".join(QUANTITY_NAMES)}',
+        f'quantities[0]: unknown name "mass"; known: {", ".join(QUANTITIES)}',
         "title: an empty text; expected a title, or no such key",
     ]
     with pytest.raises(SpecError, match=r"name: numpy\.py would hide the Python module"):

@@ -25,6 +25,7 @@ from rigidsym.kernels.naming import Names
 from rigidsym.kernels.sharing import Factors, Graph, Weighted
 from rigidsym.mechanics.derivation import Argument as Vector
 from rigidsym.mechanics.derivation import Derivation, Singularities, Step
+from rigidsym.mechanics.energy_quantities import body_in_words
 from rigidsym.models.rotation import RotationModel
 
 MARGIN = "singularity_margin"
@@ -47,14 +48,15 @@ def lower(derivation: Derivation, reserved: Iterable[str] = ()) -> ir.Program:
     expression that kernels cannot hold.
     """
     kernels = _Lowering(derivation, Names(reserved))
-    found = tuple(map(kernels.of_step, derivation.steps))
+    # a tensor given in numbers takes no arguments, and is no function
+    found = tuple(kernels.of_step(step) for step in derivation.steps if step.quantity.inputs)
     found += tuple(kernels.margin())
     used = {argument.name for kernel in found for argument in kernel.arguments}
     model = derivation.model
     return ir.Program(
         name=derivation.name,
         title=derivation.title,
-        convention=_convention(model),
+        convention=(*_convention(model), *body_in_words(derivation.body)),
         source=str(model.source),
         arguments=tuple(a for name, a in kernels.arguments.items() if name in used),
         kernels=found,

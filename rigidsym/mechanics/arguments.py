@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterable
 from functools import cache, lru_cache
 
 import sympy as sp
@@ -9,44 +11,80 @@ from sympy.printing.conventions import split_super_sub
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.algebra.adjoin import rate_of
+from rigidsym.errors import ModelError
 from rigidsym.mechanics.derivation import Argument, Markup
+from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel
+from rigidsym.models.so3 import time_function
 
 _DOTS = (  # order of the derivative: suffix of the name, LaTeX accent, combining character
     ("", "{}", ""),
     ("_dot", r"\dot{{{}}}", "\u0307"),
     ("_ddot", r"\ddot{{{}}}", "\u0308"),
 )
+_CENTRE = ("X", "Y", "Z")
 _SPACE = tuple(sp.Symbol(f"Omega_{k}") for k in (1, 2, 3))
 _BODY = tuple(sp.Symbol(f"Omega_body_{k}") for k in (1, 2, 3))
 
 
-def arguments_of(model: RotationModel) -> tuple[Argument, ...]:
-    """The arguments of a model's quantities, in the order of a kernel's signature."""
-    return (
+def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[Argument, ...]:
+    """The arguments of a model's quantities, in the order of a kernel's signature.
+
+    Those of a body are its centre of mass, in space, and its constants. Raises ModelError for a
+    name that would then stand for two things.
+    """
+    found = (
         _coordinates(model, 0, "q", "coordinates"),
         _coordinates(model, 1, "q_dot", "their time derivatives"),
         _coordinates(model, 2, "q_ddot", "their second time derivatives"),
         _angular_velocity("space", _SPACE, r"\Omega_{}", "Ω{}"),
         _angular_velocity("body", _BODY, r"\Omega'_{}", "Ω′{}"),
-        *_parameters(model),
+        *((_centre(0), _centre(1)) if body else ()),
+        *_parameters(model, body),
     )
+    if body is not None:
+        _check_names(found, model.name)
+    return found
 
 
-def _parameters(model: RotationModel) -> tuple[Argument, ...]:
-    """The constants of the model, where it has any."""
-    if not model.constants:
+def _check_names(arguments: Iterable[Argument], model: str) -> None:
+    names = [name for argument in arguments for name in argument.names]
+    twice = sorted(name for name, count in Counter(names).items() if count > 1)
+    if twice:
+        raise ModelError(f"{model}: {twice[0]} names two things, of the rotation and of the body")
+
+
+def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument, ...]:
+    """The constants of the model and of the body, where there are any."""
+    of_body = body.parameters if body else ()
+    symbols = (*model.constants, *(parameter.symbol for parameter in of_body))
+    if not symbols:
         return ()
-    names = tuple(symbol.name for symbol in model.constants)
+    names = tuple(symbol.name for symbol in symbols)
+    about = ["angles in radians, components of axes"] if model.constants else []
+    about += ["masses, moments of inertia, lengths of the body"] if of_body else []
     return (
         Argument(
             name="parameters",
-            symbols=model.constants,
+            symbols=symbols,
             names=names,
             notation=tuple(_marked(name, "{}", "") for name in names),
-            units=("",) * len(names),
-            about="constants: angles in radians, components of axes",
+            units=("",) * len(model.constants) + tuple(p.unit for p in of_body),
+            about=f"constants: {'; '.join(about)}",
         ),
+    )
+
+
+def _centre(order: int) -> Argument:
+    """The space components of the position of the centre of mass, or of its velocity."""
+    suffix, accent, combining = _DOTS[order]
+    return Argument(
+        name=f"centre{suffix}",
+        symbols=tuple(_derivative(time_function(name), order) for name in _CENTRE),
+        names=tuple(name + suffix for name in _CENTRE),
+        notation=tuple(_marked(name, accent, combining) for name in _CENTRE),
+        units=(_per_second("m", order),) * 3,
+        about=f"space components of the {('position', 'velocity')[order]} of the centre of mass",
     )
 
 

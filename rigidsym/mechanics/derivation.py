@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 import sympy as sp
 
 from rigidsym.errors import QuantityError
+from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import Citation, RotationModel
 
 Status = Literal["exact", "unproved"]
@@ -56,6 +57,7 @@ class Quantity:
     unit: str  # SI, "" for a pure number
     inputs: tuple[str, ...]  # the arguments it depends on, by name: "q", "q_dot", ...
     is_vector: bool = False  # shape (n,) in kernels, where the expression is an n x 1 matrix
+    is_scalar: bool = False  # shape (), where the expression is a 1 x 1 matrix
     source: Citation | None = None
 
 
@@ -104,6 +106,8 @@ class Step:
     def shape(self) -> tuple[int, ...]:
         """Shape of one value in kernels and JSON."""
         rows, columns = self.expression.shape
+        if self.quantity.is_scalar:
+            return ()
         return (rows,) if self.quantity.is_vector else (rows, columns)
 
 
@@ -140,6 +144,7 @@ class Derivation:
     arguments: tuple[Argument, ...]
     steps: tuple[Step, ...]
     singularities: Singularities | None  # None where the rate matrix is not square
+    body: RigidBody | None = None  # what turns, where energy and momentum were asked for
 
     def step(self, quantity: str) -> Step:
         """The step that defines a quantity; raises QuantityError for one that is not here."""
@@ -160,6 +165,11 @@ class Derivation:
         kept_singularities = None if chosen.isdisjoint(OF_RATES) else self.singularities
         return replace(self, steps=numbered, singularities=kept_singularities)
 
+    @property
+    def subject(self) -> str:
+        """What it is about, in words."""
+        return "Kinematics of a rotation" if self.body is None else "Motion of a rigid body"
+
     def argument(self, name: str) -> Argument:
         return next(argument for argument in self.arguments if argument.name == name)
 
@@ -171,10 +181,10 @@ class Derivation:
     def is_proved(self) -> bool:
         return all(proof.is_exact for proof in self.proofs)
 
-    def __getattr__(self, name: str) -> sp.ImmutableMatrix:
+    def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "steps":  # asked for before there are any steps
             raise AttributeError(name)
         for step in self.steps:
             if step.quantity.name == name:
-                return step.expression
+                return step.expression[0] if step.quantity.is_scalar else step.expression
         raise AttributeError(f"{type(self).__name__} {self.name!r} has no quantity {name!r}")

@@ -10,10 +10,11 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.mechanics import composition
+from rigidsym.mechanics import composition, particles
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.composition import Factor, hat, unhat
 from rigidsym.mechanics.rates import Inverse, bound_on_rates, right_inverse
+from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.models.so3 import TIME
 
@@ -23,13 +24,20 @@ _FEW_TURNS = 4  # up to here the product is multiplied out; the proof by turns i
 class Values:
     """R, dR/dt, Ω, Ω′, W, W′ and the inverses of one model, each worked out when asked for."""
 
-    def __init__(self, model: RotationModel) -> None:
+    def __init__(self, model: RotationModel, body: RigidBody | None = None) -> None:
         self.model = model
-        self.arguments = {argument.name: argument for argument in arguments_of(model)}
-        inputs = [s for name, a in self.arguments.items() if name != "q" for s in a.symbols]
+        self.body = body
+        self.arguments = {argument.name: argument for argument in arguments_of(model, body)}
+        # an energy holds no accelerations, and where constraints relate them to rates none may be
+        # taken for an energy
+        left_out = ("q", "q_ddot") if body else ("q",)
+        inputs = [s for n, a in self.arguments.items() if n not in left_out for s in a.symbols]
         # a ring that holds the turns holds their product, and they are shorter to read
         held = [e for turn in model.turns for e in turn.matrix.flat()] or [*model.matrix]
-        self.codec = codec_for([*inputs, *held], constraints=model.constraints, order=2)
+        if body is not None:
+            held += [body.mass, *body.inertia, sp.Rational(1, 2), *particles.SYMBOLS]
+        order = 1 if body else 2
+        self.codec = codec_for([*inputs, *held], constraints=model.constraints, order=order)
         self.ring = self.codec.ring
         self.one = RingMatrix.identity(self.ring, 3)
 

@@ -11,10 +11,12 @@ from dataclasses import replace
 import sympy as sp
 
 from rigidsym.mechanics.claims import orthogonal, skew, spin_of
-from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Proof, Step
+from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Step
+from rigidsym.mechanics.energy_quantities import ENERGIES, MOMENTA
 from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.models.rotation import Citation, Turn
 from rigidsym.models.so3 import hat
+from rigidsym.notes.claims_table import claims_in_a_table
 from rigidsym.notes.document import (
     Block,
     Cited,
@@ -27,18 +29,17 @@ from rigidsym.notes.document import (
     Paragraph,
     Program,
     Section,
-    Strong,
     Table,
     Text,
 )
-from rigidsym.notes.entries import RESIDUAL, entry_names, indexed
+from rigidsym.notes.entries import entry_names, indexed
 from rigidsym.notes.figure import figure_of
 from rigidsym.notes.formula import markup
 from rigidsym.notes.layout import PAGE, display
 from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.naming import Namer, Part
 from rigidsym.notes.notation import Notation, notation_of
-from rigidsym.notes.prose import DETERMINANTS, motion, product, proofs_in_words, turn, zeros
+from rigidsym.notes.prose import DETERMINANTS, motion, product, turn, zeros
 from rigidsym.notes.rewriting import in_manner
 from rigidsym.notes.short import in_short
 from rigidsym.notes.vector_words import sum_of_vectors
@@ -92,7 +93,7 @@ def compose(
     document = Document(
         name=derivation.name,
         title=derivation.title,
-        subtitle="Kinematics of a rotation",
+        subtitle=derivation.subject,
         notation=composer.notation,
         sections=tuple(composer.sections()),
     )
@@ -126,6 +127,8 @@ class _Composer:
             "The rates of the coordinates": self._rates(),
             "Where the rates fail": self._singularities(),
             "The angular acceleration": self._steps(_ACCELERATION),
+            "The kinetic energy": self._steps(ENERGIES),
+            "The angular momentum": self._steps(MOMENTA),
             "What was proved": self._proofs(),
             "Functions": self._functions(),
         }
@@ -284,19 +287,8 @@ class _Composer:
         return replace(equation, function=function)
 
     def _proofs(self) -> Iterator[Block]:
-        yield Paragraph(proofs_in_words(is_proved=self.derivation.is_proved))
-        yield Table(
-            caption="What was claimed, and what became of it",
-            head=(("Equation",), ("Claim",), ("Status",)),
-            rows=tuple(
-                (_reference(step), (proof.claim,), _status(proof))
-                for step in self.derivation.steps
-                for proof in step.proofs
-            ),
-        )
-        for proof in self.derivation.proofs:
-            if not proof.is_exact:
-                yield from _left_over(proof)
+        steps = self.derivation.steps
+        yield from claims_in_a_table([(s.quantity.name, p) for s in steps for p in s.proofs])
 
     def _functions(self) -> Iterator[Block]:
         if not self.functions:
@@ -357,7 +349,8 @@ def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
     definition = () if not quantity.definition.text else (quantity.definition,)
     return Equation(
         sides=(quantity.symbol, *definition),
-        matrix=step.expression,
+        matrix=None if quantity.is_scalar else step.expression,
+        scalar=step.expression[0] if quantity.is_scalar else None,
         entries=entry_names(step, arguments),
         number=step.number,
         label=quantity.name,
@@ -380,18 +373,3 @@ def _given(argument: Argument) -> str:
 
 def _reference(step: Step) -> Text:
     return (EquationReference(step.quantity.name),)
-
-
-def _status(proof: Proof) -> Text:
-    return ("exact",) if proof.is_exact else (Strong("unproved"),)
-
-
-def _left_over(proof: Proof) -> Iterator[Block]:
-    """What remains of a claim that could not be decided."""
-    yield Paragraph((Strong("Unproved:"), " ", proof.claim, ". What is left over is"))
-    if proof.residual is not None:
-        yield Equation(
-            sides=(RESIDUAL,),
-            matrix=proof.residual,
-            entries=indexed(RESIDUAL, proof.residual.shape),
-        )

@@ -56,10 +56,11 @@ class Paragraph:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Equation:
-    """One display: sides that are equal, the last of them a matrix where there is one."""
+    """One display: sides that are equal, the last of them a matrix or a scalar that is given."""
 
     sides: tuple[Markup, ...]
     matrix: sp.ImmutableMatrix | None = None
+    scalar: sp.Expr | None = None
     entries: tuple[Markup, ...] = ()  # a name an entry, row by row, for a listing
     number: int | None = None
     label: str = ""

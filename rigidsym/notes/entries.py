@@ -10,6 +10,7 @@ from rigidsym.mechanics.derivation import Argument, Markup, Step
 _BOLD = re.compile(r"\\(?:mathbf|boldsymbol)\{([^{}]*)\}")
 _RATE = re.compile(r"\\frac\{d(\w|\\[A-Za-z]+)\}\{dt\}")
 _RATE_TEXT = re.compile(r"d(\w)(′?)/dt")
+_INDEX = re.compile(r"(.*[^}])_(\w)")  # an index that the symbol has already
 _LETTER = re.compile(r"(?:\w|\\[A-Za-z]+|\\dot\{(?:\w|\\[A-Za-z]+)\})'?")
 _LETTER_TEXT = re.compile(r"\w\u0307?′?")
 RESIDUAL = Markup(r"\boldsymbol{\Delta}", "Δ")  # what is left over of a claim
@@ -21,6 +22,8 @@ def entry_names(step: Step, arguments: Iterable[Argument]) -> tuple[Markup, ...]
 
     Vectors that are arguments of other quantities, such as the rates, have the names of those.
     """
+    if step.quantity.is_scalar:
+        return (step.quantity.symbol,)
     known = {argument.name: argument.notation for argument in arguments}
     argument = _argument_name(step.quantity.name)
     return known.get(argument) or indexed(step.quantity.symbol, step.shape)
@@ -35,8 +38,14 @@ def _argument_name(quantity: str) -> str:
 
 def indexed(symbol: Markup, shape: tuple[int, ...]) -> tuple[Markup, ...]:
     """The symbol with the index of each entry, in light face."""
-    stem = _plain_letter(symbol)
-    return tuple(_indexed(stem, index) for index in _indices(shape))
+    stem, own = _plain_letter(symbol), Markup("", "")
+    indexed_already = _INDEX.fullmatch(symbol.text)
+    if indexed_already:
+        own = Markup(f"{indexed_already[2]},", f"{indexed_already[2]},")
+        stem = _plain_letter(
+            Markup(symbol.latex.removesuffix(f"_{indexed_already[2]}"), indexed_already[1])
+        )
+    return tuple(_indexed(stem, own, index) for index in _indices(shape))
 
 
 def _indices(shape: tuple[int, ...]) -> Iterator[str]:
@@ -56,5 +65,7 @@ def _plain_letter(symbol: Markup) -> Markup:
     )
 
 
-def _indexed(stem: Markup, index: str) -> Markup:
-    return Markup(f"{stem.latex}_{{{index}}}", stem.text + index.translate(_DIGITS))
+def _indexed(stem: Markup, own: Markup, index: str) -> Markup:
+    """R₂₃, or L_R,1 where the symbol has an index of its own."""
+    digits = f"_{own.text}{index}" if own.text else index.translate(_DIGITS)
+    return Markup(f"{stem.latex}_{{{own.latex}{index}}}", stem.text + digits)

@@ -122,6 +122,8 @@ class _Walk:
         return Piece(self.pen.product([self._factor(f) for f in factors]), Binding.PRODUCT)
 
     def _factor(self, node: sp.Expr) -> Piece:
+        if node.is_Rational and not node.is_Integer:
+            return self.pen.fraction(int(node.p), int(node.q))
         return self._at_least(Binding.PRODUCT, self.expression(node))
 
     def _power(self, node: sp.Pow) -> Piece:

@@ -150,9 +150,11 @@ class Printer:
     def _spoken(self, equation: Equation) -> str:
         """The equation on one line of Unicode; a matrix row by row."""
         sides = equal(*equation.sides).text
+        notation = self.document.notation
+        if equation.scalar is not None:
+            return f"{sides} = {text(equation.scalar, notation)}"
         if equation.matrix is None:
             return sides
-        notation = self.document.notation
         rows = (", ".join(text(e, notation) for e in row) for row in equation.matrix.tolist())
         return f"{sides} = ({'; '.join(rows)})"
 

@@ -42,6 +42,8 @@ class Display:
 
 def display(equation: Equation, notation: Notation, width: float) -> Display:
     """The equation in the first form that fits into `width` ems; a listing where none does."""
+    if equation.scalar is not None:
+        return Display(*_scalar(equation, latex(equation.scalar, notation), width))
     if equation.matrix is None:
         return Display(*_chain(equation, width))
     full = _rows(equation.matrix, notation, shorthand=False)
@@ -151,6 +153,24 @@ def _listing(equation: Equation, rows: Rows, width: float) -> tuple[list[str], f
         lines += [name.latex + first, *others]
         widest = max(widest, own)
     return lines, head + widest
+
+
+def _scalar(equation: Equation, value: str, width: float) -> tuple[str, float]:
+    """A value on one line with its sides, or below them and broken at + and −; with the width."""
+    *sides, last = (side.latex for side in equation.sides)
+    whole = " = ".join([*sides, last, value])
+    if ems(whole) <= width:
+        return whole, ems(whole)
+    head = sides[0] if sides else last
+    above = [" = ".join([*sides[1:], last])] if sides else []
+    room = width - ems(head) - _EQUAL
+    first, *others = break_lines(value, room, ems, _QUAD)
+    lines = [*above, first.text]
+    text = f"{head} &= " + f"{_ROW}&= ".join(lines)
+    for line in others:
+        text += _ROW + "&" + r"\quad" * (1 + line.depth) + f" {{}}{line.text}"
+    widths = [*map(ems, lines), *(_QUAD * (1 + line.depth) + ems(line.text) for line in others)]
+    return _environment("aligned", text), ems(head) + _EQUAL + max(widths)
 
 
 def _chain(equation: Equation, width: float) -> tuple[str, float]:

@@ -21,7 +21,9 @@ Place = tuple[int, int]  # order of the time derivative, index of the component
 
 _CONSTANTS = {sp.pi: Markup(r"\pi", "π")}
 _GIVEN_RATE = 1  # a given angular velocity stands where the rates stand
-_ORDERS = {"q": 0, "q_dot": 1, "q_ddot": 2}
+_CONSTANT = "parameters"  # constants stand before coordinates, in the order of their names
+_ORDERS = {"q": 0, "q_dot": 1, "q_ddot": 2, "centre": 0, "centre_dot": 1}
+_BEFORE = dict.fromkeys(("centre", "centre_dot"), -3)  # what translates before what turns
 _WORDS = re.compile(r"(\\(?:math|text|operator)\w*\{[^}]*\}|\\[A-Za-z]+)|([A-Za-z]{2,})")
 
 
@@ -84,8 +86,12 @@ def _notation(arguments: tuple[Argument, ...], manner: Manner, length: Length | 
         places={
             **({length.rate: (_GIVEN_RATE, -1)} if length else {}),
             **{
-                symbol: (_ORDERS.get(argument.name, _GIVEN_RATE), index)
+                symbol: (
+                    _ORDERS.get(argument.name, _GIVEN_RATE),
+                    index + _BEFORE.get(argument.name, 0),
+                )
                 for argument in arguments
+                if argument.name != _CONSTANT
                 for index, symbol in enumerate(argument.symbols)
             },
         },

@@ -56,7 +56,8 @@ def note(
     `module` is the file name of its kernel module, if there is one; `functions` are the quantities
     that module evaluates, all of them where nothing is said. Each equation names its function.
     """
-    names = [step.quantity.name for step in derivation.steps] if functions is None else functions
+    computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
+    names = computed if functions is None else functions
     document = compose(derivation, module=module, functions=names if module else (), manner=manner)
     if conversions is None:
         return Note(document)

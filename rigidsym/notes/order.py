@@ -114,7 +114,8 @@ def _rates(term: sp.Expr, notation: Notation) -> list[Place]:
         if order:
             found += [(-order, index)] * int(abs(exponent))
         elif base.is_Add:
-            found += _rates(ordered_terms(base.args, notation)[0], notation)
+            inside = _rates(ordered_terms(base.args, notation)[0], notation)
+            found += inside * (int(exponent) if exponent.is_Integer and exponent > 0 else 1)
     return sorted(found)
 
 

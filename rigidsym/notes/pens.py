@@ -13,6 +13,7 @@ from rigidsym.mechanics.derivation import Markup
 
 _BRACES = r"(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*"  # what may stand in braces, up to two deep
 _RATES = re.compile(rf"\\frac\{{d{_BRACES}\}}\{{dt(?:\^\{{2\}})?\}}")
+_FRACTIONS = {(1, 2): "½", (1, 3): "⅓", (2, 3): "⅔", (1, 4): "¼", (3, 4): "¾", (1, 8): "⅛"}
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
@@ -61,6 +62,10 @@ class Pen(Protocol):
 
     def quotient(self, above: str, below: str) -> Piece: ...
 
+    def fraction(self, above: int, below: int) -> Piece:
+        """A number before a product."""
+        ...
+
 
 class LatexPen:
     """LaTeX mathematics."""
@@ -106,6 +111,9 @@ class LatexPen:
 
     def quotient(self, above: str, below: str) -> Piece:
         return Piece(rf"\frac{{{above}}}{{{below}}}", Binding.FRACTION)
+
+    def fraction(self, above: int, below: int) -> Piece:
+        return self.quotient(str(above), str(below))
 
 
 class ShorthandPen(LatexPen):
@@ -158,3 +166,9 @@ class TextPen:
 
     def quotient(self, above: str, below: str) -> Piece:
         return Piece(f"{above}/{below}", Binding.QUOTIENT)
+
+    def fraction(self, above: int, below: int) -> Piece:
+        short = _FRACTIONS.get((above, below))
+        return (
+            Piece(short, Binding.NUMBER) if short else Piece(f"({above}/{below})", Binding.BRACKET)
+        )

@@ -127,10 +127,30 @@ class _Steps:
     def _value(self, step: Step) -> Iterator[str]:
         names = entry_names(step, self.arguments)
         prefixes = [self.written(prefix) for prefix in _prefixes(step)]
-        yield from self._matrix(prefixes, step.expression, names)
+        if step.quantity.is_scalar:
+            yield from self._scalar(prefixes, text(step.expression[0], self.notation))
+        else:
+            yield from self._matrix(prefixes, step.expression, names)
         for proof in step.proofs:
             if not proof.is_exact:
                 yield f"{_INDENT}✗ unproved: {self.written(proof.claim.text)}"
+
+    def _scalar(self, prefixes: Sequence[str], value: str) -> Iterator[str]:
+        """The value behind its sides, or below them, where a long one is broken."""
+        whole = f"{_INDENT}{prefixes[0]}{value}"
+        if columns(whole) <= self.width:
+            yield whole
+            return
+        head = f"{_INDENT}{prefixes[-1]}".removesuffix("= ")
+        if len(prefixes) > 1:
+            yield f"{_INDENT}{prefixes[0].removesuffix(' = ')}"
+            head = " " * columns(head)
+        room = self.width - columns(head) - len("= ")
+        first, *others = break_lines(value, room, columns, len(_INDENT))
+        yield f"{head}= {first.text}"
+        hang = " " * (columns(head) + len("= "))
+        for line in others:
+            yield hang + _INDENT * line.depth + line.text
 
     def _matrix(
         self, prefixes: Sequence[str], matrix: sp.ImmutableMatrix, names: Sequence[Markup]

@@ -10,6 +10,7 @@ import sympy as sp
 
 from rigidsym.mechanics.claims import fill
 from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Singularity
+from rigidsym.mechanics.energy_quantities import CENTRE
 from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.document import Cited, Code, EquationReference, Span, Strong, Text
@@ -97,6 +98,7 @@ def convention(derivation: Derivation, manner: Manner = DEFAULT) -> tuple[Text, 
         ),
         _coordinates(derivation.argument("q"), has_dots=manner.rates == "dot"),
         *_vector(derivation, manner),
+        *_body(derivation, manner),
         *_conditions(derivation, manner),
     )
 
@@ -123,6 +125,22 @@ def _vector(derivation: Derivation, manner: Manner) -> Iterator[Text]:
 
 def _square(length: Markup, of: Markup) -> Markup:
     return fill(r"{0}^{{2}} = {1}\cdot{1}", "{0}² = {1}·{1}", length, of)
+
+
+def _body(derivation: Derivation, manner: Manner) -> Iterator[Text]:
+    """The mass of the body, its axes, and where its centre of mass is."""
+    body = derivation.body
+    if body is None:
+        return
+    notation = notation_of(derivation.arguments, manner)
+    centre = listed([(name,) for name in derivation.argument("centre").notation], ", ")
+    head = words(
+        "The body has the mass {}, and its inertia tensor is about the centre of mass, along the "
+        "axes of the body; the centre of mass is at {} = (",
+        markup(body.mass, notation),
+        CENTRE,
+    )
+    yield (*head, *centre, ") in space.")
 
 
 def _conditions(derivation: Derivation, manner: Manner) -> Iterator[Text]:
