@@ -2,42 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from rigidsym.kernels.ir import Call, Expression, Guarded, Name, Negative, Number, Product, Sum
 
 _SUM, _PRODUCT, _ATOM = range(3)  # how tightly a piece of text holds together
 
+Literal = Callable[[float], str]
 
-def infix(expression: Expression, functions: Mapping[str, str]) -> str:
+
+def infix(expression: Expression, functions: Mapping[str, str], number: Literal = repr) -> str:
     """The expression in one line; `functions` are the target's names for functions.
 
-    A function without a name there keeps its own, and a guard is or_nan(value, scale).
+    A function without a name there keeps its own, a guard is or_nan(value, scale), and `number`
+    is how the target writes a number.
     """
-    return _text(expression, functions)[0]
+    return _text(expression, functions, number)[0]
 
 
-def literal(value: Fraction | float) -> str:
+def literal(value: Fraction | float, number: Literal = repr) -> str:
     """A number as a literal of a floating-point type; a fraction that is none, as a quotient."""
     if Fraction(float(value)) == value:
-        return repr(float(value))
+        return number(float(value))
     fraction = Fraction(value)
-    return f"{float(fraction.numerator)!r} / {float(fraction.denominator)!r}"
+    return f"{number(float(fraction.numerator))} / {number(float(fraction.denominator))}"
 
 
-def _text(expression: Expression, functions: Mapping[str, str]) -> tuple[str, int]:
+def _text(
+    expression: Expression, functions: Mapping[str, str], number: Literal
+) -> tuple[str, int]:
     """The text, and how tightly it holds together."""
 
     def within(part: Expression, tightness: int) -> str:
-        text, held = _text(part, functions)
+        text, held = _text(part, functions, number)
         return text if held >= tightness else f"({text})"
 
     match expression:
         case Name(text):
             return text, _ATOM
         case Number(value):
-            text = literal(value)
+            text = literal(value, number)
             return text, _PRODUCT if "/" in text else _ATOM
         case Call(function, argument):
             return f"{functions.get(function, function)}({argument.text})", _ATOM

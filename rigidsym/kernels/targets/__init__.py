@@ -41,6 +41,10 @@ class Target:
 TARGETS: Mapping[str, Target] = MappingProxyType(
     {
         "numpy": Target(about="NAME.py: a Python module that needs NumPy alone"),
+        "c": Target(
+            about="NAME.h, NAME.c: C99 without dependencies; `rigidsym build` makes a Python module",
+            programs=("cc", "gcc", "clang"),
+        ),
         "javascript": Target(
             about="NAME.mjs: an ES module without dependencies", programs=("node",)
         ),
