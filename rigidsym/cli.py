@@ -132,6 +132,22 @@ def run(files: tuple[str, ...], out: Path, pdf: bool, as_json: bool) -> None:
     _produce(_read_all(files), out, pdf=pdf, as_json=as_json)
 
 
+@commands.command()
+@click.argument("asked", nargs=-1, required=True, metavar="ROTATION|FILE.c...")
+@TEMPLATES
+@OUT
+def build(asked: tuple[str, ...], out: Path) -> None:
+    """Compile functions in C into Python modules, NAME_c.py.
+
+    Given a rotation, its C is written first, as by derive --target c; given a file, the others
+    of its derivation stand beside it. Exit code 4 without a C compiler; what is written stays.
+    """
+    from rigidsym.building import built
+
+    for each in asked:
+        click.echo(built(each, out))
+
+
 @commands.command("list")
 def list_() -> None:
     """List rotations, quantities, targets and shipped derivations."""

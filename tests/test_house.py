@@ -66,6 +66,7 @@ ORDER = (
     "detective",
     "inventory",
     "pipeline",
+    "building",
     "checking",
     "typeset",
     "options",

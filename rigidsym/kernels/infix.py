@@ -29,9 +29,7 @@ def literal(value: Fraction | float, number: Literal = repr) -> str:
     return f"{number(float(fraction.numerator))} / {number(float(fraction.denominator))}"
 
 
-def _text(
-    expression: Expression, functions: Mapping[str, str], number: Literal
-) -> tuple[str, int]:
+def _text(expression: Expression, functions: Mapping[str, str], number: Literal) -> tuple[str, int]:
     """The text, and how tightly it holds together."""
 
     def within(part: Expression, tightness: int) -> str:

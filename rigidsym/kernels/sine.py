@@ -108,9 +108,7 @@ def _cut(value: Fraction, bits: int) -> Fraction:
 
 def _interpolated(first: int, terms: int, top: Fraction) -> tuple[Fraction, ...]:
     """The polynomial through Σ ± z^k/(2k + first)! in Chebyshev's points of (0, top)."""
-    points = [
-        top * (1 + Fraction(cos(pi * (2 * k + 1) / (2 * terms)))) / 2 for k in range(terms)
-    ]
+    points = [top * (1 + Fraction(cos(pi * (2 * k + 1) / (2 * terms)))) / 2 for k in range(terms)]
     table = [_series(first, z) for z in points]
     for width in range(1, terms):  # Newton's divided differences
         for k in range(terms - 1, width - 1, -1):

@@ -42,7 +42,7 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
     {
         "numpy": Target(about="NAME.py: a Python module that needs NumPy alone"),
         "c": Target(
-            about="NAME.h, NAME.c: C99 without dependencies; `rigidsym build` makes a Python module",
+            about="NAME.h, NAME.c: C99; rigidsym build makes the Python module NAME_c.py",
             programs=("cc", "gcc", "clang"),
         ),
         "javascript": Target(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -75,7 +75,7 @@ def _taken(kernel: Kernel) -> Iterator[Taken]:
 def _signature(name: str, kernel: Kernel, precision: Precision) -> str:
     given = [f"const {precision.real} {a.name}[{len(a.components)}]" for a in kernel.arguments]
     filled = f"{precision.real} out[{len(kernel.outputs)}]"
-    return bracketed(0, f"void {name}{precision.suffix}(", [*given, filled], ")")
+    return _listed(0, f"void {name}{precision.suffix}(", [*given, filled])
 
 
 def _array_signature(name: str, kernel: Kernel, precision: Precision) -> str:
@@ -87,14 +87,19 @@ def _array_signature(name: str, kernel: Kernel, precision: Precision) -> str:
             f"ptrdiff_t {vector}_step",
             f"ptrdiff_t {vector}_stride",
         ]
-    return bracketed(0, f"void {name}_array{precision.suffix}(", items, ")").replace(",\n)", ")")
+    return _listed(0, f"void {name}_array{precision.suffix}(", items)
 
 
 def _call(
     kernel: Kernel, suffix: str, far: str, places: list[str], result: str, indent: int
 ) -> str:
-    text = bracketed(indent, f"{kernel.name}_of{suffix}(", [far, *places, result], ")")
-    return text.replace(f",\n{' ' * indent})", ")").lstrip()
+    return _listed(indent, f"{kernel.name}_of{suffix}(", [far, *places, result]).lstrip()
+
+
+def _listed(indent: int, head: str, items: Sequence[str]) -> str:
+    """Parameters or what is given for them; C takes no comma after the last."""
+    text = bracketed(indent, head, items, ")")
+    return text.replace(f",\n{' ' * indent})", ")")
 
 
 def _body(kernel: Kernel, precision: Precision) -> str:
@@ -104,7 +109,7 @@ def _body(kernel: Kernel, precision: Precision) -> str:
     items = ["const int far", *given, f"{real} *out"]
     return "\n".join(
         [
-            bracketed(0, head, items, ")").replace(",\n)", ")"),
+            _listed(0, head, items),
             "{",
             f"    {precision.word} beyond = 0;",
             *_unused(kernel),
@@ -139,9 +144,7 @@ def _lines(kernel: Kernel, precision: Precision) -> Iterator[str]:
                 names = [calls.get(call, f"{call.function}_of_{name}") for call in pair]
                 yield f"    {real} {names[0]}, {names[1]};"
                 angle = argument.text
-                yield (
-                    f"    beyond |= sin_cos{suffix}(far, {angle}, &{names[0]}, &{names[1]});"
-                )
+                yield (f"    beyond |= sin_cos{suffix}(far, {angle}, &{names[0]}, &{names[1]});")
             case Call(called, argument):
                 used = {"abs": "fabs"}.get(called, called)
                 yield f"    const {real} {name} = {used}{suffix}({argument.text});"

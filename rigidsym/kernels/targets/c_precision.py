@@ -22,7 +22,7 @@ class Precision:
     suffix: str  # of functions and of literals
     bits: int  # of the type
     digits: int  # of its significand
-    packed: str  # the letters of both types for `struct`
+    packed: tuple[str, str]  # the letters of both types for `struct`
     nan: str
     tiny: float  # the smallest normal number
 
@@ -85,7 +85,7 @@ PRECISIONS = (
         suffix="",
         bits=64,
         digits=53,
-        packed="dQ",
+        packed=("d", "Q"),
         nan="0x7ff8000000000000u",
         tiny=2.0**-1022,
     ),
@@ -95,9 +95,8 @@ PRECISIONS = (
         suffix="f",
         bits=32,
         digits=24,
-        packed="fI",
+        packed=("f", "I"),
         nan="0x7fc00000u",
         tiny=2.0**-126,
     ),
 )
-

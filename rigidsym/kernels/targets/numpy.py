@@ -28,21 +28,39 @@ _show = partial(infix, functions=_MATH)
 
 def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
     """The module, with the conversions where they are asked for."""
+    return {f"{program.name}.py": module_text(program, conversions)}
+
+
+def module_text(
+    program: Program,
+    conversions: ConversionProgram | None = None,
+    template: str = TEMPLATE,
+    *,
+    fill: str = "_fill",
+    **more: object,
+) -> str:
+    """The text of a module, in a template that may extend this one and needs more.
+
+    `fill` is the function there that goes through the orientations.
+    """
     added = _additions(program, conversions)
     converting = conversions.kernels if conversions else ()
     kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
-    template = resources.environment().get_template(TEMPLATE)
-    text = template.render(
+    placed = resources.environment().get_template(template)
+    return placed.render(
         about=docstring([*_about(program), *added.remarks]),
         imports=_import(singular.imports(kernels) | added.imports),
         exports=lines(f'"{name}",' for name in sorted((*_exports(kernels), *added.exports))),
         components=lines((*map(entry, _arguments(program, conversions)), *added.components)),
         functions=[*map(_function, kernels), *added.functions],
         helpers="".join(
-            f"\n\n{text}" for text in (*singular.helpers(kernels), added.helpers) if text
+            f"
+
+{text}" for text in (*singular.helpers(kernels), added.helpers) if text
         ),
+        fill=fill,
+        **more,
     )
-    return {f"{program.name}.py": text}
 
 
 def _import(names: set[str]) -> str:

@@ -1,0 +1,113 @@
+"""From the files of the target c to a Python module that can be imported, by a C compiler."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from collections.abc import Mapping
+from importlib import import_module, invalidate_caches
+from pathlib import Path
+from types import ModuleType
+
+from rigidsym.errors import CheckError, MissingTool, ToolFailed
+
+COMPILERS = ("cc", "gcc", "clang")
+TIMEOUT = 300.0  # seconds
+_SOURCES = "{}.c", "{}_module.c"
+# Vector instructions need leave to compute what a branch would have left out, and NaN keeps its
+# meaning: no -ffast-math.
+_FLAGS = (
+    "-std=c99",
+    "-O3",
+    "-fPIC",
+    "-shared",
+    "-ffp-contract=fast",
+    "-fno-math-errno",
+    "-fno-trapping-math",
+)
+_OF_THIS_PROCESSOR = ("-march=native", "-mprefer-vector-width=512")  # left out where refused
+_LOG_LINES = 15
+
+
+def build(source: Path) -> Path:
+    """Compile NAME.c, beside which its other files stand, and return the module NAME_c.py.
+
+    Raises MissingTool without a C compiler, CheckError where a file is missing, and ToolFailed,
+    with the end of what the compiler says, where it stops.
+    """
+    name, folder = source.stem, source.parent
+    needed = [folder / text.format(name) for text in (*_SOURCES, "{}.h", "{}_c.py")]
+    if missing := [str(path) for path in needed if not path.is_file()]:
+        raise CheckError(f"{', '.join(missing)}: not there; rigidsym derive --target c writes it")
+    library = folder / f"_{name}_c{sysconfig.get_config_var('EXT_SUFFIX')}"
+    handle, draft = tempfile.mkstemp(dir=folder, prefix=".", suffix=".so")
+    os.close(handle)
+    try:
+        _compile([str(path) for path in needed[:2]], draft)
+        Path(draft).chmod(0o755)
+        os.replace(draft, library)
+    finally:
+        Path(draft).unlink(missing_ok=True)
+    return needed[3]
+
+
+def load_built(name: str, files: Mapping[str, str]) -> ModuleType:
+    """The module of some files, built in a folder that goes away with the process."""
+    folder = Path(tempfile.mkdtemp(prefix="rigidsym-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    for file, text in files.items():
+        (folder / file).write_text(text, encoding="utf-8")
+    return imported(build(folder / f"{name}.c"))
+
+
+def imported(module: Path) -> ModuleType:
+    """A built module, of which nothing stays in `sys.modules`."""
+    invalidate_caches()
+    sys.path.insert(0, str(module.parent))
+    try:
+        return import_module(module.stem)
+    finally:
+        sys.path.remove(str(module.parent))
+        for name in (module.stem, f"_{module.stem}"):
+            sys.modules.pop(name, None)
+
+
+def compiler() -> str:
+    """The compiler of the environment's CC, or the first that is installed."""
+    for name in filter(None, (os.environ.get("CC"), *COMPILERS)):
+        if found := shutil.which(name):
+            return found
+    raise MissingTool(
+        f"a Python module of C functions needs a C compiler, {', '.join(COMPILERS)}, not found "
+        "here; on Debian: apt install gcc python3-dev"
+    )
+
+
+def _compile(sources: list[str], library: str) -> None:
+    import numpy as np
+
+    folders = [sysconfig.get_paths()["include"], np.get_include()]
+    command = [compiler(), *_FLAGS, *(f"-I{folder}" for folder in folders), *sources]
+    tail = ["-o", library, "-lm"]
+    problem = _run([*command, *_OF_THIS_PROCESSOR, *tail])
+    if problem:
+        problem = _run([*command, *tail])
+    if problem:
+        raise ToolFailed(f"the C compiler stopped; the end of what it says:\n{problem}")
+
+
+def _run(command: list[str]) -> str:
+    """What a compiler that fails says; empty where it does not."""
+    try:
+        done = subprocess.run(
+            command, capture_output=True, text=True, errors="replace", timeout=TIMEOUT, check=False
+        )
+    except subprocess.TimeoutExpired as error:
+        raise ToolFailed(f"the C compiler was stopped after {TIMEOUT:g} seconds") from error
+    said = done.stderr.splitlines()[-_LOG_LINES:]
+    return "\n".join(said) or f"exit code {done.returncode}" if done.returncode else ""

@@ -1,0 +1,168 @@
+"""The C source by itself: what compilers and sanitizers say, what it needs, how it is built."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from test_cli import call
+from witness import mp
+
+import rigidsym as rs
+from rigidsym.errors import CheckError, MissingTool
+from rigidsym.kernels.sine import reduction, two_over_pi
+from rigidsym.kernels.targets import c_build
+from rigidsym.kernels.targets.c_precision import PRECISIONS
+
+COMPILERS = [
+    pytest.param(name, marks=pytest.mark.skipif(not shutil.which(name), reason=f"no {name}"))
+    for name in ("gcc", "clang")
+]
+STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wshadow", "-Wconversion")
+ROTATIONS = ("ZXZ", "rotation_vector", "quaternion")
+NAME = "euler_zxz_intrinsic"
+
+MAIN = """
+#include <stdio.h>
+#include "euler_zxz_intrinsic.h"
+
+#define N 131
+static double q[N][3], q_dot[N][3], matrix[N][9], body[N][3];
+static float qf[N][3], matrixf[N][9];
+
+int main(void)
+{
+    const double sizes[] = {1.0, 1e4, 1e6, 1e15, 1e22, 1e300, 1e-300, 0.0};
+    for (int i = 0; i < N; i++) {
+        for (int k = 0; k < 3; k++) {
+            q[i][k] = (0.37 * i - 20.0 + k) * sizes[i % 8];
+            q_dot[i][k] = 0.1 * i - k;
+            qf[i][k] = (float)((0.37 * i - 20.0 + k) * (i % 8 == 5 ? 1e30 : sizes[i % 8]));
+        }
+    }
+    volatile double zero = 0.0;
+    q[9][0] = 1.0 / zero;
+    q[10][2] = zero / zero;
+    for (size_t count = 0; count <= N; count += 1 + count / 3) {
+        euler_zxz_intrinsic_rotation_matrix_array(count, q[0], 3, 1, matrix[0], 9, 1);
+        euler_zxz_intrinsic_rotation_matrix_arrayf(count, qf[0], 3, 1, matrixf[0], 9, 1);
+        euler_zxz_intrinsic_angular_velocity_body_array(
+            count, q[0] + 3 * (N - 1), -3, 1, q_dot[0], 0, 1, body[0], 3, 1);
+    }
+    euler_zxz_intrinsic_rotation_matrix(q[4], matrix[4]);
+    euler_zxz_intrinsic_rates_from_angular_velocity_space(q[0], q_dot[1], body[1]);
+    printf("%.17g %.17g %.9g\\n", matrix[0][0], matrix[5][8], (double)matrixf[3][8]);
+    printf("%.17g %.17g %.17g\\n", q[0][1], q[5][1], (double)qf[3][1]);
+    return 0;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("c")
+    for rotation in ROTATIONS:
+        rs.derive(rotation).kernels("c").write(folder)
+    (folder / "main.c").write_text(MAIN, encoding="utf-8")
+    return folder
+
+
+def run(*command: str, cwd) -> str:
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_compilers_have_nothing_to_say(sources, compiler):
+    for rotation in ROTATIONS:
+        name = rs.derive(rotation, only=["rotation_matrix"]).name
+        run(compiler, *STRICT, "-O1", "-c", f"{name}.c", "-o", f"{compiler}.o", cwd=sources)
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+def test_it_needs_nothing_and_keeps_nothing(sources):
+    run("gcc", "-std=c99", "-O2", "-fno-math-errno", "-c", f"{NAME}.c", "-o", "n.o", cwd=sources)
+    symbols = [line.split()[-2:] for line in run("nm", "n.o", cwd=sources).splitlines()]
+    assert {kind for kind, _ in symbols} <= {"T", "t", "r"}  # no data, nothing undefined
+    text = (sources / f"{NAME}.c").read_text(encoding="utf-8")
+    assert not re.search(r"\b(malloc|calloc|alloca|goto|setjmp)\b", text)
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_sanitizers_find_nothing_at_any_size(sources, compiler):
+    flags = ("-std=c99", "-g", "-O1", "-fsanitize=address,undefined,float-cast-overflow")
+    made = f"main_{compiler}"
+    run(
+        *(compiler, *flags, "-fno-sanitize-recover=all", f"{NAME}.c", "main.c"),
+        *("-o", made, "-lm"),
+        cwd=sources,
+    )
+    values, angles = (
+        [float(x) for x in line.split()]
+        for line in run(str(sources / made), cwd=sources).splitlines()
+    )
+    with mp.workdps(400):
+        assert abs(values[1] - mp.cos(mp.mpf(angles[1]))) < 1e-15
+        assert abs(values[2] - mp.cos(mp.mpf(angles[2]))) < 3e-7
+
+
+@pytest.mark.skipif(not shutil.which("cc"), reason="no cc")
+def test_build_takes_a_rotation_and_a_file_and_says_what_is_missing(tmp_path):
+    made = call("build", "quaternion", "--out", ".", cwd=tmp_path).stdout.strip()
+    assert made == "quaternion/quaternion_c.py"
+    code = (
+        "import numpy as np, pickle, quaternion_c as m\n"
+        "assert pickle.loads(pickle.dumps(m.rotation_matrix)) is m.rotation_matrix\n"
+        "print(m.rotation_matrix(np.array([1.0, 0, 0, 0])).tolist())"
+    )
+    folder = tmp_path / "quaternion"
+    assert run(sys.executable, "-c", code, cwd=folder).startswith("[[1.0, 0.0, 0.0], [0.0")
+    (folder / "quaternion.h").unlink()
+    wrong = call("build", "quaternion/quaternion.c", cwd=tmp_path, status=2).stderr
+    assert wrong.startswith("rigidsym: quaternion/quaternion.h: not there;")
+    bare = call("build", "quaternion", "--out", ".", cwd=tmp_path, status=4, PATH="/nowhere", CC="")
+    assert "needs a C compiler, cc, gcc, clang, not found here" in bare.stderr
+    assert (folder / "quaternion.h").is_file()
+    checked = call("check", "quaternion", cwd=tmp_path).stdout
+    assert "quaternion/quaternion.c: as derived" in checked
+    assert "quaternion/quaternion_module.c: as derived" in checked
+
+
+def test_a_missing_file_or_compiler_is_named(tmp_path, monkeypatch):
+    with pytest.raises(CheckError, match=r"none\.h"):
+        c_build.build(tmp_path / "none.c")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+    with pytest.raises(MissingTool, match="apt install gcc"):
+        c_build.compiler()
+
+
+@pytest.mark.parametrize("precision", PRECISIONS, ids=lambda p: p.real)
+def test_the_reduction_and_its_polynomials_keep_their_bounds(precision):
+    found = reduction(precision.digits)
+    with mp.workdps(60):
+        total = sum(mp.mpf(p.numerator) / p.denominator for p in found.parts)
+        assert abs(total - mp.pi / 2) < mp.mpf(2) ** -(3 * found.turns + precision.digits // 2)
+        for part in found.parts[:-1]:
+            assert part.numerator.bit_length() + found.turns <= precision.digits
+        for r in np.linspace(0.01, 0.78, 60):
+            x = mp.mpf(float(r))
+            z = x * x
+            sine, cosine = (
+                sum(mp.mpf(a.numerator) / a.denominator * z**k for k, a in enumerate(terms))
+                for terms in (found.sine, found.cosine)
+            )
+            bound = mp.mpf(found.error.numerator) / found.error.denominator
+            assert abs((x + x * z * sine) / mp.sin(x) - 1) < bound
+            assert abs((1 - z / 2 + z * z * cosine) / mp.cos(x) - 1) < bound
+
+
+def test_two_over_pi_is_right_to_the_last_bit():
+    with mp.workdps(420):
+        value = sum(mp.mpf(2) ** (32 * (1 - k)) * word for k, word in enumerate(two_over_pi()))
+        assert 0 <= 2 / mp.pi - value < mp.mpf(2) ** (-32 * 38)
