@@ -54,9 +54,7 @@ def module_text(
         components=lines((*map(entry, _arguments(program, conversions)), *added.components)),
         functions=[*map(_function, kernels), *added.functions],
         helpers="".join(
-            f"
-
-{text}" for text in (*singular.helpers(kernels), added.helpers) if text
+            f"\n\n{text}" for text in (*singular.helpers(kernels), added.helpers) if text
         ),
         fill=fill,
         **more,
