@@ -55,10 +55,10 @@ def test_without_a_word_there_are_none():
 
 
 def test_what_is_not_offered_stands_in_the_record():
-    text = FILE.format("z(phi) x(theta)", "conversions = true")
+    text = FILE.format("z(phi) x(phi)", "conversions = true")
     found = json.loads(product(read_spec(text, source="a.toml", name="a")).record_text)
     assert found["conversions"]["coordinates"] is None
-    assert "fewer than three turns" in found["conversions"]["without"]
+    assert "do not determine it one by one" in found["conversions"]["without"]
 
 
 def test_a_wrong_value_and_a_wrong_place_are_told():
@@ -74,8 +74,10 @@ def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("written")
     long = "z(the_first_angle_of_the_three) x(the_second_angle_of_the_three) z(alpha0)"
     texts = ["ZXZ", "zyx", "z(phi) x(b) [0,3,4](c)", "z(a) x(alpha0) z(b) x(c) y(d)", long]
-    for text in (*texts, *PARAMETRISATIONS):
-        rs.derive(rotation_from(text)).kernels(conversions=True).write(folder)
+    texts += ["z(phi)", "[a,b,c](beta) y(w)", "davenport", "z(a) x(b) z(-a)", "z(phi) x(phi)"]
+    for place, text in enumerate((*texts, *PARAMETRISATIONS)):
+        kernels = rs.derive(rotation_from(text)).kernels(conversions=True)
+        kernels.write(folder / f"module_{place}.py")
     return folder
 
 
@@ -88,7 +90,7 @@ def test_ruff_would_leave_every_module_as_it_is(written, command):
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    assert len(list(written.glob("*.py"))) == 5 + len(PARAMETRISATIONS)
+    assert len(list(written.glob("*.py"))) == 10 + len(PARAMETRISATIONS)
 
 
 @pytest.mark.parametrize("command", [["derive", "gibbs_vector"], ["run", "euler_zxz"]])

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from rigidsym.kernels import ir
+from rigidsym.kernels.conversion_chain import ChainInputs, chain_lines, inputs_of
+from rigidsym.kernels.conversion_unwrap import Unwrapping, unwrapping_of
 from rigidsym.kernels.formulas import (
     BOTH_SIGNS,
     LENGTH,
@@ -21,14 +23,17 @@ from rigidsym.kernels.formulas import (
     shepperd,
 )
 from rigidsym.kernels.lower import lower
+from rigidsym.kernels.writing_lines import number
+from rigidsym.mechanics.conversion_chain import ChainTurns
 from rigidsym.mechanics.conversion_forms import ClosedForm
 from rigidsym.mechanics.conversion_turns import ThreeTurns
 from rigidsym.mechanics.conversions import SHEPPERD, UNIT, Backward, Conversions
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.models.rotation import RotationModel
 
+Rule = ThreeTurns | ChainTurns | ClosedForm
+
 _FRAME = ("a0", "a1", "a2", "a3")
-_DIGITS = 30
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -36,22 +41,14 @@ class Formula:
     """One conversion as a function of a vector, or of the coordinates and the constants."""
 
     name: str
-    arguments: tuple[str, ...]  # "p", "matrix", "q", "parameters"
+    arguments: tuple[str, ...]  # "p", "matrix", "q", "parameters", "kept"
     inputs: tuple[str, ...]  # the names of their components; empty: all, passed on to R
     lines: tuple[Line, ...]
     outputs: tuple[str, ...]
     about: str  # one line
     remarks: tuple[str, ...]  # paragraphs
     unit: str = ""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Unwrapping:
-    """Continuity along a trajectory: the kind, and the numbers that it needs."""
-
-    kind: str  # "turns", "quaternion", "axis_angle", "rotation_vector", "modified_rodrigues"
-    remarks: tuple[str, ...]
-    numbers: Mapping[str, int | float]
+    kept: tuple[str, ...] = ()  # the last inputs, the components of "kept": 0 where left out
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -76,15 +73,29 @@ def lower_conversions(
     program = lower(chosen, tuple(reserved))
     backward, unwrapping = conversions.backward, None
     if backward is not None:
-        formulas += (*_backward(derivation.model, backward), *_shadow_sets(backward.rule))
-        unwrapping = _unwrapping(backward.rule)
+        given = _given(derivation.model, backward.rule, reserved)
+        formulas += (*_backward(derivation.model, backward, given), *_shadow_sets(backward.rule))
+        unwrapping = unwrapping_of(derivation.model, backward.rule)
     return ConversionProgram(
-        arguments=program.arguments,
+        arguments=_with_parameters(derivation, program.arguments, formulas),
         kernels=program.kernels,
         formulas=formulas,
         unwrapping=unwrapping,
         remarks=tuple(text for text in (missing, conversions.without) if text),
     )
+
+
+def _with_parameters(
+    derivation: Derivation, arguments: tuple[ir.Argument, ...], formulas: Iterable[Formula]
+) -> tuple[ir.Argument, ...]:
+    """The arguments, and the constants where formulas alone take them."""
+    if not any("parameters" in formula.arguments for formula in formulas):
+        return arguments
+    (found,) = (a for a in derivation.arguments if a.name == "parameters")
+    constants = ir.Argument(
+        name=found.name, components=found.names, units=found.units, about=found.about
+    )
+    return tuple({a.name: a for a in (constants, *arguments)}.values())
 
 
 def _forward(
@@ -108,16 +119,26 @@ def _is_rule(conversions: Conversions, name: str) -> bool:
     return isinstance(rule, ClosedForm) and rule.rule == name
 
 
-def _backward(model: RotationModel, backward: Backward) -> tuple[Formula, ...]:
+def _given(model: RotationModel, rule: Rule, reserved: Iterable[str]) -> ChainInputs:
+    """What a rule needs beside the rotation."""
+    if isinstance(rule, ChainTurns):
+        return inputs_of(model, rule, reserved)
+    return ChainInputs(constants=(), kept=(), names={})
+
+
+def _backward(model: RotationModel, backward: Backward, given: ChainInputs) -> tuple[Formula, ...]:
     """from_quaternion and from_rotation_matrix."""
-    quaternion, matrix = _ways(model, backward.rule)
+    quaternion, matrix = _ways(model, backward.rule, given)
     shown = "A, the transpose of R" if model.passive else "R"
-    shared = (backward.because, backward.branch)
+    source = (f"Source: {backward.source}.",) if backward.source else ()
+    shared = (backward.because, backward.branch, *source)
+    names = (*given.constants, *given.kept)
     return (
         Formula(
             name="from_quaternion",
-            arguments=("p",),
-            inputs=QUATERNION,
+            arguments=("p", *backward.given),
+            inputs=(*QUATERNION, *names),
+            kept=given.kept,
             lines=quaternion.lines,
             outputs=quaternion.outputs,
             about="The coordinates of a quaternion, scalar first.",
@@ -126,8 +147,9 @@ def _backward(model: RotationModel, backward: Backward) -> tuple[Formula, ...]:
         ),
         Formula(
             name="from_rotation_matrix",
-            arguments=("matrix",),
-            inputs=MATRIX,
+            arguments=("matrix", *backward.given),
+            inputs=(*MATRIX, *names),
+            kept=given.kept,
             lines=matrix.lines,
             outputs=matrix.outputs,
             about=f"The coordinates of a rotation matrix {shown}, as `rotation_matrix` gives it.",
@@ -154,8 +176,12 @@ class _Way:
     outputs: tuple[str, ...]
 
 
-def _ways(model: RotationModel, rule: ThreeTurns | ClosedForm) -> tuple[_Way, _Way]:
+def _ways(model: RotationModel, rule: Rule, given: ChainInputs) -> tuple[_Way, _Way]:
     """From the quaternion, and from the matrix."""
+    if isinstance(rule, ChainTurns):
+        after, outputs = chain_lines(model, rule, given)
+        read_off = (*_plain(model), *shepperd(QUATERNION))
+        return _Way((*SCALED, *after), outputs), _Way((*read_off, *after), outputs)
     if isinstance(rule, ThreeTurns):
         quaternion, matrix = _turn_lines(rule, model)
         after, outputs = _angle_lines(rule)
@@ -215,24 +241,18 @@ def _linear(coefficients: Iterable[sp.Expr], names: Sequence[str]) -> str:
     """The sum of numbers times names."""
     terms = []
     for coefficient, name in zip(coefficients, names, strict=True):
-        number = _number(coefficient)
-        if number:
-            size = name if abs(number) == 1 else f"{abs(number)!r} * {name}"
-            terms.append(("- " if number < 0 else "+ ") + size)
+        value = number(coefficient)
+        if value:
+            size = name if abs(value) == 1 else f"{abs(value)!r} * {name}"
+            terms.append(("- " if value < 0 else "+ ") + size)
     text = " ".join(terms).removeprefix("+ ")
     return "-" + text.removeprefix("- ") if text.startswith("- ") else text
-
-
-def _number(exact: sp.Expr) -> float:
-    """The nearest float; what is zero is zero, whatever radicals it is written in."""
-    value = sp.N(exact, _DIGITS)
-    return 0.0 if abs(value) < sp.Float(10) ** (-_DIGITS // 2) else float(value)
 
 
 def _angle_lines(rule: ThreeTurns) -> tuple[tuple[Line, ...], tuple[str, ...]]:
     """Lines from a0 to a3 to the angles, by the half sum and the half difference."""
     sign = "-" if rule.last_is_first_turn else ""
-    offset = _number(rule.offset)
+    offset = number(rule.offset)
     middle = "2.0 * $atan2(near, far)"
     if rule.sign > 0:
         middle += f" - {offset!r}" if offset else ""
@@ -302,9 +322,9 @@ def _quaternion_of_rotation_vector(number: int) -> Formula:
     )
 
 
-def _shadow_sets(rule: ThreeTurns | ClosedForm) -> tuple[Formula, ...]:
+def _shadow_sets(rule: Rule) -> tuple[Formula, ...]:
     """The other set of modified Rodrigues parameters, and the shorter of both."""
-    if isinstance(rule, ThreeTurns) or rule.rule != "modified_rodrigues":
+    if not isinstance(rule, ClosedForm) or rule.rule != "modified_rodrigues":
         return ()
     square = ("square", "x * x + y * y + z * z")
     return (
@@ -327,40 +347,3 @@ def _shadow_sets(rule: ThreeTurns | ClosedForm) -> tuple[Formula, ...]:
             remarks=(),
         ),
     )
-
-
-_UNWRAPPINGS: Mapping[str, str] = {
-    "quaternion": "Of p and −p the one nearer to the sample before.",
-    "cayley_klein": "Of the parameters and their negatives those nearer to the sample before.",
-    "axis_angle": "The axis does not turn by more than π/2 from one sample to the next, and the "
-    "angle not by more than π; where there is no turn, the axis is that of the sample before.",
-    "rotation_vector": "The axis does not turn by more than π/2 from one sample to the next, and "
-    "the length goes on beyond π, also through whole turns.",
-    "modified_rodrigues": "Of the two sets the one whose quaternion is nearer to that of the "
-    "sample before; at a whole turn it is infinite.",
-}
-
-
-def _unwrapping(rule: ThreeTurns | ClosedForm) -> Unwrapping | None:
-    if isinstance(rule, ThreeTurns):
-        first, middle, third = rule.places
-        return Unwrapping(
-            kind="turns",
-            remarks=(
-                "At each sample the angles are those, of the two sets in [−π, π] that give the "
-                "rotation and of all that whole turns add to them, which are nearest to the sample "
-                "before. At a pole, what is not determined is taken from the last sample that was "
-                "not at one.",
-            ),
-            numbers={
-                "first": first,
-                "middle": middle,
-                "third": third,
-                "sign": rule.sign,
-                "offset": _number(rule.offset),
-            },
-        )
-    if rule.rule not in _UNWRAPPINGS:
-        return None
-    kind = "quaternion" if rule.rule == "cayley_klein" else rule.rule
-    return Unwrapping(kind=kind, remarks=(_UNWRAPPINGS[rule.rule],), numbers={})

@@ -78,19 +78,16 @@ class ThreeTurns:
         )
 
 
-def three_turns(model: RotationModel) -> ThreeTurns | str:
-    """The geometry, or why there is none, as the end of a sentence."""
-    if len(model.turns) != 3:
-        few = "fewer than three turns do not reach every rotation"
-        return few if len(model.turns) < 3 else "more than three turns reach it in many ways"
+def three_turns(model: RotationModel) -> ThreeTurns | None:
+    """The geometry; None for turns of another kind."""
     angles = [turn.angle for turn in model.turns]
-    if len(set(angles)) != 3 or set(angles) != set(model.coordinates):
-        return "the angles of the turns are not the coordinates themselves"
-    first, second, third = (sp.Matrix(turn.direction) for turn in model.turns)
+    if len(angles) != 3 or len(set(angles)) != 3 or set(angles) != set(model.coordinates):
+        return None
     if any(part.free_symbols for turn in model.turns for part in turn.direction):
-        return "the axes are not given by numbers"
+        return None
+    first, second, third = (sp.Matrix(turn.direction) for turn in model.turns)
     if sp.expand(first.dot(second)) != 0 or sp.expand(second.dot(third)) != 0:
-        return "the second axis is not at right angles to the others, so that some are out of reach"
+        return None
     return _geometry(model, first, second, third)
 
 

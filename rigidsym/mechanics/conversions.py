@@ -16,8 +16,22 @@ from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import AlgebraError
+from rigidsym.mechanics.conversion_chain import (
+    DAVENPORT,
+    ChainTurns,
+    chain_turns,
+    description,
+    known_claims,
+)
 from rigidsym.mechanics.conversion_forms import ClosedForm, closed_form
 from rigidsym.mechanics.conversion_turns import ThreeTurns, three_turns, turns_claims
+from rigidsym.mechanics.davenport import (
+    middle_claims,
+    outer_claims,
+    three_axes,
+    triangle,
+    triangle_claims,
+)
 from rigidsym.mechanics.derivation import Markup, Proof, Quantity, Step
 from rigidsym.mechanics.kinematics import derive
 from rigidsym.mechanics.prove import Prover
@@ -56,10 +70,12 @@ _UNIT = Markup(r"\mathbf{p}\cdot\mathbf{p} = 1", "p·p = 1")
 class Backward:
     """How the coordinates follow from a quaternion of any length but zero."""
 
-    rule: ThreeTurns | ClosedForm
+    rule: ThreeTurns | ChainTurns | ClosedForm
     because: str  # a sentence: how it follows
     branch: str  # sentences: which of the possible coordinates are given
     proofs: tuple[Proof, ...]
+    source: Citation | None = None
+    given: tuple[str, ...] = ()  # arguments that the functions take besides: "parameters", "kept"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -90,14 +106,17 @@ class Conversions:
 def conversions_of(model: RotationModel) -> Conversions:
     """The conversions of one model, each proved in its ring."""
     form = closed_form(model)
-    turns = three_turns(model) if model.turns else "its coordinates are entries or formulas of R"
     backward, without = None, ""
     if form is not None:
         backward = _by_form(model, form)
-    elif isinstance(turns, ThreeTurns):
-        backward = _by_turns(model, turns)
     else:
-        without = f"The coordinates do not follow from a rotation: {turns}."
+        turns = three_turns(model) or chain_turns(model)
+        if isinstance(turns, ThreeTurns):
+            backward = _by_turns(model, turns)
+        elif isinstance(turns, ChainTurns):
+            backward = _by_chain(model, turns)
+        else:
+            without = f"The coordinates do not follow from a rotation: {turns}."
     return Conversions(
         model=model,
         quaternion=_forward(model, form),
@@ -218,6 +237,36 @@ def _by_turns(model: RotationModel, rule: ThreeTurns) -> Backward:
         branch=rule.branch,
         proofs=_vanishing(model, turns_claims(model, rule)),
     )
+
+
+def _by_chain(model: RotationModel, rule: ChainTurns) -> Backward:
+    because, branch = description(model, rule)
+    return Backward(
+        rule=rule,
+        because=because,
+        branch=branch,
+        proofs=(
+            *_vanishing(model, known_claims(model, rule)),
+            *_outer_turns(),
+            *(_middle_turn() if len(rule.solved) == 3 else ()),
+        ),
+        source=DAVENPORT,
+        given=(*(["parameters"] if model.constants else []), *(["kept"] if rule.kept else [])),
+    )
+
+
+@cache
+def _outer_turns() -> tuple[Proof, ...]:
+    """What solves the outer turns about any axes, once for all models."""
+    axes = three_axes()
+    return _vanishing(axes, outer_claims(axes))
+
+
+@cache
+def _middle_turn() -> tuple[Proof, ...]:
+    """What solves the turn between them."""
+    axes, sides = three_axes(), triangle()
+    return (*_vanishing(axes, middle_claims(axes)), *_vanishing(sides, triangle_claims(sides)))
 
 
 def _by_form(model: RotationModel, form: ClosedForm) -> Backward:

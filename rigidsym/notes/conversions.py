@@ -28,7 +28,7 @@ from rigidsym.notes.words import symbols_of, with_symbols, words
 
 TITLE = "Conversions"
 _BEFORE = "What was proved"  # the section that it stands before
-_FUNCTIONS = ("from_quaternion(p)", "from_rotation_matrix(matrix)")
+_FUNCTIONS = ("from_quaternion(p{})", "from_rotation_matrix(matrix{})")
 
 
 def with_conversions(
@@ -100,11 +100,13 @@ def _coordinates(
         yield Paragraph((conversions.without,))
         return
     symbols = symbols_of(derivation)
-    yield Paragraph(with_symbols(backward.because, symbols))
+    source = (" ", Cited(backward.source)) if backward.source else ()
+    yield Paragraph((*with_symbols(backward.because, symbols), *source))
     yield from (Equation(sides=(proof.claim,)) for proof in backward.proofs)
     yield Paragraph(with_symbols(backward.branch, symbols))
     if has_functions:
-        yield Paragraph(_called(_FUNCTIONS))
+        given = "".join(f", {name}" for name in backward.given)
+        yield Paragraph(_called([name.format(given) for name in _FUNCTIONS]))
 
 
 def _called(functions: Sequence[str]) -> tuple[str | Code, ...]:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from string import Template
 
 from rigidsym import resources
-from rigidsym.kernels.conversions import ConversionProgram, Formula, Unwrapping
+from rigidsym.kernels.conversion_unwrap import ChainUnwrapping, Unwrapping
+from rigidsym.kernels.conversions import ConversionProgram, Formula
 from rigidsym.kernels.formulas import MATRIX, QUATERNION
 from rigidsym.kernels.layout import WIDTH, bracketed, docstring, exploded
 from rigidsym.kernels.targets.numpy_function import OPTIONS, Function
@@ -24,19 +25,29 @@ _ARRAYS = {
     "pick": "np.where",
     "wrapped": "_wrapped",
     "tiny": "_tiny(far)",
+    "reach": "_reach(far)",
+    "nan": "np.nan",
+    "pi": "np.pi",
 }
 _FLOATS = {name: name for name in ("sqrt", "atan2", "hypot", "sin", "cos")} | {
     "pick": "_pick",
     "wrapped": "_wrapped_float",
     "tiny": "_TINY",
+    "reach": "_REACH",
+    "nan": "nan",
+    "pi": "pi",
 }
-_OF_MATH = frozenset({"sqrt", "atan2", "hypot", "sin", "cos"})
-_GIVEN = {"matrix": "_entries(matrix)"}  # what an argument is passed on as
+_OF_MATH = frozenset({"sqrt", "atan2", "hypot", "sin", "cos", "nan", "pi"})
+_GIVEN = {  # what an argument is passed on as
+    "matrix": "_entries(matrix)",
+    "kept": "np.zeros({}, np.float32) if kept is None else kept",
+}
 _SHAPES = {
     "p": "(..., 4)",
     "matrix": "(..., 3, 3)",
     "q": "(..., n)",
     "parameters": "(..., k)",
+    "kept": "(..., {})",
 }
 _CALLED = re.compile(r"\$(\w+)")
 
@@ -73,15 +84,50 @@ def _helpers(unwrapping: Unwrapping | None) -> str:
     texts = [environment.get_template(_HELPERS).render()]
     if unwrapping is not None:
         template = environment.get_template(_UNWRAP.format(unwrapping.kind))
-        about = [
-            "The coordinates along a trajectory, continuous from sample to sample.",
-            ["  q        (m, ..., n)  the samples on the first axis", "  returns  (m, ..., n)"],
-            *unwrapping.remarks,
-            "The first sample stays as it is. A sample with NaN is passed over.",
-        ]
         numbers = {name: repr(number) for name, number in unwrapping.numbers.items()}
-        texts.append(template.render(about=docstring(about, indent=4), **numbers))
+        chain = _chain(unwrapping.chain) if unwrapping.chain else {}
+        about = docstring(_about_unwrap(unwrapping), indent=4)
+        texts.append(template.render(about=about, **numbers, **chain))
     return "\n\n".join(texts)
+
+
+def _about_unwrap(unwrapping: Unwrapping) -> list[str | Sequence[str]]:
+    rows = [("q", "(m, ..., n)  the samples on the first axis"), ("returns", "(m, ..., n)")]
+    if unwrapping.chain and unwrapping.chain.constants:
+        rows.insert(1, ("parameters", "(..., k)"))
+    width = max(len(name) for name, _ in rows)
+    return [
+        "The coordinates along a trajectory, continuous from sample to sample.",
+        [f"  {name:<{width}}  {text}" for name, text in rows],
+        *unwrapping.remarks,
+        "The first sample stays as it is. A sample with NaN is passed over.",
+    ]
+
+
+def _chain(unwrapping: ChainUnwrapping) -> dict[str, str | bool]:
+    """The pieces of `unwrap` for turns about any axes."""
+    lines = [*unwrapping.used, *unwrapping.lines]
+    if unwrapping.used:
+        lines.insert(0, ("parameters", '_checked("parameters", parameters)'))
+    followed = "_followed(angles)"
+    before = ""
+    if unwrapping.is_triangle:
+        before = (
+            "angles = _without_poles(angles, base, apart, together)\n    "
+            "angles = _nearest(angles, base, before, after, opposite, volume)\n    "
+        )
+    return {
+        "signature": "q, parameters" if unwrapping.constants else "q",
+        "known": "\n".join(_assigned(4, name, _spelled(v, _ARRAYS)) for name, v in lines),
+        "angles": "\n".join(f"        {angle}," for angle in unwrapping.angles),
+        "followed": f"{before}{_named(unwrapping.turns)} = {followed}",
+        "placed": "\n".join(_assigned(4, name, value) for name, value in unwrapping.placed),
+        "is_triangle": unwrapping.is_triangle,
+    }
+
+
+def _named(names: Sequence[str]) -> str:
+    return f"({names[0]},)" if len(names) == 1 else ", ".join(names)
 
 
 def _components(formulas: Sequence[Formula]) -> tuple[str, ...]:
@@ -91,6 +137,9 @@ def _components(formulas: Sequence[Formula]) -> tuple[str, ...]:
         lines.append(f'"p": ({_quoted(QUATERNION)}),')
     if "matrix" in used:
         lines.append(f'"matrix": ({_quoted(MATRIX)}),')
+    kept = next((formula.kept for formula in formulas if formula.kept), ())
+    if kept:
+        lines.append(f'"kept": ({_quoted(kept)},),')
     return tuple(lines)
 
 
@@ -108,14 +157,16 @@ def _function(formula: Formula, shape: str) -> Function:
     block, scalar = f"_{name}", f"{name}_scalar"
     inputs = formula.inputs or ("*components",)
     result = _shape(formula, shape)
-    passed = [f"{a}={_GIVEN.get(a, a)}" for a in formula.arguments]
+    passed = [f"{a}={_GIVEN.get(a, a)}".format(len(formula.kept)) for a in formula.arguments]
+    given = ["kept=None" if a == "kept" else a for a in formula.arguments]
+    needed = [f"{i}=0.0" if i in formula.kept else i for i in inputs]
     return Function(
-        signature=bracketed(0, f"def {name}(", [*formula.arguments, "*", *OPTIONS], "):"),
+        signature=bracketed(0, f"def {name}(", [*given, "*", *OPTIONS], "):"),
         about=docstring(_about(formula), indent=4),
         body=bracketed(
             4, "return _apply(", [block, scalar, result, "out", "threads", *passed], ")"
         ),
-        scalar_signature=bracketed(0, f"def {scalar}(", inputs, "):"),
+        scalar_signature=bracketed(0, f"def {scalar}(", needed, "):"),
         scalar_about=f"`{name}` of one orientation; floats to a tuple.",
         scalar_body="\n".join(_body(formula, 8, _FLOATS)),
         exceptional=bracketed(8, "return _exceptional(", [block, result, *inputs], ")"),
@@ -140,7 +191,8 @@ def _ufunc(formula: Formula, shape: str) -> str:
 def _about(formula: Formula) -> list[str | Sequence[str]]:
     unit = f"  in {formula.unit}" if formula.unit else ""
     result = f"(..., {len(formula.outputs)})"
-    rows = [*((a, _SHAPES[a]) for a in formula.arguments), ("returns", result + unit)]
+    shapes = [(a, _SHAPES[a].format(len(formula.kept))) for a in formula.arguments]
+    rows = [*shapes, ("returns", result + unit)]
     width = max(len(name) for name, _ in rows)
     return [
         formula.about,
@@ -156,7 +208,10 @@ def _body(formula: Formula, indent: int, spelling: dict[str, str]) -> Iterator[s
     for names, value in formula.lines:
         yield _assigned(indent, names, _spelled(value, spelling))
     outputs = [_spelled(output, spelling) for output in formula.outputs]
-    yield exploded(indent, "return (", outputs, ")")
+    if len(outputs) == 1:
+        yield f"{' ' * indent}return ({outputs[0]},)"
+    else:
+        yield exploded(indent, "return (", outputs, ")")
 
 
 def _matrix_line(indent: int, *, is_float: bool) -> str:

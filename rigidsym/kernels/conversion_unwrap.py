@@ -1,0 +1,146 @@
+"""Coordinates along a trajectory: which kind of continuity, and what it needs to know."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from rigidsym.kernels.formulas import Line
+from rigidsym.kernels.writing_lines import LineWriter, number
+from rigidsym.mechanics.conversion_chain import ChainTurns
+from rigidsym.mechanics.conversion_forms import ClosedForm
+from rigidsym.mechanics.conversion_turns import ThreeTurns
+from rigidsym.models.rotation import RotationModel
+
+_SHAPE = ("base", "apart", "together", "before", "after", "opposite", "volume")
+_LOCAL = (*_SHAPE, "samples", "lost", "angles", "result", "q", "parameters", "first", "middle")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Unwrapping:
+    """Continuity along a trajectory: the kind, and what it needs."""
+
+    kind: str  # "turns", "chain", "quaternion", "axis_angle", "rotation_vector", ...
+    remarks: tuple[str, ...]
+    numbers: Mapping[str, int | float] = field(default_factory=dict)
+    chain: ChainUnwrapping | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ChainUnwrapping:
+    """The angles of turns in terms of samples, and the samples in terms of the angles."""
+
+    constants: tuple[str, ...]  # the components of "parameters"
+    used: tuple[Line, ...]  # those that are needed, and where they stand
+    lines: tuple[Line, ...]  # what the axes are to one another
+    angles: tuple[str, ...]  # of the turns, three of them where two sets give one rotation
+    is_triangle: bool
+    turns: tuple[str, ...]  # names of the followed angles
+    placed: tuple[Line, ...]  # the coordinates that follow from them
+
+
+_REMARKS: Mapping[str, str] = {
+    "quaternion": "Of p and −p the one nearer to the sample before.",
+    "cayley_klein": "Of the parameters and their negatives those nearer to the sample before.",
+    "axis_angle": "The axis does not turn by more than π/2 from one sample to the next, and the "
+    "angle not by more than π; where there is no turn, the axis is that of the sample before.",
+    "rotation_vector": "The axis does not turn by more than π/2 from one sample to the next, and "
+    "the length goes on beyond π, also through whole turns.",
+    "modified_rodrigues": "Of the two sets the one whose quaternion is nearer to that of the "
+    "sample before; at a whole turn it is infinite.",
+}
+_TWO_SETS = (
+    "At each sample the angles are those, of the two sets in [−π, π] that give the rotation and of "
+    "all that whole turns add to them, which are nearest to the sample before. At a pole, what is "
+    "not determined is taken from the last sample that was not at one."
+)
+_WHOLE_TURNS = "No angle of a turn changes by more than π from one sample to the next."
+
+
+def unwrapping_of(
+    model: RotationModel, rule: ThreeTurns | ChainTurns | ClosedForm
+) -> Unwrapping | None:
+    """The continuity of a model's coordinates; None where they are unique."""
+    if isinstance(rule, ThreeTurns):
+        return _of_turns(rule)
+    if isinstance(rule, ChainTurns):
+        return _of_chain(model, rule)
+    if rule.rule not in _REMARKS:
+        return None
+    kind = "quaternion" if rule.rule == "cayley_klein" else rule.rule
+    return Unwrapping(kind=kind, remarks=(_REMARKS[rule.rule],))
+
+
+def _of_turns(rule: ThreeTurns) -> Unwrapping:
+    first, middle, third = rule.places
+    return Unwrapping(
+        kind="turns",
+        remarks=(_TWO_SETS,),
+        numbers={
+            "first": first,
+            "middle": middle,
+            "third": third,
+            "sign": rule.sign,
+            "offset": number(rule.offset),
+        },
+    )
+
+
+def _of_chain(model: RotationModel, rule: ChainTurns) -> Unwrapping:
+    is_triangle = len(rule.solved) == 3 and (not rule.mirror or rule.is_across)
+    names = {symbol: symbol.name for symbol in model.constants}
+    samples = {q: f"samples[..., {k}]" for k, q in enumerate(model.coordinates)}
+    writer = LineWriter({**names, **samples}, taken=_LOCAL)
+    angles = rule.solved if is_triangle else rule.solved[: len(rule.places)]
+    written = tuple(writer.text(turn.angle) for turn in angles)
+    if is_triangle:
+        _relations(writer, rule)
+    turns = sp.symbols([f"turn_{k + 1}" for k in range(len(angles))])
+    kept = sp.Matrix(turns[: len(rule.places)]) - sp.Matrix(rule.offsets)
+    placed = tuple(
+        (f"result[..., {place}]", writer.text(value))
+        for place, value in zip(rule.places, rule.inverse * kept, strict=True)
+    )
+    texts = " ".join([*written, *(value for _, value in (*writer.lines, *placed))])
+    used = tuple(
+        (name, f"parameters[..., {place}]")
+        for place, name in enumerate(names.values())
+        if re.search(rf"\b{name}\b", texts)
+    )
+    kept_too = "What the rotation does not determine stays as it is." if rule.kept else ""
+    return Unwrapping(
+        kind="chain",
+        remarks=tuple(t for t in (_TWO_SETS if is_triangle else _WHOLE_TURNS, kept_too) if t),
+        chain=ChainUnwrapping(
+            constants=tuple(names.values()),
+            used=used,
+            lines=tuple(writer.lines),
+            angles=written,
+            is_triangle=is_triangle,
+            turns=tuple(str(t) if k < len(rule.places) else "_" for k, t in enumerate(turns)),
+            placed=placed,
+        ),
+    )
+
+
+def _relations(writer: LineWriter, rule: ChainTurns) -> None:
+    """Cosines between the axes, their volume, the flat middle angle, and the sides."""
+    first, middle, last = (writer.shared(axis) for axis in rule.axes)
+    one, two, three = map(sp.Matrix, (first, middle, last))
+    writer.let(
+        ["before", "after", "opposite", "volume"],
+        [one.dot(two), two.dot(three), one.dot(three), one.dot(two.cross(three))],
+    )
+    sides = [
+        writer.angle(writer.fresh("side"), *pair) for pair in ((first, middle), (middle, last))
+    ]
+    base = writer.flat("base", first, middle, last)
+    if base != "base":
+        writer.lines.append(("base", base))
+    writer.lines += [
+        ("apart", f"{sides[0]} - {sides[1]}"),
+        ("together", f"{sides[0]} + {sides[1]}"),
+    ]

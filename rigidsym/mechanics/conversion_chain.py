@@ -1,0 +1,246 @@
+"""Up to three turns about any axes, among turns that are known, from a quaternion or a matrix.
+
+Let e₁, e₂, e₃ be the axes as the known turns before them leave them. For any quaternion x,
+x₊ = (x − e₁ x e₃)/2 and x₋ = (x + e₁ x e₃)/2 obey e₁ x₊ = x₊ e₃ and e₁ x₋ = −x₋ e₃. So a turn by α
+on the left and one by γ on the right, p = exp(e₁ α/2) m exp(e₃ γ/2), leave p₊ = exp(e₁ σ) m₊ and
+p₋ = exp(e₁ δ) m₋ with σ = (α + γ)/2 and δ = (α − γ)/2, whatever the angle between the axes. What
+is between, m, is 1 for two turns and cos β/2 + e₂ sin β/2 for three. |p₋|/|p₊| = tan χ/2, where χ
+is the angle between e₁ and R e₃: the third side of a spherical triangle with the corners e₁, e₂ and
+the turned e₃, whose angle at e₂ is β, counted from where the triangle is flat.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
+from itertools import combinations, pairwise
+
+import sympy as sp
+from sympy.printing.pretty.pretty_symbology import pretty_symbol
+
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.models.rotation import Citation, RotationModel, Turn
+from rigidsym.models.so3 import rodrigues
+
+Claim = tuple[tuple[sp.Expr, ...], Markup]  # what vanishes, and how it is written
+
+DAVENPORT = Citation(
+    text="J. Wittenburg, L. Lilov, Decomposition of a Finite Rotation into Three Rotations about "
+    "Given Axes, Multibody System Dynamics 9 (2003)"
+)
+_MOST = 3  # turns that a rotation determines
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ChainTurns:
+    """The turns whose angles follow from the rotation, and all that is known beside them."""
+
+    before: tuple[Turn, ...]  # known turns left of them: constant, or by angles that are kept
+    solved: tuple[Turn, ...]  # one to three
+    between: tuple[tuple[Turn, ...], ...]  # known turns behind each of them but the last
+    after: tuple[Turn, ...]  # known turns right of them
+    places: tuple[int, ...]  # of the coordinates that follow, among all
+    kept: tuple[int, ...]  # places of the coordinates that are given
+    inverse: sp.ImmutableMatrix  # solved coordinates = inverse (angles − offsets); numbers
+    offsets: tuple[sp.Expr, ...]  # of the angles, in constants and kept coordinates
+    mirror: int = 0  # ±1 where the angle of the third turn is that of the first, times this
+
+    @property
+    def axes(self) -> tuple[sp.ImmutableMatrix, ...]:
+        """The axes (3, 1) of the solved turns, each moved by the known turns before it."""
+        moved, axes = sp.eye(3), []
+        for turn, known in zip(self.solved, (*self.between, ()), strict=True):
+            axes.append(sp.ImmutableMatrix(moved * sp.Matrix(turn.direction)))
+            moved = reduce(lambda m, t: m * t.matrix, known, moved)
+        return tuple(axes)
+
+    @property
+    def right(self) -> tuple[Turn, ...]:
+        """The known turns that stand right of the solved ones once their axes are moved."""
+        return (*(turn for known in self.between for turn in known), *self.after)
+
+    @property
+    def is_across(self) -> bool:
+        """Whether there are three turns, the middle one about an axis across the others."""
+        if len(self.solved) < _MOST:
+            return False
+        first, middle, last = self.axes
+        return sp.expand(first.dot(middle)) == 0 and sp.expand(middle.dot(last)) == 0
+
+
+def chain_turns(model: RotationModel) -> ChainTurns | str:
+    """The turns that are solved for, or why there are none, as the end of a sentence."""
+    if not model.turns:
+        return "its coordinates are entries or formulas of R"
+    turns = _merged(model.turns)
+    moving = [place for place, turn in enumerate(turns) if turn.angle.has(*model.coordinates)]
+    linear = {place: _linear(model, turns[place].angle) for place in moving}
+    if any(row is None for row in linear.values()):
+        return "an angle is not a sum of multiples of the coordinates by numbers"
+    found = [
+        rule for window in _windows(moving) for rule in _solutions(model, turns, window, linear)
+    ]
+    if not found:
+        return "a coordinate stands in several turns, whose angles do not determine it one by one"
+    return next((rule for rule in found if rule.is_across), found[0])
+
+
+def _merged(turns: Sequence[Turn]) -> tuple[Turn, ...]:
+    """The turns, those side by side about one axis as one."""
+    merged: list[Turn] = []
+    for turn in turns:
+        if merged and merged[-1].direction == turn.direction:
+            merged[-1] = replace(merged[-1], angle=merged[-1].angle + turn.angle)
+        else:
+            merged.append(turn)
+    return tuple(merged)
+
+
+def _linear(model: RotationModel, angle: sp.Expr) -> sp.ImmutableMatrix | None:
+    """The multiples of the coordinates in an angle, (1, n); None where they are not numbers."""
+    row = [sp.diff(angle, coordinate) for coordinate in model.coordinates]
+    return sp.ImmutableMatrix([row]) if all(entry.is_Rational for entry in row) else None
+
+
+def _windows(moving: Sequence[int]) -> list[Sequence[int]]:
+    """Neighbours among the moving turns, as many as a rotation determines."""
+    count = min(_MOST, len(moving))
+    return [moving[start : start + count] for start in range(len(moving) - count + 1)]
+
+
+def _solutions(
+    model: RotationModel,
+    turns: Sequence[Turn],
+    window: Sequence[int],
+    linear: dict[int, sp.ImmutableMatrix],
+) -> Iterator[ChainTurns]:
+    """What a window of turns determines: coordinates that stand nowhere else, one a turn."""
+    rows = sp.Matrix.vstack(*(linear[place] for place in window))
+    others = [row for place, row in linear.items() if place not in window]
+    own = [k for k in range(rows.cols) if not any(row[k] for row in others)]
+    solved = tuple(turns[place] for place in window)
+    mirror = 0 if others else _mirror(solved)  # beside others that move it would not suffice
+    if mirror:
+        rows = rows[:2, :]
+    for places in combinations(own, rows.rows):
+        square = rows[:, list(places)]
+        if square.det() == 0:
+            continue
+        free = {model.coordinates[k]: sp.S.Zero for k in places}
+        yield ChainTurns(
+            before=tuple(turns[: window[0]]),
+            solved=solved,
+            between=tuple(tuple(turns[a + 1 : b]) for a, b in pairwise(window)),
+            after=tuple(turns[window[-1] + 1 :]),
+            places=places,
+            kept=tuple(k for k in range(rows.cols) if k not in places),
+            inverse=sp.ImmutableMatrix(square.inv()),
+            offsets=tuple(turn.angle.xreplace(free) for turn in solved[: rows.rows]),
+            mirror=mirror,
+        )
+        return
+
+
+def _mirror(turns: Sequence[Turn]) -> int:
+    """±1 where the third angle is the first one or its negative, as in `z(a) x(b) z(-a)`."""
+    if len(turns) < _MOST:
+        return 0
+    first, last = turns[0].angle, turns[-1].angle
+    return 1 if first == last else -1 if first == -last else 0
+
+
+def description(model: RotationModel, rule: ChainTurns) -> tuple[str, str]:
+    """Sentences: how the coordinates follow, and which of the possible ones are given."""
+    return _because(rule), " ".join(_branch(model, rule))
+
+
+def _because(rule: ChainTurns) -> str:
+    known = (
+        "The known turns are taken off, and the axes are taken as they leave them. "
+        if (*rule.before, *rule.right)
+        else ""
+    )
+    if len(rule.solved) == 1:
+        return (
+            f"{known}With e₃ = e₁, p₊ = (p − e₁ p e₃)/2 and m = 1, the angle is "
+            "2 atan2(p₊·e₁, p₊·1)."
+        )
+    halves = (
+        f"{known}With p₊ = (p − e₁ p e₃)/2 and p₋ = (p + e₁ p e₃)/2, half the sum and half "
+        "the difference of the outer angles are the angles about e₁ from m₊ to p₊ and from m₋ to "
+        "p₋"
+    )
+    if len(rule.solved) < _MOST:
+        return f"{halves}, where e₃ is the second axis and m = 1."
+    return (
+        f"{halves}, where m = cos β/2 + e₂ sin β/2. The middle angle is that at e₂ of the "
+        "spherical triangle of e₁, e₂ and the turned e₃, whose third side is "
+        "χ = 2 atan2(|p₋|, |p₊|), counted from where that triangle is flat, atan2(B, A). The other "
+        "sides are θ₁, between e₁ and e₂, and θ₃, between e₂ and e₃; k₁ and k₃ are their cosines, "
+        "A = e₁·e₃ − k₁ k₃ and B = e₁·(e₂ × e₃)."
+    )
+
+
+def _branch(model: RotationModel, rule: ChainTurns) -> Iterator[str]:
+    names = _names(model, rule.places)
+    if rule.mirror:
+        yield (
+            "The outer angles of the turns are in (−π, π]; the middle one is in the interval of "
+            "length π that holds 0 and ends where the triangle is flat."
+        )
+    elif len(rule.solved) == _MOST:
+        yield (
+            "The outer angles of the turns are in (−π, π]; the middle one is in the interval of "
+            "length π that holds 0 and ends where the triangle is flat. Where only the sum or the "
+            "difference of the outer angles is determined, the last is 0."
+        )
+    else:
+        yield "The angles of the turns are in (−π, π]."
+    if rule.inverse != sp.eye(len(names)) or any(offset != 0 for offset in rule.offsets):
+        yield f"From them follow {_listed(names)}."
+    if rule.kept:
+        kept = _names(model, rule.kept)
+        yield (
+            f"{_listed(kept)}, which the rotation does not determine, "
+            f"{'is' if len(kept) == 1 else 'are'} kept at the values given: 0 where none are."
+        )
+    if rule.mirror or not rule.is_across:
+        yield (
+            "These turns need not reach every rotation: one that is further than √eps (radians) "
+            "from all that they reach gives NaN."
+        )
+
+
+def _names(model: RotationModel, places: Sequence[int]) -> list[str]:
+    return [pretty_symbol(model.coordinates[place].func.__name__) for place in places]
+
+
+def _listed(names: Sequence[str]) -> str:
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def known_claims(model: RotationModel, rule: ChainTurns) -> list[Claim]:
+    """R is the known turns before, the solved ones about the moved axes, and the known after."""
+    if not (rule.before or rule.right):
+        return []
+    factors = [turn.matrix for turn in rule.before]
+    factors += [
+        rodrigues(axis, turn.angle) for axis, turn in zip(rule.axes, rule.solved, strict=True)
+    ]
+    factors += [turn.matrix for turn in rule.right]
+    product = reduce(lambda a, b: a * b, factors)
+    count = len(rule.solved)
+    latex = [rf"\mathbf{{R}}_{k}" for k in range(1, count + 1)]
+    text = [f"R{'₁₂₃'[k]}" for k in range(count)]
+    if rule.before:
+        latex, text = [r"\mathbf{R}_a", *latex], ["Rₐ", *text]
+    if rule.right:
+        latex, text = [*latex, r"\mathbf{R}_b"], [*text, "R_b"]
+    return [
+        (
+            tuple(product - model.matrix),
+            Markup(r"\mathbf{R} = " + r"\,".join(latex), f"R = {' '.join(text)}"),
+        )
+    ]
