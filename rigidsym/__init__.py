@@ -18,6 +18,17 @@ __version__ = "0.1.0"
 _HOMES = {
     "derive": "rigidsym.api",
     "identify": "rigidsym.detective.identify",
+    "inertia_of": "rigidsym.measured.inertia",
+    "principal_axes_of": "rigidsym.measured.axes",
+    "RigidBody": "rigidsym.models.body",
+    "principal_moments": "rigidsym.models.body",
+    "general_inertia": "rigidsym.models.body",
+    "solid": "rigidsym.mechanics.bodies",
+    "body_of": "rigidsym.mechanics.bodies",
+    "Particle": "rigidsym.models.distribution",
+    "Particles": "rigidsym.models.distribution",
+    "Composite": "rigidsym.models.distribution",
+    "Part": "rigidsym.models.distribution",
     "Identification": "rigidsym.detective.identify",
     "Motion": "rigidsym.api",
     "EulerAngles": "rigidsym.models.catalogue",
@@ -46,6 +57,7 @@ __all__ = [
     "AxisAngle",
     "CayleyKlein",
     "Citation",
+    "Composite",
     "Derivation",
     "DirectionCosines",
     "EulerAngles",
@@ -54,26 +66,41 @@ __all__ = [
     "ModifiedRodrigues",
     "Motion",
     "NotARotation",
+    "Part",
+    "Particle",
+    "Particles",
     "Quaternion",
+    "RigidBody",
     "RigidsymError",
     "RotationModel",
     "RotationVector",
     "Turn",
     "UnitQuaternion",
+    "body_of",
     "chain",
     "derive",
+    "general_inertia",
     "given",
     "identify",
+    "inertia_of",
+    "principal_axes_of",
+    "principal_moments",
     "rotation_from",
+    "solid",
 ]
 
 if TYPE_CHECKING:
     from rigidsym.api import Motion, derive
     from rigidsym.detective.identify import Identification, identify
     from rigidsym.errors import NotARotation, RigidsymError
+    from rigidsym.measured.axes import principal_axes_of
+    from rigidsym.measured.inertia import inertia_of
+    from rigidsym.mechanics.bodies import body_of, solid
     from rigidsym.mechanics.derivation import Derivation
+    from rigidsym.models.body import RigidBody, general_inertia, principal_moments
     from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
     from rigidsym.models.chain import chain
+    from rigidsym.models.distribution import Composite, Part, Particle, Particles
     from rigidsym.models.matrices import DirectionCosines, given
     from rigidsym.models.quaternions import AxisAngle, CayleyKlein, Quaternion, UnitQuaternion
     from rigidsym.models.rotation import Citation, RotationModel, Turn

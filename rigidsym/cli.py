@@ -13,7 +13,7 @@ import shutil
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -242,6 +242,27 @@ def identify(
         click.echo(f"{click.style(head, bold=True)}\n{rest}")
     if not found.fits:
         context.exit(1)
+
+
+@commands.command()
+@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option("--columns", metavar="NAME,...", help="Of particles: m,x,y,z in your order.")
+@click.option("--mass", type=float, metavar="KG", help="Of a mesh, filled uniformly.")
+@click.option("--density", type=float, metavar="KG/M3", help="Of a mesh, filled uniformly.")
+@click.option("--scale", type=float, default=1.0, metavar="M", help="One unit of a mesh, in m.")
+@click.option("--scheduler", metavar="ADDRESS", help="A Dask cluster that sees the NPY file.")
+@click.option("--allow", is_flag=True, help="Take negative masses, open meshes.")
+@JSON
+def inertia(file: Path, as_json: bool, **options: Any) -> None:
+    """Mass, centre, inertia tensor and principal axes of particles or of a mesh.
+
+    FILE holds particles, NPY (mapped into memory, one pass), CSV or Parquet, with the columns m, x,
+    y, z or x, y, z (1 kg each), or a closed mesh: STL, OBJ, PLY.
+    """
+    from rigidsym.measured.command import measure
+
+    found, counted = measure(file, **options)
+    click.echo(json.dumps(found.record(), indent=1) if as_json else found.text(counted))
 
 
 def _read_all(files: Iterable[str]) -> list[DerivationSpec]:

@@ -52,13 +52,15 @@ def block_of(masses: Array | None, places: Array, start: int = 0) -> Block:
     count = places.shape[1]
     if masses is None:
         masses = np.ones(count)
-    mass = float(masses.sum())
-    about = places @ masses / mass if mass else places[:, 0].copy()
-    if not np.isfinite(about).all():
-        about = places[:, 0].copy()
-    apart = places - about[:, None]
-    weighted = apart * masses
-    block = Block(count, mass, float(masses.min()), about, weighted.sum(axis=1), weighted @ apart.T)
+    with np.errstate(all="ignore"):  # what is not finite is looked for below
+        mass = float(masses.sum())
+        about = places @ masses / mass if mass else places[:, 0].copy()
+        if not np.isfinite(about).all():
+            about = places[:, 0].copy()
+        apart = places - about[:, None]
+        weighted = apart * masses
+        first, second = weighted.sum(axis=1), weighted @ apart.T
+    block = Block(count, mass, float(masses.min()), about, first, second)
     if not np.isfinite(block.second).all():
         raise BodyError(_not_finite(masses, places, start))
     return block

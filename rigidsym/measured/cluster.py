@@ -57,7 +57,7 @@ def cloud_of_file(
     total = len(NpySource(place, names))
     blocks: list[Block] = []
     done = 0
-    with Client(scheduler, set_as_default=False) as client:
+    with Client(scheduler) as client:
         starts = range(0, total, _WINDOW)
         tasks = client.map(_of_file, [str(place)] * len(starts), starts, names=names, pure=False)
         for _, found in as_completed(tasks, with_results=True):
