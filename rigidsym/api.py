@@ -13,6 +13,7 @@ from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.rotations import rotation_from
 
 if TYPE_CHECKING:
+    from rigidsym.kernels.derivatives import Asked
     from rigidsym.kernels.module import KernelModule
     from rigidsym.mechanics.conversions import Conversions
     from rigidsym.models.body import RigidBody
@@ -29,15 +30,20 @@ class Motion(Derivation):
 
     manner: Manner = DEFAULT
 
-    def kernels(self, target: str = "numpy", *, conversions: bool = False) -> KernelModule:
+    def kernels(
+        self, target: str = "numpy", *, conversions: bool = False, derivatives: Asked = ()
+    ) -> KernelModule:
         """The module of functions for one target: `.source`, `.load()`, `.write(path)`.
 
         `conversions` adds the functions to and from the unit quaternion and the matrix, and
-        `unwrap`. Raises KernelError for an unknown target.
+        `unwrap`; `derivatives` those of quantities by their inputs, with the value before them:
+        {"angular_velocity_body": ("q", "q_dot")} adds `angular_velocity_body_jacobian_q` and so
+        on, "q jvp" and "q vjp" products with a vector. Raises KernelError for an unknown target
+        or derivative.
         """
         from rigidsym.kernels.module import generate
 
-        return generate(self, target, conversions=conversions)
+        return generate(self, target, conversions=conversions, derivatives=derivatives)
 
     @property
     def conversions(self) -> Conversions:

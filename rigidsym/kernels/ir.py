@@ -209,6 +209,7 @@ class Kernel:
     definition: str = ""  # Unicode, one line: "Rᵀ Ω"; may be empty
     about: str = ""  # words
     unit: str = ""  # SI; "" for a pure number
+    parts: tuple[tuple[int, ...], ...] = ()  # shapes of the results that the outputs are, in order
 
     def __post_init__(self) -> None:
         if len(self.outputs) != prod(self.shape):

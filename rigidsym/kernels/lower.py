@@ -20,6 +20,7 @@ from rigidsym.algebra.halves import halved
 from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
 from rigidsym.kernels.assign import write
+from rigidsym.kernels.derivatives import Derivative
 from rigidsym.kernels.guard import guarded
 from rigidsym.kernels.naming import Names
 from rigidsym.kernels.sharing import Factors, Graph, Weighted
@@ -41,8 +42,10 @@ _QUOTIENTS: Mapping[type, tuple[str, str]] = {  # numerator and denominator; "" 
 }
 
 
-def lower(derivation: Derivation, reserved: Iterable[str] = ()) -> ir.Program:
-    """The kernels of a derivation, one a quantity, in the order of its equations.
+def lower(
+    derivation: Derivation, reserved: Iterable[str] = (), derivatives: Iterable[Derivative] = ()
+) -> ir.Program:
+    """The kernels of a derivation, one a quantity, in the order of its equations; derivatives last.
 
     `reserved` are the words of the target that no name may be. Raises KernelError for an
     expression that kernels cannot hold.
@@ -51,6 +54,7 @@ def lower(derivation: Derivation, reserved: Iterable[str] = ()) -> ir.Program:
     # a tensor given in numbers takes no arguments, and is no function
     found = tuple(kernels.of_step(step) for step in derivation.steps if step.quantity.inputs)
     found += tuple(kernels.margin())
+    found += tuple(map(kernels.of_derivative, derivatives))
     used = {argument.name for kernel in found for argument in kernel.arguments}
     model = derivation.model
     return ir.Program(
@@ -90,6 +94,7 @@ class _Lowering:
 
     def __init__(self, derivation: Derivation, names: Names) -> None:
         self.derivation = derivation
+        self._vectors = {vector.name: vector for vector in derivation.arguments}
         self.arguments = {vector.name: _named(vector, names) for vector in derivation.arguments}
         self._names = names
         model = derivation.model
@@ -109,6 +114,26 @@ class _Lowering:
             definition=quantity.definition.text,
             about=quantity.about,
             unit=quantity.unit,
+        )
+
+    def of_derivative(self, derivative: Derivative) -> ir.Kernel:
+        """The kernel of a value and its derivative, one after the other."""
+        for vector in derivative.vectors:
+            if vector.name not in self.arguments:
+                self._vectors[vector.name] = vector
+                self.arguments[vector.name] = _named(vector, self._names)
+        step = derivative.step
+        count = len(step.expression)
+        entries = self._rewritten([*step.expression, *derivative.jacobian()])
+        entries = [*entries[:count], *derivative.results(entries[count:])]
+        inputs = [vector.name for vector in derivative.vectors]
+        kernel = self._kernel(derivative.request.name, inputs, entries, (len(entries),))
+        return replace(
+            kernel,
+            symbol=f"{step.quantity.symbol.text} by {derivative.by.name}",
+            about=derivative.about,
+            unit=step.quantity.unit,
+            parts=derivative.parts,
         )
 
     def margin(self) -> Iterator[ir.Kernel]:
@@ -140,7 +165,7 @@ class _Lowering:
             symbol: component
             for argument in arguments
             for symbol, component in zip(
-                self.derivation.argument(argument.name).symbols, argument.components, strict=True
+                self._vectors[argument.name].symbols, argument.components, strict=True
             )
         }
         reader = _Reader(name, known)

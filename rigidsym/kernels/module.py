@@ -8,6 +8,7 @@ from pathlib import Path
 from types import ModuleType
 
 from rigidsym.kernels.conversions import lower_conversions
+from rigidsym.kernels.derivatives import Asked, derivatives_of, read_requests
 from rigidsym.kernels.lower import lower
 from rigidsym.kernels.targets import printer
 from rigidsym.mechanics.conversions import conversions_of
@@ -55,15 +56,21 @@ class KernelModule:
 
 
 def generate(
-    derivation: Derivation, target: str = "numpy", *, conversions: bool = False
+    derivation: Derivation,
+    target: str = "numpy",
+    *,
+    conversions: bool = False,
+    derivatives: Asked = (),
 ) -> KernelModule:
     """The kernels of all quantities of a derivation, for one target.
 
-    `conversions` adds those between the coordinates, the unit quaternion and the matrix. Raises
-    KernelError for an unknown target, and for an expression that kernels cannot hold.
+    `conversions` adds those between the coordinates, the unit quaternion and the matrix,
+    `derivatives` those that are asked for: ["angular_velocity_body by q"]. Raises KernelError for
+    an unknown target or derivative, and for an expression that kernels cannot hold.
     """
     chosen = printer(target)
-    program = lower(derivation, chosen.RESERVED)
+    wanted = derivatives_of(derivation, read_requests(derivatives))
+    program = lower(derivation, chosen.RESERVED, wanted)
     converting = None
     if conversions:
         converting = lower_conversions(

@@ -19,7 +19,9 @@ from rigidsym.kernels.targets import numpy as python
 from rigidsym.kernels.targets import numpy_singular as singular
 
 TEMPLATE = "kernels_jax.py.jinja"
-RESERVED = frozenset({*keyword.kwlist, *FUNCTIONS, "jax", "jnp", "like", "parts", "l", "O", "I"})
+RESERVED = frozenset(
+    {*keyword.kwlist, *FUNCTIONS, "jax", "jnp", "like", "parts", "both", "l", "O", "I"}
+)
 _DERIVATIVES = 2  # that functions of n = |v| have: each takes two functions c_k more
 
 _show = partial(infix, functions={name: f"jnp.{name}" for name in FUNCTIONS})
@@ -29,16 +31,18 @@ def render(program: Program, conversions: ConversionProgram | None = None) -> di
     """The module; conversions are the NumPy target's, and the module says so."""
     kernels = [_fitted(kernel) for kernel in program.kernels]
     last = singular.last_order(kernels)
+    has_parts = any(kernel.parts for kernel in kernels)
     orders = range(FIRST_SERIES, last + 2 * _DERIVATIVES + 1) if last >= 0 else ()
     text = (
         resources.environment()
         .get_template(TEMPLATE)
         .render(
             about=docstring([*_about(program, has_conversions=conversions is not None)]),
-            imports="from functools import cache\n\nimport jax\n" if orders else "",
+            imports=_imports(has_parts=has_parts, has_series=bool(orders)),
             exports=python.lines(f'"{name}",' for name in sorted(k.name for k in kernels)),
             components=python.lines(map(python.entry, program.arguments)),
             functions=[*map(_function, kernels)],
+            has_parts=has_parts,
             has_divisors=any(map(singular.guards_of, kernels)),
             series="\n".join(map(singular.entry, orders)),
         )
@@ -55,6 +59,13 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
         raise MissingExtra("the target jax", "jax") from error
 
 
+def _imports(*, has_parts: bool, has_series: bool) -> str:
+    """The lines before that of jax.numpy."""
+    standard = ["from functools import cache"] * has_series + ["from math import prod"] * has_parts
+    jax = ["import jax"] * has_series
+    return "".join(f"{line}\n" for line in [*standard, *[""] * bool(standard), *jax])
+
+
 def _fitted(kernel: Kernel) -> Kernel:
     return narrowed(kernel, _show, line=WIDTH - 4, output=WIDTH - 8 - len(","))
 
@@ -63,8 +74,6 @@ def _function(kernel: Kernel) -> dict[str, str]:
     vectors = [argument.name for argument in kernel.arguments]
     given = [f"{name}={name}" for name in vectors]
     taken = list(_taken(kernel))
-    outputs = [_show(output) for output in kernel.outputs]
-    shape = f"({kernel.shape[0]},)" if len(kernel.shape) == 1 else str(kernel.shape)
     return {
         "signature": bracketed(0, f"def {kernel.name}(", vectors, "):"),
         "about": docstring(python.about_kernel(kernel), indent=4),
@@ -73,10 +82,18 @@ def _function(kernel: Kernel) -> dict[str, str]:
                 bracketed(4, f"like, {'parts' if taken else '_'} = _components(", given, ")"),
                 *taken,
                 *_lines(kernel),
-                bracketed(4, "return _together(", ["like", shape, *outputs], ")"),
+                *_returned(kernel),
             ]
         ),
     }
+
+
+def _returned(kernel: Kernel) -> Iterator[str]:
+    """The result, or several results as parts of one array."""
+    entries = ["like", str(kernel.shape), *map(_show, kernel.outputs)]
+    yield bracketed(4, f"{'both =' if kernel.parts else 'return'} _together(", entries, ")")
+    if kernel.parts:
+        yield bracketed(4, "return _parted(", ["both", *map(str, kernel.parts)], ")")
 
 
 def _taken(kernel: Kernel) -> Iterator[str]:

@@ -53,6 +53,7 @@ def module_text(
         exports=lines(f'"{name}",' for name in sorted((*_exports(kernels), *added.exports))),
         components=lines((*map(entry, _arguments(program, conversions)), *added.components)),
         functions=[*map(_function, kernels), *added.functions],
+        has_parts=any(kernel.parts for kernel in kernels),
         helpers="".join(
             f"\n\n{text}" for text in (*singular.helpers(kernels), added.helpers) if text
         ),
@@ -137,16 +138,12 @@ def lines(items: Iterable[str]) -> str:
 def _function(kernel: Kernel) -> Function:
     block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
     vectors = [argument.name for argument in kernel.arguments]
-    shape = f"({kernel.shape[0]},)" if len(kernel.shape) == 1 else str(kernel.shape)
+    given = [f"{vector}={vector}" for vector in vectors]
+    shape = str(kernel.shape)
     return Function(
         signature=bracketed(0, f"def {kernel.name}(", [*vectors, "*", *OPTIONS], "):"),
         about=docstring(about_kernel(kernel), indent=4),
-        body=bracketed(
-            4,
-            "return _apply(",
-            [block, scalar, shape, "out", "threads", *(f"{v}={v}" for v in vectors)],
-            ")",
-        ),
+        body=_body(kernel, [block, scalar, shape, *("out", "threads"), *given]),
         ufunc=f'{kernel.name}.signature = "{_ufunc(kernel)}"',
         scalar_signature=bracketed(0, f"def {scalar}(", kernel.components, "):"),
         scalar_about=docstring(
@@ -159,10 +156,20 @@ def _function(kernel: Kernel) -> Function:
     )
 
 
+def _body(kernel: Kernel, arguments: Sequence[str]) -> str:
+    """The call that computes the result; several results are parts of one array."""
+    if not kernel.parts:
+        return bracketed(4, "return _apply(", arguments, ")")
+    call = bracketed(4, "both = _apply(", arguments, ")")
+    return f"{call}\n{bracketed(4, 'return _parted(', ['both', *map(str, kernel.parts)], ')')}"
+
+
 def _ufunc(kernel: Kernel) -> str:
     """The signature as a generalised ufunc: (3),(3)->(3)."""
     inputs = ",".join(f"({len(argument.components)})" for argument in kernel.arguments)
-    return f"{inputs}->({','.join(map(str, kernel.shape))})"
+    results = kernel.parts or (kernel.shape,)
+    outputs = ",".join("(" + ",".join(map(str, shape)) + ")" for shape in results)
+    return f"{inputs}->{outputs}"
 
 
 def _nesting(kernel: Kernel) -> str:
@@ -282,15 +289,22 @@ def about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
         (a.name, f"(..., {len(a.components)})", ", ".join(a.components) + _in_unit(a.units))
         for a in kernel.arguments
     ]
-    shape = ", ".join(["...", *map(str, kernel.shape)])
-    returned = ("returns", f"({shape})", f"in {kernel.unit}" if kernel.unit else "")
+    results = [", ".join(["...", *map(str, shape)]) for shape in kernel.parts or (kernel.shape,)]
+    unit = f"in {kernel.unit}" if kernel.unit else ""
+    returned = ("returns", ", ".join(f"({shape})" for shape in results), unit)
     return [
         f"{kernel.symbol}{definition}: {kernel.about}.",
         _table([*rows, returned]),
+        *_both(kernel),
         f"{_place(kernel)}{kernel.operations}.",
         *singular.poles(kernel),
         "Raises TypeError for a dtype and ValueError for a shape that it cannot take.",
     ]
+
+
+def _both(kernel: Kernel) -> Iterator[str]:
+    if kernel.parts:
+        yield f"Both are parts of one array, (..., {kernel.shape[0]}), as `out` is."
 
 
 def _place(kernel: Kernel) -> str:

@@ -1,0 +1,171 @@
+"""Derivatives of quantities by a vector of inputs: which are asked for, and their expressions.
+
+The derivative is SymPy's, term by term and exact; nothing is searched for. A kernel of one gives
+the value first, then the derivative, from one pass of common subexpressions.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from math import prod
+
+import sympy as sp
+
+from rigidsym.errors import KernelError
+from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Step
+
+KINDS = {
+    "jacobian": "its Jacobian by {vector}, row by row",
+    "jvp": "its Jacobian by {vector} times {given}",
+    "vjp": "{given} times its Jacobian by {vector}",
+}
+_TEXT = re.compile(r"(\w+)(?: by |:)(\w+)(?:[ :](\w+))?")
+_EXPECTED = (
+    'expected "QUANTITY by VECTOR", with jvp or vjp behind it for a product with a vector: '
+    '"angular_velocity_body by q", "angular_velocity_body by q jvp"'
+)
+
+Asked = Iterable[str] | Mapping[str, str | Iterable[str]]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Request:
+    """The derivative of one quantity by one vector of its inputs."""
+
+    quantity: str
+    vector: str
+    kind: str = "jacobian"
+
+    @property
+    def name(self) -> str:
+        """Of the function: angular_velocity_body_jacobian_q."""
+        return f"{self.quantity}_{self.kind}_{self.vector}"
+
+    def __str__(self) -> str:
+        kind = "" if self.kind == "jacobian" else f" {self.kind}"
+        return f"{self.quantity} by {self.vector}{kind}"
+
+
+def read_request(text: str) -> Request:
+    """The request in "QUANTITY by VECTOR [jvp|vjp]", or with colons between its words.
+
+    Raises KernelError for any other text.
+    """
+    found = _TEXT.fullmatch(text.strip())
+    if not found or (found[3] or "jacobian") not in KINDS:
+        raise KernelError(f"no derivative {text!r}; {_EXPECTED}")
+    return Request(quantity=found[1], vector=found[2], kind=found[3] or "jacobian")
+
+
+def read_requests(asked: Asked) -> tuple[Request, ...]:
+    """The requests, each once, in their order; {"angular_velocity_body": ("q", "q_dot jvp")} too.
+
+    Raises KernelError for a text that is none.
+    """
+    if isinstance(asked, Mapping):
+        vectors = {q: (v,) if isinstance(v, str) else v for q, v in asked.items()}
+        asked = [f"{quantity} by {vector}" for quantity in vectors for vector in vectors[quantity]]
+    return tuple(dict.fromkeys(map(read_request, asked)))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Derivative:
+    """One derivative, ready to be lowered."""
+
+    request: Request
+    step: Step
+    vectors: tuple[Argument, ...]  # the inputs of the quantity, then the vector of the product
+    given: Argument | None  # that vector
+
+    @property
+    def parts(self) -> tuple[tuple[int, ...], ...]:
+        """The shapes of the value and of the derivative."""
+        shape, count = self.step.shape, len(self.by.symbols)
+        return shape, {"jacobian": (*shape, count), "jvp": shape, "vjp": (count,)}[
+            self.request.kind
+        ]
+
+    @property
+    def by(self) -> Argument:
+        return next(vector for vector in self.vectors if vector.name == self.request.vector)
+
+    @property
+    def about(self) -> str:
+        """The value and the derivative in words."""
+        given = self.given.name if self.given else ""
+        what = KINDS[self.request.kind].format(vector=self.request.vector, given=given)
+        return f"{self.step.quantity.about}; then {what}"
+
+    def jacobian(self) -> list[sp.Expr]:
+        """Row by row: one row an entry of the quantity, one column a component of the vector.
+
+        Inputs are independent of each other, so that each stands for itself while they are
+        differentiated by: a rate does not follow its coordinate.
+        """
+        symbols = [symbol for vector in self.vectors for symbol in vector.symbols]
+        plain = {symbol: sp.Dummy() for symbol in symbols}
+        back = {dummy: symbol for symbol, dummy in plain.items()}
+        entries = [entry.xreplace(plain) for entry in self.step.expression]
+        by = [plain[symbol] for symbol in self.by.symbols]
+        return [sp.diff(entry, one).xreplace(back) for entry, one in product(entries, by)]
+
+    def results(self, jacobian: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """What is returned beside the value, from the entries of the Jacobian in any form."""
+        if self.given is None:
+            return list(jacobian)
+        count = len(self.by.symbols)
+        rows = [jacobian[k : k + count] for k in range(0, len(jacobian), count)]
+        lines = rows if self.request.kind == "jvp" else list(zip(*rows, strict=True))
+        return [sp.Add(*map(sp.Mul, line, self.given.symbols)) for line in lines]
+
+
+def derivatives_of(derivation: Derivation, requests: Iterable[Request]) -> tuple[Derivative, ...]:
+    """The derivatives that are asked for, ready to be lowered.
+
+    Raises QuantityError for a quantity that is not in the derivation, and KernelError for a
+    vector that it does not take.
+    """
+    return tuple(_derivative(derivation, request) for request in requests)
+
+
+def _derivative(derivation: Derivation, request: Request) -> Derivative:
+    step = derivation.step(request.quantity)
+    inputs = step.quantity.inputs
+    if request.vector not in inputs:
+        raise KernelError(f"{request}: {request.quantity} takes {' and '.join(inputs)} alone")
+    vectors = tuple(map(derivation.argument, inputs))
+    by = derivation.argument(request.vector)
+    given = {"jvp": _tangent(by), "vjp": _cotangent(step)}.get(request.kind)
+    return Derivative(
+        request=request,
+        step=step,
+        vectors=(*vectors, given) if given else vectors,
+        given=given,
+    )
+
+
+def _tangent(by: Argument) -> Argument:
+    return replace(
+        by,
+        name=f"{by.name}_tangent",
+        symbols=tuple(map(sp.Dummy, by.names)),
+        names=tuple(f"{name}_tangent" for name in by.names),
+        about=f"a direction in the space of {by.name}",
+    )
+
+
+def _cotangent(step: Step) -> Argument:
+    count = prod(step.shape)
+    name = f"{step.quantity.name}_weights"
+    names = tuple(f"weight_{k}" for k in range(1, count + 1))
+    return Argument(
+        name=name,
+        symbols=tuple(map(sp.Dummy, names)),
+        names=names,
+        notation=tuple(Markup(text, text) for text in names),
+        units=("",) * count,
+        about=f"a weight for each entry of {step.quantity.name}, row by row",
+    )
