@@ -26,6 +26,7 @@ from rigidsym.options import (
     PDF,
     TEMPLATES,
     WITH_CONVERSIONS,
+    WITH_DERIVATIVES,
     as_chosen,
     in_notation,
     names_of,
@@ -82,6 +83,7 @@ def commands(context: click.Context) -> None:
 @click.option("--scalar-last", is_flag=True, help="Quaternions as (x, y, z, w).")
 @click.option("--passive", is_flag=True, help="Present the direction cosine matrix A = Rᵀ.")
 @WITH_CONVERSIONS
+@WITH_DERIVATIVES
 @FOR_TARGETS
 @in_notation
 @TEMPLATES
@@ -118,6 +120,7 @@ def derive(
 @commands.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @WITH_CONVERSIONS
+@WITH_DERIVATIVES
 @FOR_TARGETS
 @in_notation
 @TEMPLATES

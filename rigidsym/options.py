@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -82,6 +82,21 @@ WITH_CONVERSIONS = click.option(
 )
 
 
+def _keep_derivatives(context: click.Context, _: click.Parameter, texts: tuple[str, ...]) -> None:
+    context.meta[_DERIVATIVES] = texts
+
+
+_DERIVATIVES = f"{__name__}.derivatives"
+WITH_DERIVATIVES = click.option(
+    "--derivative",
+    multiple=True,
+    metavar="QUANTITY:VECTOR",
+    expose_value=False,
+    callback=_keep_derivatives,
+    help="The Jacobian of a quantity by q, q_dot, ...; QUANTITY:VECTOR:jvp or :vjp for a product.",
+)
+
+
 def _keep_targets(context: click.Context, _: click.Parameter, targets: str | None) -> None:
     if targets is not None:
         from rigidsym.kernels.targets import check_target
@@ -111,7 +126,15 @@ def as_chosen(spec: DerivationSpec) -> DerivationSpec:
         manner=replace(spec.manner, **chosen),
         conversions=spec.conversions or converts,
         kernels=spec.kernels if targets is None else tuple(targets),
+        derivatives=_derivatives(spec, kept.get(_DERIVATIVES, ())),
     )
+
+
+def _derivatives(spec: DerivationSpec, texts: Iterable[str]) -> tuple[str, ...]:
+    """Those of the specification, then those of the command line, each once."""
+    from rigidsym.kernels.derivatives import read_requests
+
+    return tuple(map(str, read_requests([*spec.derivatives, *texts])))
 
 
 def names_of(text: str) -> list[str]:

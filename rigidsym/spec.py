@@ -13,7 +13,8 @@ from typing import Any
 
 from rigidsym import resources
 from rigidsym.body_table import read_body
-from rigidsym.errors import Fault, ModelError, SpecError
+from rigidsym.errors import Fault, KernelError, ModelError, SpecError
+from rigidsym.kernels.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.energy_quantities import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities import QUANTITY_NAMES
@@ -30,13 +31,14 @@ NOTE_FORMATS = ("tex", "html", "md", "ipynb", "pdf")
 
 QUANTITIES = (*QUANTITY_NAMES, *ENERGY_QUANTITIES)
 _OUTPUT = {"quantities": QUANTITIES, "kernels": tuple(TARGETS), "note": NOTE_FORMATS}
+_MORE_OUTPUT = ("conversions", "derivatives")
 _FILE = ("title", "rotation", "parameters", "body", "notation", "output")
 _HINTS = {
     **dict.fromkeys(CHOICES, "it belongs in [notation]"),
     "potential": f"not read yet (known: {', '.join(_FILE)})",
     **dict.fromkeys(_FILE, "it belongs at the top of the file, outside the tables"),
     **dict.fromkeys(KEYS, "it belongs in [rotation]"),
-    **dict.fromkeys((*_OUTPUT, "conversions"), "it belongs in [output]"),
+    **dict.fromkeys((*_OUTPUT, *_MORE_OUTPUT), "it belongs in [output]"),
 }
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
@@ -60,13 +62,15 @@ class DerivationSpec:
     kernels: tuple[str, ...] = ("numpy",)
     note: tuple[str, ...] = ("tex", "html")
     conversions: bool = False  # whether to and from quaternion and matrix, too
+    derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
     manner: Manner = DEFAULT  # the notation of notes and terminal
 
     def __post_init__(self) -> None:
         faults = Faults(self.name)
         data = {key: list(getattr(self, key)) for key in ("kernels", "note")}
-        if self.quantities:
-            data["quantities"] = list(self.quantities)
+        for key in ("quantities", "derivatives"):
+            if getattr(self, key):
+                data[key] = list(getattr(self, key))
         table = Table(data | {"title": self.title}, (), faults)
         _read_title(table)
         _read_output(table)
@@ -104,6 +108,7 @@ class DerivationSpec:
             "note": list(self.note),
             **(dict(self.body.request) if self.body else {}),
             **({"conversions": True} if self.conversions else {}),
+            **({"derivatives": list(self.derivatives)} if self.derivatives else {}),
             **({"notation": asdict(self.manner)} if self.manner != DEFAULT else {}),
         }
 
@@ -114,8 +119,8 @@ class DerivationSpec:
             raise SpecError(source, [Fault(line=0, path="", message="expected an object")])
         faults = Faults(source)
         table = Table(data, (), faults)
-        own = ("name", "title", "rotations", "parameters", "body", "notation", "conversions")
-        table.refuse_others((*own, *_OUTPUT))
+        own = ("name", "title", "rotations", "parameters", "body", "notation")
+        table.refuse_others((*own, *_OUTPUT, *_MORE_OUTPUT))
         rotations = table.tables("rotations", "a list of objects with sequence and angles")
         name, title, output = table.text("name"), _read_title(table), _read_output(table)
         models = [m for rotation in rotations for m in _read_rotation(rotation, name or "")]
@@ -181,7 +186,7 @@ def read_spec(text: str, *, source: str, name: str, folder: Path | None = None) 
     models = _read_rotation(rotation, name) if rotation else [EulerAngles("ZXZ")]
     body = _read_body(table, name, folder or Path())
     if output:
-        output.refuse_others((*_OUTPUT, "conversions"), _HINTS)
+        output.refuse_others((*_OUTPUT, *_MORE_OUTPUT), _HINTS)
     choices = _read_output(output) if output else {}
     manner = _read_notation(table)
     is_list = rotation is not None and isinstance(rotation.value("sequence"), list)
@@ -253,7 +258,27 @@ def _check_notation(manner: Manner, model: RotationModel, faults: Faults, place:
 def _read_output(table: Table) -> dict[str, Any]:
     chosen: dict[str, Any] = {key: table.choices(key, known) for key, known in _OUTPUT.items()}
     chosen["conversions"] = table.flag("conversions")
+    chosen["derivatives"] = _read_derivatives(table, chosen["quantities"] or QUANTITIES)
     return {key: choice for key, choice in chosen.items() if choice is not None}
+
+
+def _read_derivatives(table: Table, quantities: Sequence[str]) -> tuple[str, ...] | None:
+    """The derivatives that are asked for, of the quantities that are, each in one spelling."""
+    texts = table.texts("derivatives", 'a list such as ["angular_velocity_body by q"]')
+    found = []
+    for place, text in enumerate(texts or ()):
+        if text is None:
+            continue
+        try:
+            request = read_request(text)
+        except KernelError as error:
+            table.fault(str(error), "derivatives", place)
+            continue
+        if request.quantity not in quantities:
+            message = f"no quantity {shortened(request.quantity)}; "
+            table.fault(message + offer(request.quantity, quantities), "derivatives", place)
+        found.append(str(request))
+    return None if texts is None else tuple(dict.fromkeys(found))
 
 
 def _fault_of_name(name: str) -> str:

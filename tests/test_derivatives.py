@@ -10,13 +10,17 @@ from functools import cache
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from conftest import derived
 from numpy.testing import assert_allclose, assert_array_equal
 from witness import evaluate, mp
 
 import rigidsym as rs
-from rigidsym.errors import KernelError, QuantityError
+from rigidsym.cli import commands
+from rigidsym.errors import KernelError, QuantityError, SpecError
 from rigidsym.kernels.derivatives import read_request, read_requests
+from rigidsym.pipeline import product
+from rigidsym.spec import DerivationSpec, read_spec
 
 MODELS = ("ZXZ", "zyx", "rotation_vector", "modified_rodrigues", "quaternion")
 ALONE = ("z(phi) [a,b,c](beta)",)  # with parameters
@@ -210,3 +214,45 @@ def test_ruff_would_leave_the_modules_as_they_are(tmp_path, target):
             check=False,
         )
         assert done.returncode == 0, done.stdout + done.stderr
+
+
+FILE = """
+[rotation]
+sequence = "ZXZ"
+[output]
+quantities = ["angular_velocity_body"]
+kernels = ["numpy", "javascript"]
+note = ["tex"]
+derivatives = ["angular_velocity_body by q", "angular_velocity_body:q_dot:jvp"]
+"""
+
+
+def test_a_file_asks_for_them():
+    spec = read_spec(FILE, source="a.toml", name="a")
+    assert spec.derivatives == ("angular_velocity_body by q", "angular_velocity_body by q_dot jvp")
+    assert DerivationSpec.from_data(spec.to_data()) == spec
+    files = product(spec).files
+    assert "def angular_velocity_body_jvp_q_dot(" in files["a.py"]
+    assert "function angular_velocity_body_jacobian_q(q, q_dot)" in files["a.mjs"]
+
+
+def test_all_faults_of_a_file_are_named_at_once():
+    wrong = FILE.replace("angular_velocity_body by q", "angular_velocity_body of q")
+    wrong = wrong.replace("angular_velocity_body:q_dot", "rotation_matrix:q")
+    with pytest.raises(SpecError) as caught:
+        read_spec(wrong, source="a.toml", name="a")
+    assert "line 8: output.derivatives[0]: no derivative 'angular_velocity_body of q'" in str(
+        caught.value
+    )
+    assert "line 8: output.derivatives[1]: no quantity " in str(caught.value)
+
+
+def test_the_command_line_adds_to_a_file(tmp_path):
+    file = tmp_path / "a.toml"
+    file.write_text(FILE)
+    options = ["--derivative", "angular_velocity_body:q:vjp", "--out", str(tmp_path)]
+    done = CliRunner().invoke(commands, ["run", str(file), *options])
+    assert done.exit_code == 0, done.output
+    text = (tmp_path / "a" / "a.py").read_text()
+    for name in ("jacobian_q", "jvp_q_dot", "vjp_q"):
+        assert f'"angular_velocity_body_{name}",' in text
