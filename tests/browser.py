@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-_CHROMIUM = (
+CHROMIUM = (
     "chromium",
     "--headless",
     "--no-sandbox",
@@ -22,9 +22,8 @@ _CHROMIUM = (
     "--disable-dev-shm-usage",
     "--disable-background-networking",
     "--host-resolver-rules=MAP * ~NOTFOUND",
-    "--virtual-time-budget=1000000",
-    "--enable-logging=stderr",
 )
+_TO_THE_END = ("--virtual-time-budget=1000000", "--enable-logging=stderr", "--dump-dom")
 _CONSOLE = re.compile(r".*CONSOLE.*")
 _POLICY = re.compile(r'<meta http-equiv="Content-Security-Policy"[^>]*>')  # axe is a script
 _LOOK = """
@@ -121,7 +120,7 @@ def open_page(html: str, folder: Path) -> tuple[str, str]:
 
 def _dump(page: Path, folder: Path) -> tuple[str, str]:
     done = subprocess.run(
-        [*_CHROMIUM, f"--user-data-dir={folder / 'profile'}", "--dump-dom", page.as_uri()],
+        [*CHROMIUM, *_TO_THE_END, f"--user-data-dir={folder / 'profile'}", page.as_uri()],
         capture_output=True,
         text=True,
         check=True,

@@ -15,7 +15,7 @@ from rigidsym.notes.formula import markup
 from rigidsym.notes.notation import Notation
 from rigidsym.notes.scene import BODY, Arc, Names, Scene, scene_of
 from rigidsym.notes.sketch import best_view, drawn
-from rigidsym.notes.space import Vector, unit
+from rigidsym.notes.space import Camera, Vector, unit
 from rigidsym.notes.words import listed, words
 
 MOST_TURNS = 5  # more would be a tangle
@@ -29,12 +29,10 @@ def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
     None for any other, for more than MOST_TURNS, and for axes that are not numbers.
     """
     turns = model.turns or _about_the_vector(model)
-    if not 1 <= len(turns) <= MOST_TURNS:
-        return None
-    if not all(part.is_number for turn in turns for part in turn.direction):
+    if not _can_be_drawn(turns):
         return None
     axes = tuple(map(_components, turns))
-    angles, view = best_view(axes, tuple(map(_fixed_angle, turns)))
+    angles, view = _view(turns)
     between = _AXIS_OF_THE_VECTOR if not model.turns else None
     names = Names(
         angles=tuple(markup(turn.angle, notation) for turn in turns),
@@ -47,6 +45,20 @@ def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
         caption=_caption(scene, _between_in_words(turns)),
         description=tuple(chain.from_iterable((*s, " ") for s in _in_words(scene)))[:-1],
     )
+
+
+def view_of(model: RotationModel) -> tuple[tuple[float, ...], Camera] | None:
+    """The angles of the turns, in radians, and the camera of the figure; None where it has none."""
+    return _view(model.turns) if _can_be_drawn(model.turns) else None
+
+
+def _can_be_drawn(turns: Sequence[Turn]) -> bool:
+    are_numbers = (part.is_number for turn in turns for part in turn.direction)
+    return 1 <= len(turns) <= MOST_TURNS and all(are_numbers)
+
+
+def _view(turns: Sequence[Turn]) -> tuple[tuple[float, ...], Camera]:
+    return best_view(tuple(map(_components, turns)), tuple(map(_fixed_angle, turns)))
 
 
 def _about_the_vector(model: RotationModel) -> tuple[Turn, ...]:

@@ -64,11 +64,16 @@ def _head(stroke: Stroke) -> tuple[Point, ...]:
 def _labels(labels: Iterable[Label]) -> Iterator[str]:
     for label in labels:
         x, y = label.place
-        symbol = label.symbol.text.translate(_AS_IN_FORMULAS)
+        symbol = as_in_formulas(label.symbol.text)
         yield (
             f'<text class="{label.kind}" x="{_number(x * _SCALE)}" y="{_number(-y * _SCALE)}" '
-            f'dy=".32em">{_text(symbol)}</text>'
+            f'dy=".32em">{escape(symbol)}</text>'
         )
+
+
+def as_in_formulas(text: str) -> str:
+    """A symbol as the text of a label."""
+    return cleaned(text.translate(_AS_IN_FORMULAS))
 
 
 def _points(points: Iterable[Point]) -> str:

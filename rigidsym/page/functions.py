@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.lower import lower
 from rigidsym.kernels.targets import javascript
 from rigidsym.mechanics import kinematics
 from rigidsym.mechanics.derivation import Derivation, Markup, Quantity, Step
 from rigidsym.models.rotation import RotationModel
+from rigidsym.page.stage import has_turns
 
 SHOWN = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
 TURNS = "turns"
@@ -21,17 +23,37 @@ _WITH_A_MARGIN = "rate_matrix_space"
 _NAMELESS = Markup("", "")
 
 
-def functions_of(model: RotationModel) -> str:
-    """JavaScript functions of all that the page of a model evaluates."""
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Functions:
+    """The kernels of a page, and their text."""
+
+    steps: tuple[Step, ...]  # those that are shown
+    kernels: tuple[Kernel, ...]
+
+    @property
+    def source(self) -> str:
+        return javascript.bare(self.kernels)
+
+    @property
+    def arguments(self) -> dict[str, tuple[str, ...]]:
+        """The vectors that each function takes."""
+        return {k.name: tuple(argument.name for argument in k.arguments) for k in self.kernels}
+
+
+def functions_of(model: RotationModel) -> Functions:
+    """All that the page of a model evaluates."""
     derivation = kinematics.derive(model, (*SHOWN, _WITH_A_MARGIN))
     steps = (replace(step, number=0) for step in (*derivation.steps, *_more(derivation)))
     program = lower(replace(derivation, steps=tuple(steps)), javascript.RESERVED)
-    return javascript.bare([k for k in program.kernels if k.name != _WITH_A_MARGIN])
+    return Functions(
+        steps=tuple(step for step in derivation.steps if step.quantity.name in SHOWN),
+        kernels=tuple(k for k in program.kernels if k.name != _WITH_A_MARGIN),
+    )
 
 
 def _more(derivation: Derivation) -> Iterator[Step]:
     model = derivation.model
-    if model.turns:
+    if has_turns(model):
         rows = [[*turn.direction, turn.angle] for turn in model.turns]
         about = "axis and angle of each turn, a turn a row"
         yield _step(TURNS, sp.ImmutableMatrix(rows), about, ("q",), model)

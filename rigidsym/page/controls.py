@@ -1,0 +1,123 @@
+"""The sliders of a page: what can be moved, how far, and where it stands at first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import degrees, lcm, pi
+
+import sympy as sp
+
+from rigidsym.mechanics.derivation import Argument, Derivation, Markup
+from rigidsym.models.rotation import RotationModel
+from rigidsym.notes.words import unit_in_words
+
+_DEGREES = pi / 180
+_SECTIONS = {"q": "Coordinates", "q_dot": "Rates", "parameters": "Constants"}
+_NUMBERS = (0.9, 0.2, -0.4, -0.1, 0.9, 0.4, 0.4, -0.3, 0.8)  # by rows, not far from a rotation
+_RATES = (0.4, 0.25, 0.7)
+_ANGLE = 40.0  # degrees, where no figure says better
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Control:
+    """One slider, in the unit that is shown."""
+
+    kind: str  # the argument that it is part of: q, q_dot, parameters
+    place: int
+    symbol: Markup
+    name: str  # spoken: "phi"
+    unit: str  # "°", "rad/s"; "" for a pure number
+    low: float
+    high: float
+    step: float
+    start: float
+    factor: float = 1.0  # from the unit shown to the unit of the functions
+    period: float = 0.0  # after which all is as before; 0 where there is none
+
+    @property
+    def key(self) -> str:
+        return f"{self.kind}-{self.place}"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Group:
+    """The sliders of one argument."""
+
+    title: str
+    controls: tuple[Control, ...]
+
+
+def groups_of(derivation: Derivation, shown: dict[sp.Expr, float]) -> tuple[Group, ...]:
+    """The groups of sliders; `shown` are angles in radians that make a clear figure."""
+    model = derivation.model
+    made = {argument.name: argument for argument in derivation.arguments}
+    found = {
+        "q": _coordinates(made["q"], model, shown),
+        "q_dot": _rates(made["q_dot"]),
+        "parameters": _constants(made.get("parameters"), model),
+    }
+    return tuple(
+        Group(title=_SECTIONS[kind], controls=controls)
+        for kind, controls in ((kind, tuple(some)) for kind, some in found.items())
+        if controls
+    )
+
+
+def _coordinates(
+    argument: Argument, model: RotationModel, shown: dict[sp.Expr, float]
+) -> Iterator[Control]:
+    for place, coordinate in enumerate(model.coordinates):
+        period = period_of(coordinate, model)
+        angle = round(degrees(shown[coordinate])) if coordinate in shown else _ANGLE
+        start = angle if period else _NUMBERS[place % len(_NUMBERS)]
+        yield _control(argument, place, start, period, _reach(argument.units[place], model))
+
+
+def _reach(unit: str, model: RotationModel) -> float:
+    """How far a coordinate that is no angle goes: bound ones to one, a turn's vector to 2π."""
+    if unit == "rad":
+        return 6.5
+    return 1.0 if model.constraints or model.pullback else 3.0
+
+
+def _rates(argument: Argument) -> Iterator[Control]:
+    for place, unit in enumerate(argument.units):
+        start = _RATES[place % len(_RATES)]
+        yield _control(argument, place, start, 0.0, 3.0 if unit == "rad/s" else 2.0)
+
+
+def _constants(argument: Argument | None, model: RotationModel) -> Iterator[Control]:
+    for place, symbol in enumerate(model.constants if argument else ()):
+        period = period_of(symbol, model)
+        start = 30.0 if period else _NUMBERS[place % len(_NUMBERS)]
+        yield _control(argument, place, start, period, 1.0)
+
+
+def _control(
+    argument: Argument, place: int, start: float, period: float, reach: float
+) -> Control:
+    common = {
+        "kind": argument.name,
+        "place": place,
+        "symbol": argument.notation[place],
+        "name": argument.names[place].replace("_", " "),
+        "start": float(start),
+    }
+    if period:
+        half = round(degrees(period)) / 2
+        limits = {"low": -half, "high": half, "step": 1.0}
+        return Control(**common, **limits, unit="°", factor=_DEGREES, period=2 * half)
+    unit = unit_in_words(argument.units[place]) if argument.units[place] else ""
+    return Control(**common, low=-reach, high=reach, step=0.01, unit=unit)
+
+
+def period_of(symbol: sp.Expr, model: RotationModel) -> float:
+    """After how many radians R is as before; 0 where the symbol is no angle in R."""
+    matrix = model.matrix
+    within = [f for f in matrix.atoms(sp.sin, sp.cos) if f.has(symbol)]
+    outside = matrix.xreplace({f: sp.Dummy() for f in within})
+    slopes = [f.args[0].diff(symbol) for f in within]
+    if not within or outside.has(symbol) or not all(slope.is_Rational for slope in slopes):
+        return 0.0
+    return 2 * pi * lcm(*(int(slope.q) for slope in slopes))

@@ -1,0 +1,167 @@
+"""A derivation as one HTML file: the note, a figure that moves, and the functions behind it.
+
+Everything stands in the file: no request can leave it, and its script runs by the hash of its text.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any
+
+from rigidsym import resources
+from rigidsym.kernels.lower import MARGIN
+from rigidsym.mechanics.derivation import Derivation, Markup, Step
+from rigidsym.notes.document import Document, Equation
+from rigidsym.notes.html import escape, rendered
+from rigidsym.notes.mathml import mathml
+from rigidsym.notes.words import singular, unit_in_words
+from rigidsym.page.controls import Control, groups_of
+from rigidsym.page.copies import copies_of
+from rigidsym.page.functions import SHOWN, functions_of
+from rigidsym.page.printer import PagePrinter
+from rigidsym.page.stage import shown_angles, stage_of
+
+TEMPLATE = "page.html.jinja"
+SCRIPT = "page.mjs.jinja"
+MOST_BYTES = 150_000
+
+_LEFT_OUT = 120  # bytes that say so
+
+
+def print_page(derivation: Derivation, document: Document) -> str:
+    """The page of a derivation, whose note is given; the same input gives the same bytes.
+
+    It has at most MOST_BYTES: where the note is longer, its largest equations are left out.
+    """
+    page = _Page(derivation, document)
+    whole = page.text()
+    over = len(whole.encode()) - MOST_BYTES
+    return page.text(frozenset(page.largest(over))) if over > 0 else whole
+
+
+class _Page:
+    """One page, which can be printed with more or fewer equations."""
+
+    def __init__(self, derivation: Derivation, document: Document) -> None:
+        self.derivation = derivation
+        self.document = document
+        self.functions = functions_of(derivation.model)
+        self.groups = groups_of(derivation, shown_angles(derivation.model))
+        self.copies = copies_of(derivation, document)
+
+    def largest(self, over: int) -> Iterator[Equation]:
+        """Equations that take as many bytes together, the largest first; those shown live last."""
+        printer = PagePrinter(self.document, copied=self.copies)
+        blocks = (block for section in self.document.sections for block in section.blocks)
+        sizes = {b: self._size(b, printer) for b in blocks if isinstance(b, Equation)}
+        for equation in sorted(sizes, key=lambda e: (e.label in SHOWN, -sizes[e])):
+            if over > 0:
+                over -= sizes[equation] - _LEFT_OUT
+                yield equation
+
+    def _size(self, equation: Equation, printer: PagePrinter) -> int:
+        copied = json.dumps(self.copies.get(equation.label, {}))
+        return len((printer.forms(equation) + printer.tools(equation) + copied).encode())
+
+    def text(self, left_out: Collection[Equation] = ()) -> str:
+        printer = PagePrinter(self.document, copied=self.copies, left_out=left_out)
+        labels = {equation.label for equation in left_out}
+        script = self._script({k: copy for k, copy in self.copies.items() if k not in labels})
+        return rendered(
+            TEMPLATE,
+            printer,
+            policy=f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'",
+            script=script,
+            groups=[
+                {"title": group.title, "controls": [*map(_shown, group.controls)]}
+                for group in self.groups
+            ],
+            values=[_value(step) for step in self.functions.steps],
+            pole=self._pole(printer),
+            poles=[*self._messages(printer)],
+            stage=self._stage(),
+        )
+
+    def _script(self, copies: Mapping[str, Mapping[str, str]]) -> str:
+        """The script of the page; nothing in it can end its element."""
+        data = {
+            "stage": self._stage(),
+            "controls": [_data(c) for group in self.groups for c in group.controls],
+            "inputs": self.functions.arguments,
+            "poles": [*self._poles()],
+            "copies": copies,
+        }
+        written = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
+        text = resources.environment().get_template(SCRIPT).render(
+            kernels=self.functions.source,
+            names=", ".join(self.functions.arguments),
+            data=written,
+        )
+        return text.replace("</", "<\\/").replace("<!--", "<\\!--")
+
+    def _stage(self) -> dict[str, Any]:
+        model = self.derivation.model
+        shown = dict(stage_of(model, self.document.notation))
+        spoken = "angular velocity in the body"
+        return {**shown, "passive": model.passive, "spoken": spoken}
+
+    def _poles(self) -> Iterator[dict[str, Any]]:
+        """The places of the coordinates at which the rates fail, in radians."""
+        found = self.derivation.singularities
+        coordinates = self.derivation.model.coordinates
+        for k, point in enumerate(found.points if found else ()):
+            if point.coordinate in coordinates:
+                place = coordinates.index(point.coordinate)
+                yield {"id": f"pole-{k}", "place": place, "value": float(point.value)}
+
+    def _messages(self, printer: PagePrinter) -> Iterator[dict[str, str]]:
+        found = self.derivation.singularities
+        for k, point in enumerate(found.points if found else ()):
+            yield {"id": f"pole-{k}", "words": printer.words(singular(point, self.derivation))}
+
+    def _pole(self, printer: PagePrinter) -> str:
+        """How the margin is called, where there is one."""
+        kernel = next((k for k in self.functions.kernels if k.name == MARGIN), None)
+        return "" if kernel is None else escape(kernel.symbol)
+
+
+def _shown(control: Control) -> dict[str, str]:
+    """A slider as the template places it."""
+    unit = {"°": "degrees"}.get(control.unit, control.unit.replace("/s", " per second"))
+    return {
+        "key": control.key,
+        "symbol": _formula(control.symbol),
+        "name": escape(f"{control.name}{', in ' if unit else ''}{unit}"),
+        "unit": escape(control.unit),
+        "low": f"{control.low:g}",
+        "high": f"{control.high:g}",
+        "step": f"{control.step:g}",
+        "start": f"{control.start:g}",
+    }
+
+
+def _data(control: Control) -> dict[str, Any]:
+    """A slider as the script knows it."""
+    kept = ("kind", "place", "start", "factor", "period", "high")
+    return {name: getattr(control, name) for name in kept}
+
+
+def _value(step: Step) -> dict[str, Any]:
+    """A table of numbers, as the template places it."""
+    rows, columns = step.expression.shape
+    unit = step.quantity.unit
+    return {
+        "id": f"{step.quantity.name}-value",
+        "symbol": _formula(step.quantity.symbol),
+        "about": escape(step.quantity.about),
+        "unit": escape(unit_in_words(unit)) if unit else "",
+        "rows": range(rows),
+        "columns": range(columns),
+    }
+
+
+def _formula(symbol: Markup) -> str:
+    return mathml(symbol.latex, symbol.text)

@@ -1,0 +1,55 @@
+"""The note within a page: one form of each display, and buttons that copy it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+
+from rigidsym.notes.document import Document, Equation, Paragraph, Text
+from rigidsym.notes.html import Printer, escape
+from rigidsym.notes.layout import display
+from rigidsym.page.copies import LANGUAGES
+
+_ROOM = 39.5  # ems of a display; what is wider scrolls in a box of its own
+
+
+class PagePrinter(Printer):
+    """Blocks of a note, but for the equations in `left_out`; `copied` have buttons."""
+
+    def __init__(
+        self,
+        document: Document,
+        *,
+        copied: Collection[str],
+        left_out: Collection[Equation] = (),
+    ) -> None:
+        super().__init__(document)
+        self.copied = copied
+        self.left_out = left_out
+
+    def forms(self, equation: Equation) -> str:
+        if equation in self.left_out:
+            note = f"<code>{escape(self.document.name)}.html</code>"
+            return f'<p class="left-out">Too long for this page; the note, {note}, has it.</p>'
+        return self.display(equation, display(equation, self.document.notation, _ROOM), "display")
+
+    def tools(self, equation: Equation) -> str:
+        return "" if equation in self.left_out else self.buttons(equation)
+
+    def buttons(self, equation: Equation) -> str:
+        """A button a language, where there is something to copy."""
+        if equation.label not in self.copied:
+            return ""
+        made = "".join(
+            f'<button type="button" data-copy="{language}" data-of="{escape(equation.label)}" '
+            f'aria-label="Copy equation ({equation.number}) as {shown}">{shown}</button>'
+            for language, shown in LANGUAGES.items()
+        )
+        return f'<div class="copy"><span aria-hidden="true">Copy</span>{made}</div>'
+
+    def words(self, text: Text) -> str:
+        """A sentence, in the notation of the document."""
+        return self._block(Paragraph(tuple(self._renamed(text))))
+
+    def _renamed(self, text: Text) -> Iterator[object]:
+        manner = self.document.notation.manner
+        return (span if isinstance(span, str) else manner.symbol(span) for span in text)
