@@ -65,6 +65,15 @@ class Motion(Derivation):
         module = f"{self.name}.py" if with_kernels else None
         return note(self, module=module, manner=self.manner, conversions=converting)
 
+    def page(self, *, with_kernels: bool = True) -> str:
+        """One HTML file: the note, and a figure with sliders that moves, without network.
+
+        At most 150 kB: equations that are too long for that are left to the note.
+        """
+        from rigidsym.page.page import print_page
+
+        return print_page(self, self.note(with_kernels=with_kernels).document)
+
     def written(self, **choices: str) -> Motion:
         """The same in another notation: `rates`, `vectors`, `body`, `angular_velocity`.
 

@@ -151,6 +151,26 @@ def build(asked: tuple[str, ...], out: Path) -> None:
         click.echo(built(each, out))
 
 
+@commands.command()
+@click.argument("source", metavar="ROTATION|FILE")
+@in_notation
+@TEMPLATES
+@OUT
+def page(source: str, out: Path) -> None:
+    """Write a page for a browser: the note, and a figure with sliders that moves.
+
+    ROTATION is what `derive` takes, FILE what `run` takes. One file, DIR/NAME/NAME_page.html,
+    which loads nothing from anywhere.
+    """
+    from rigidsym.pipeline import page as printed
+    from rigidsym.spec import spec_of
+    from rigidsym.writing import write_text
+
+    for single in as_chosen(spec_of(source)).singles():
+        name, text = printed(single)
+        click.echo(write_text(out / single.name / name, text))
+
+
 @commands.command("list")
 def list_() -> None:
     """List rotations, quantities, targets and shipped derivations."""

@@ -17,8 +17,14 @@ from rigidsym.record import record
 from rigidsym.spec import DerivationSpec
 
 PDF = "pdf"  # made from the LaTeX, which is written beside it
+PAGE = "page"  # NAME_page.html: the note with a figure that moves
 
 _PRINTERS = {"tex": Note.latex, "html": Note.html, "md": Note.markdown, "ipynb": Note.notebook}
+
+
+def page_name(name: str) -> str:
+    """The file of a derivation's page."""
+    return f"{name}_{PAGE}.html"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -46,10 +52,7 @@ class Product:
 
 def product(spec: DerivationSpec) -> Product:
     """The product of a specification that names one rotation."""
-    (model,) = spec.models
-    motion = derive(model, only=spec.quantities, body=spec.body)
-    motion = replace(motion, name=spec.name, title=spec.title or motion.title)
-    motion = motion.written(**asdict(spec.manner))
+    motion = _motion(spec)
     conversions = motion.conversions if spec.conversions else None
     texts = _texts(motion, conversions, spec)
     return Product(
@@ -58,6 +61,19 @@ def product(spec: DerivationSpec) -> Product:
         files=dict(texts),
         wants_pdf=PDF in spec.note,
     )
+
+
+def page(spec: DerivationSpec) -> tuple[str, str]:
+    """Name and content of the page of a specification that names one rotation."""
+    motion = _motion(spec)
+    return page_name(spec.name), motion.page(with_kernels="numpy" in spec.kernels)
+
+
+def _motion(spec: DerivationSpec) -> Motion:
+    (model,) = spec.models
+    motion = derive(model, only=spec.quantities, body=spec.body)
+    motion = replace(motion, name=spec.name, title=spec.title or motion.title)
+    return motion.written(**asdict(spec.manner))
 
 
 def _texts(
@@ -72,5 +88,9 @@ def _texts(
     for ending, printed in _PRINTERS.items():
         if ending in spec.note or (ending == "tex" and PDF in spec.note):
             yield f"{spec.name}.{ending}", printed(note)
+    if PAGE in spec.note:
+        from rigidsym.page.page import print_page
+
+        yield page_name(spec.name), print_page(motion, note.document)
     data = record(motion, spec.to_data(), conversions)
     yield f"{spec.name}.json", json.dumps(data, indent=1, ensure_ascii=False) + "\n"

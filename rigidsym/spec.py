@@ -27,7 +27,7 @@ from rigidsym.rotation_table import KEYS, read_rotation, repeated
 from rigidsym.rotations import request_of, rotation_from
 from rigidsym.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
 
-NOTE_FORMATS = ("tex", "html", "md", "ipynb", "pdf")
+NOTE_FORMATS = ("tex", "html", "md", "ipynb", "page", "pdf")
 
 QUANTITIES = (*QUANTITY_NAMES, *ENERGY_QUANTITIES)
 _OUTPUT = {"quantities": QUANTITIES, "kernels": tuple(TARGETS), "note": NOTE_FORMATS}
@@ -149,6 +149,13 @@ def spec_for(
         rotation, names=angles, constants=constants, scalar_last=scalar_last, passive=passive
     )
     return DerivationSpec(name=model.name, models=(model,))
+
+
+def spec_of(source: str) -> DerivationSpec:
+    """The specification in a derivation file, by path or shipped name, or else of a rotation."""
+    if source in resources.names("derivations", ".toml") or Path(source).suffix == ".toml":
+        return read_file(source)
+    return spec_for(source)
 
 
 def read_file(file: str) -> DerivationSpec:

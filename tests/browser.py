@@ -94,7 +94,7 @@ def look_at(
             for html, width in pages
         ]
     ).replace("</", "<\\/")
-    axe = json.dumps(_axe()).replace("</", "<\\/")
+    axe = json.dumps(axe_source()).replace("</", "<\\/")
     harness = folder / "look.html"
     harness.write_text(
         f'<!DOCTYPE html><meta charset="utf-8"><body><script>const pages = {data};'
@@ -129,7 +129,7 @@ def _dump(page: Path, folder: Path) -> tuple[str, str]:
     return done.stdout, done.stderr
 
 
-def _axe() -> str:
+def axe_source() -> str:
     """The source of axe-core, which a package for Playwright carries; nothing of it is imported."""
     spec = find_spec("axe_core_python")
     assert spec is not None

@@ -7,6 +7,7 @@ import json
 import os
 import select
 import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,6 +16,13 @@ from typing import Any
 
 from browser import CHROMIUM
 
+_EXEC = """
+import fcntl, os, sys
+given = [fcntl.fcntl(int(n), fcntl.F_DUPFD, 10) for n in sys.argv[1:3]]  # clear of 3 and 4
+for there, number in zip(given, (3, 4)):
+    os.dup2(there, number)  # where Chromium speaks its protocol
+os.execvp(sys.argv[3], sys.argv[3:])
+"""
 _PATIENCE = 60.0  # seconds, for an answer that never comes
 
 
@@ -56,13 +64,7 @@ class Page:
 
     def open(self, path: Path, width: int, height: int = 900, **features: str) -> None:
         """Load a file at a size in pixels; features such as prefers_color_scheme="dark"."""
-        self.call(
-            "Emulation.setDeviceMetricsOverride",
-            width=width,
-            height=height,
-            deviceScaleFactor=1,
-            mobile=width < 600,
-        )
+        self.resize(width, height)
         media = [{"name": k.replace("_", "-"), "value": v} for k, v in features.items()]
         self.call("Emulation.setEmulatedMedia", features=media)
         self.events.clear()
@@ -70,6 +72,10 @@ class Page:
         while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
             self.events.append(self._next())
         self.call("Page.bringToFront")
+
+    def resize(self, width: int, height: int = 900) -> None:
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600}
+        self.call("Emulation.setDeviceMetricsOverride", **size)
 
     def run(self, script: str) -> Any:
         """The value of an expression in the page; a promise is waited for."""
@@ -95,9 +101,7 @@ class Page:
             "return [b.x + b.width / 2, b.y + b.height / 2]; })()"
         )
         for kind in ("mousePressed", "mouseReleased"):
-            self.call(
-                "Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1
-            )
+            self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
     def wait_for(self, script: str) -> None:
         """Until an expression is true in the page."""
@@ -131,8 +135,7 @@ def chromium(folder: Path) -> Iterator[Page]:
     (read_there, write), (read, write_there) = os.pipe(), os.pipe()
     command = [*CHROMIUM, "--remote-debugging-pipe", f"--user-data-dir={folder / 'profile'}"]
     run = subprocess.Popen(
-        # the protocol is spoken on descriptors 3 and 4
-        ["sh", "-c", f'exec "$@" 3<&{read_there} 4>&{write_there}', "sh", *command],
+        [sys.executable, "-c", _EXEC, str(read_there), str(write_there), *command],
         pass_fds=(read_there, write_there),
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,

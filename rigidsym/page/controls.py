@@ -12,7 +12,7 @@ from rigidsym.mechanics.derivation import Argument, Derivation, Markup
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.words import unit_in_words
 
-_DEGREES = pi / 180
+_DEGREE = pi / 180
 _SECTIONS = {"q": "Coordinates", "q_dot": "Rates", "parameters": "Constants"}
 _NUMBERS = (0.9, 0.2, -0.4, -0.1, 0.9, 0.4, 0.4, -0.3, 0.8)  # by rows, not far from a rotation
 _RATES = (0.4, 0.25, 0.7)
@@ -88,28 +88,31 @@ def _rates(argument: Argument) -> Iterator[Control]:
 
 
 def _constants(argument: Argument | None, model: RotationModel) -> Iterator[Control]:
-    for place, symbol in enumerate(model.constants if argument else ()):
+    if argument is None:
+        return
+    for place, symbol in enumerate(model.constants):
         period = period_of(symbol, model)
         start = 30.0 if period else _NUMBERS[place % len(_NUMBERS)]
         yield _control(argument, place, start, period, 1.0)
 
 
-def _control(
-    argument: Argument, place: int, start: float, period: float, reach: float
-) -> Control:
-    common = {
-        "kind": argument.name,
-        "place": place,
-        "symbol": argument.notation[place],
-        "name": argument.names[place].replace("_", " "),
-        "start": float(start),
-    }
-    if period:
-        half = round(degrees(period)) / 2
-        limits = {"low": -half, "high": half, "step": 1.0}
-        return Control(**common, **limits, unit="°", factor=_DEGREES, period=2 * half)
+def _control(argument: Argument, place: int, start: float, period: float, reach: float) -> Control:
+    """A slider from −reach to reach, or over a period."""
     unit = unit_in_words(argument.units[place]) if argument.units[place] else ""
-    return Control(**common, low=-reach, high=reach, step=0.01, unit=unit)
+    half = round(degrees(period)) / 2
+    return Control(
+        kind=argument.name,
+        place=place,
+        symbol=argument.notation[place],
+        name=argument.names[place].replace("_", " "),
+        unit="°" if period else unit,
+        low=-half if period else -reach,
+        high=half if period else reach,
+        step=1.0 if period else 0.01,
+        start=start,
+        factor=_DEGREE if period else 1.0,
+        period=2 * half,
+    )
 
 
 def period_of(symbol: sp.Expr, model: RotationModel) -> float:

@@ -20,9 +20,10 @@ def copies_of(derivation: Derivation, document: Document) -> Mapping[str, Mappin
     """label: language: text, for each numbered equation that a kernel evaluates."""
     program = lower(derivation, numpy.RESERVED)
     python = {kernel.name: python_of(kernel) for kernel in program.kernels}
-    latex = dict(_latex(document))
     return {
-        label: {"latex": latex[label], "python": python[label]} for label in latex if label in python
+        label: {"latex": text, "python": python[label]}
+        for label, text in _latex(document)
+        if label in python
     }
 
 

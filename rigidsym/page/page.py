@@ -79,8 +79,8 @@ class _Page:
                 {"title": group.title, "controls": [*map(_shown, group.controls)]}
                 for group in self.groups
             ],
-            values=[_value(step) for step in self.functions.steps],
-            pole=self._pole(printer),
+            values=[self._value(step) for step in self.functions.steps],
+            pole=self._pole(),
             poles=[*self._messages(printer)],
             stage=self._stage(),
         )
@@ -95,10 +95,14 @@ class _Page:
             "copies": copies,
         }
         written = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
-        text = resources.environment().get_template(SCRIPT).render(
-            kernels=self.functions.source,
-            names=", ".join(self.functions.arguments),
-            data=written,
+        text = (
+            resources.environment()
+            .get_template(SCRIPT)
+            .render(
+                kernels=self.functions.source,
+                names=", ".join(self.functions.arguments),
+                data=written,
+            )
         )
         return text.replace("</", "<\\/").replace("<!--", "<\\!--")
 
@@ -107,6 +111,19 @@ class _Page:
         shown = dict(stage_of(model, self.document.notation))
         spoken = "angular velocity in the body"
         return {**shown, "passive": model.passive, "spoken": spoken}
+
+    def _value(self, step: Step) -> dict[str, Any]:
+        """A table of numbers, as the template places it."""
+        quantity, manner = step.quantity, self.document.notation.manner
+        rows, columns = step.expression.shape
+        return {
+            "id": f"{quantity.name}-value",
+            "symbol": _formula(manner.symbol(quantity.symbol)),
+            "about": escape(manner.text(quantity.about)),
+            "unit": escape(unit_in_words(quantity.unit)) if quantity.unit else "",
+            "rows": range(rows),
+            "columns": range(columns),
+        }
 
     def _poles(self) -> Iterator[dict[str, Any]]:
         """The places of the coordinates at which the rates fail, in radians."""
@@ -122,7 +139,7 @@ class _Page:
         for k, point in enumerate(found.points if found else ()):
             yield {"id": f"pole-{k}", "words": printer.words(singular(point, self.derivation))}
 
-    def _pole(self, printer: PagePrinter) -> str:
+    def _pole(self) -> str:
         """How the margin is called, where there is one."""
         kernel = next((k for k in self.functions.kernels if k.name == MARGIN), None)
         return "" if kernel is None else escape(kernel.symbol)
@@ -147,20 +164,6 @@ def _data(control: Control) -> dict[str, Any]:
     """A slider as the script knows it."""
     kept = ("kind", "place", "start", "factor", "period", "high")
     return {name: getattr(control, name) for name in kept}
-
-
-def _value(step: Step) -> dict[str, Any]:
-    """A table of numbers, as the template places it."""
-    rows, columns = step.expression.shape
-    unit = step.quantity.unit
-    return {
-        "id": f"{step.quantity.name}-value",
-        "symbol": _formula(step.quantity.symbol),
-        "about": escape(step.quantity.about),
-        "unit": escape(unit_in_words(unit)) if unit else "",
-        "rows": range(rows),
-        "columns": range(columns),
-    }
 
 
 def _formula(symbol: Markup) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
+from rigidsym.mechanics.derivation import Markup
 from rigidsym.notes.document import Document, Equation, Paragraph, Text
 from rigidsym.notes.html import Printer, escape
 from rigidsym.notes.layout import display
@@ -48,8 +49,6 @@ class PagePrinter(Printer):
 
     def words(self, text: Text) -> str:
         """A sentence, in the notation of the document."""
-        return self._block(Paragraph(tuple(self._renamed(text))))
-
-    def _renamed(self, text: Text) -> Iterator[object]:
-        manner = self.document.notation.manner
-        return (span if isinstance(span, str) else manner.symbol(span) for span in text)
+        symbol = self.document.notation.manner.symbol
+        renamed = (symbol(span) if isinstance(span, Markup) else span for span in text)
+        return self._block(Paragraph(tuple(renamed)))

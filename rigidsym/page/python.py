@@ -20,7 +20,8 @@ _show = partial(infix, functions={name: name for name in FUNCTIONS})
 def python_of(kernel: Kernel) -> str:
     """Imports, what the function calls, and the function."""
     fitted = narrowed(kernel, _show, line=WIDTH - 4, output=WIDTH - 13)
-    parts = [f"from math import {', '.join(sorted(_imports(fitted)))}\n"] if _imports(fitted) else []
+    imports = ", ".join(sorted(_imports(fitted)))
+    parts = [f"from math import {imports}\n"] if imports else []
     parts += [_series(fitted)] if _orders(fitted) else []
     return "\n\n".join([*parts, "\n".join(_function(fitted))]) + "\n"
 
@@ -58,8 +59,8 @@ def _function(kernel: Kernel) -> Iterator[str]:
                 yield from _guard(name, value)
             case dict():
                 yield singular.entire_line(4, value, "_entire")
-            case Call(function, argument):
-                yield f"    {name} = {function}({argument.text})"
+            case Call(function, angle):
+                yield f"    {name} = {function}({angle.text})"
             case _:
                 yield assignment_lines(4, name, _show(value))
     yield _returned(kernel)

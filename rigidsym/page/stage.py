@@ -1,4 +1,4 @@
-"""What the live figure shows before anything is moved: the view of it, and the names of its lines."""
+"""The live figure before anything is moved: the view of it, and the names of its lines."""
 
 from __future__ import annotations
 
