@@ -108,7 +108,7 @@ def test_run_takes_a_path_and_the_name_of_a_shipped_file(tmp_path):
     call("run", "euler_zxz", "--out", "a", cwd=tmp_path)
     call("run", str(ROOT / "derivations" / "euler_zxz.toml"), "--out", "b", cwd=tmp_path)
     files = sorted((tmp_path / "a" / "euler_zxz").iterdir())
-    assert [f.suffix for f in files] == [".html", ".json", ".py", ".tex"]
+    assert [f.suffix for f in files] == [".html", ".json", ".py", ".tex", ".html"]
     for file in files:
         assert file.read_bytes() == (tmp_path / "b" / "euler_zxz" / file.name).read_bytes()
 
