@@ -45,6 +45,9 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
             about="NAME.h, NAME.c: C99; rigidsym build makes the Python module NAME_c.py",
             programs=("cc", "gcc", "clang"),
         ),
+        "numba": Target(
+            about="NAME_numba.py: a Python module that Numba compiles", package="numba"
+        ),
         "javascript": Target(
             about="NAME.mjs: an ES module without dependencies", programs=("node",)
         ),

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from math import pi
 from typing import Any
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
+from rigidsym.kernels.infix import horner
 from rigidsym.kernels.sine import reduction
 
 
@@ -57,21 +56,16 @@ class Precision:
             "least_word": f"{word - 2**found.turns:#x}u",
             "two_over_pi": self.literal(2 / pi),
             "parts": [float(part).hex() + self.suffix for part in found.parts],
-            "sine": self.horner(found.sine, "z"),
-            "cosine": self.horner(found.cosine, "z"),
+            "sine": horner(found.sine, "z", self.literal),
+            "cosine": horner(found.cosine, "z", self.literal),
             "nan": self.nan,
             "series": [self._series(order) for order in range(FIRST_SERIES, last + 1)],
         }
 
-    def horner(self, coefficients: Sequence[Fraction], name: str) -> str:
-        """A polynomial, the coefficients from the lowest power up."""
-        first, *others = (self.literal(float(c)) for c in coefficients)
-        return f"({first} + {name} * {self.horner(coefficients[1:], name)})" if others else first
-
     def _series(self, order: int) -> str:
         """values[3] = square < switch ? polynomial : (start - values[1]) / square;"""
         series = series_of(order)
-        near = self.horner(series.coefficients, "square")
+        near = horner(series.coefficients, "square", self.literal)
         start = self.literal(float(taylor(order - 2)[0]))
         switch = self.literal(float(series.switch))
         far = f"({start} - values[{order - 2}]) / square"
