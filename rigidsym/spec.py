@@ -17,6 +17,7 @@ from rigidsym.errors import Fault, KernelError, ModelError, SpecError
 from rigidsym.kernels.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.energy_quantities import ENERGY_QUANTITIES
+from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.mechanics.quantities import QUANTITY_NAMES
 from rigidsym.models.body import RigidBody
 from rigidsym.models.catalogue import EulerAngles
@@ -29,7 +30,7 @@ from rigidsym.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
 
 NOTE_FORMATS = ("tex", "html", "md", "ipynb", "page", "pdf")
 
-QUANTITIES = (*QUANTITY_NAMES, *ENERGY_QUANTITIES)
+QUANTITIES = (*QUANTITY_NAMES, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES)
 _OUTPUT = {"quantities": QUANTITIES, "kernels": tuple(TARGETS), "note": NOTE_FORMATS}
 _MORE_OUTPUT = ("conversions", "derivatives")
 _FILE = ("title", "rotation", "parameters", "body", "notation", "output")

@@ -30,7 +30,7 @@ BODIES = {
     "spherical": principal_moments(A, A, A),
     "six entries": general_inertia(),
 }
-ENERGY = tuple(ENERGY_QUANTITIES)
+ENERGY = ("inertia_tensor", *ENERGY_QUANTITIES)
 CENTRE = dynamicsymbols("X Y Z")
 MODELS = (
     *(name for name in PARAMETRISATIONS if name != "direction_cosines"),  # below, for one body

@@ -192,13 +192,13 @@ def test_a_specification_checks_itself():
             name="top",
             title="\n",
             models=(model, replace(model, passive=True)),
-            quantities=("mass",),
+            quantities=("weight",),
             kernels=(),
         )
     assert [str(fault) for fault in caught.value.faults] == [
         'kernels: the list is empty; expected a list of names such as ["numpy"]',
         "models: writes the folder euler_zxz_intrinsic, as entry 0 does",
-        f'quantities[0]: unknown name "mass"; known: {", ".join(QUANTITIES)}',
+        f'quantities[0]: unknown name "weight"; known: {", ".join(QUANTITIES)}',
         "title: an empty text; expected a title, or no such key",
     ]
     with pytest.raises(SpecError, match=r"name: numpy\.py would hide the Python module"):

@@ -23,6 +23,8 @@ _DOTS = (  # order of the derivative: suffix of the name, LaTeX accent, combinin
     ("_ddot", r"\ddot{{{}}}", "\u0308"),
 )
 _CENTRE = ("X", "Y", "Z")
+POINT = tuple(sp.Symbol(f"p_{axis}") for axis in "xyz")
+DIRECTION = tuple(sp.Symbol(f"n_{axis}") for axis in "xyz")
 _SPACE = tuple(sp.Symbol(f"Omega_{k}") for k in (1, 2, 3))
 _BODY = tuple(sp.Symbol(f"Omega_body_{k}") for k in (1, 2, 3))
 
@@ -39,7 +41,7 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
         _coordinates(model, 2, "q_ddot", "their second time derivatives"),
         _angular_velocity("space", _SPACE, r"\Omega_{}", "Ω{}"),
         _angular_velocity("body", _BODY, r"\Omega'_{}", "Ω′{}"),
-        *((_centre(0), _centre(1)) if body else ()),
+        *((_centre(0), _centre(1), *_of_lines()) if body else ()),
         *_parameters(model, body),
     )
     if body is not None:
@@ -85,6 +87,24 @@ def _centre(order: int) -> Argument:
         notation=tuple(_marked(name, accent, combining) for name in _CENTRE),
         units=(_per_second("m", order),) * 3,
         about=f"space components of the {('position', 'velocity')[order]} of the centre of mass",
+    )
+
+
+def _of_lines() -> tuple[Argument, ...]:
+    """A point and the direction of a line through it, in the axes of the body."""
+    about = "a point, in the axes of the body", "the direction of a line, of any length"
+    return tuple(
+        Argument(
+            name=name,
+            symbols=symbols,
+            names=tuple(symbol.name for symbol in symbols),
+            notation=tuple(_marked(symbol.name, "{}", "") for symbol in symbols),
+            units=(unit,) * 3,
+            about=words,
+        )
+        for name, symbols, unit, words in zip(
+            ("point", "direction"), (POINT, DIRECTION), ("m", ""), about, strict=True
+        )
     )
 
 

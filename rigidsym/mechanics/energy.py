@@ -7,8 +7,8 @@ energies are follow from these two.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -20,15 +20,19 @@ from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form, half_of_squares
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics import energy_claims as claims
-from rigidsym.mechanics import kinematics, momentum_forms, particles
+from rigidsym.mechanics import inertia, kinematics, momentum_forms, particles
 from rigidsym.mechanics.arguments import arguments_of
-from rigidsym.mechanics.derivation import Derivation, Proof, Step
+from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.energy_quantities import ENERGY_QUANTITIES
+from rigidsym.mechanics.inertia import Found
+from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import QUANTITY_NAMES
 from rigidsym.mechanics.values import Values
 from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel
+
+BODY_QUANTITIES = MappingProxyType({**INERTIA_QUANTITIES, **ENERGY_QUANTITIES})
 
 
 def derive(model: RotationModel, body: RigidBody, only: Collection[str] = ()) -> Derivation:
@@ -37,7 +41,7 @@ def derive(model: RotationModel, body: RigidBody, only: Collection[str] = ()) ->
     `only` names the quantities to derive; all there are where it is empty. Raises what
     `kinematics.derive` raises, and ModelError where a name stands for two things.
     """
-    known = (*QUANTITY_NAMES, *ENERGY_QUANTITIES)
+    known = (*QUANTITY_NAMES, *BODY_QUANTITIES)
     unknown = ", ".join(name for name in only if name not in known)
     if unknown:
         raise QuantityError(f"no quantity {unknown}; there are {', '.join(known)}")
@@ -45,18 +49,21 @@ def derive(model: RotationModel, body: RigidBody, only: Collection[str] = ()) ->
     turning = [name for name in only if name in QUANTITY_NAMES]
     motion = kinematics.derive(model, turning or ("rotation_matrix",) if only else ())
     steps = motion.steps if turning or not only else ()
-    found = _numbered(_Energy(Values(model, body)), only, first=len(steps) + 1)
+    found = _numbered(Values(model, body), only, first=len(steps) + 1)
     return replace(motion, arguments=arguments, body=body, steps=(*steps, *found))
 
 
-def _numbered(work: _Energy, only: Collection[str], *, first: int) -> Iterator[Step]:
-    wanted = [name for name in ENERGY_QUANTITIES if not only or name in only]
-    parameters = work.values.arguments.get("parameters")
+def _numbered(values: Values, only: Collection[str], *, first: int) -> Iterator[Step]:
+    """The steps of the body by itself, and of its energy and momentum."""
+    wanted = [name for name in BODY_QUANTITIES if not only or name in only]
+    parameters = values.arguments.get("parameters")
     constants = set(parameters.symbols) if parameters else set()
-    for number, name in enumerate(wanted, start=first):
-        found, quantity = _STEPS[name](work), ENERGY_QUANTITIES[name]
+    for number, (name, found) in enumerate(_found(values, wanted), start=first):
+        quantity = BODY_QUANTITIES[name]
         if not constants.isdisjoint(found.expression.free_symbols):
             quantity = replace(quantity, inputs=(*quantity.inputs, "parameters"))
+        if found.definition is not None:
+            quantity = replace(quantity, definition=found.definition)
         yield Step(
             number=number,
             quantity=quantity,
@@ -66,13 +73,10 @@ def _numbered(work: _Energy, only: Collection[str], *, first: int) -> Iterator[S
         )
 
 
-@dataclass(frozen=True, slots=True)
-class _Found:
-    """What one step comes to."""
-
-    expression: sp.ImmutableMatrix
-    because: str
-    proofs: tuple[Proof, ...]
+def _found(values: Values, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
+    yield from inertia.steps_of(values, [name for name in wanted if name in INERTIA_QUANTITIES])
+    work = _Energy(values)
+    yield from ((name, _STEPS[name](work)) for name in wanted if name in ENERGY_QUANTITIES)
 
 
 class _Energy:
@@ -110,25 +114,17 @@ class _Energy:
         """For many turns R x′ is not multiplied out; the proofs in Ω′ are as exact."""
         return not self.values.factors
 
-    def inertia_tensor(self) -> _Found:
-        residual = self.inertia - self.inertia.T
-        return _Found(
-            self.body.inertia,
-            "The inertia tensor of the body is given, about its centre of mass.",
-            (self.prove.vanishes(residual, claims.symmetric()),),
-        )
-
-    def translational_energy(self) -> _Found:
+    def translational_energy(self) -> Found:
         twice = self.ring.dot([(self.mass, self._square(self.velocity))])
         summed = self._of_particles(self._scalar(self._square(self.velocity)))
         residual = summed - self._scalar(twice)
-        return _Found(
+        return Found(
             sp.ImmutableMatrix([[self._translational]]),
             "All the mass moves with the centre of mass.",
             (self.prove.vanishes(residual, claims.translation_of_particles()),),
         )
 
-    def rotational_energy(self) -> _Found:
+    def rotational_energy(self) -> Found:
         values = self.values
         turned = values.R.T @ values.omega_space  # for Ωᵀ (R I′ Rᵀ) Ω, from the outside inwards
         in_space = turned.T @ self.inertia @ turned
@@ -138,13 +134,13 @@ class _Energy:
             summed = self._of_particles(self._scalar(self._square(velocity)))
             residual = summed - self._scalar(self._twice)
             proofs.append(self.prove.vanishes(residual, claims.rotation_of_particles()))
-        return _Found(
+        return Found(
             sp.ImmutableMatrix([[self._rotational]]),
             "The energy of the rotation is a quadratic form in the angular velocity.",
             tuple(proofs),
         )
 
-    def kinetic_energy(self) -> _Found:
+    def kinetic_energy(self) -> Found:
         twice = self._twice + self.ring.dot([(self.mass, self._square(self.velocity))])
         proofs = []
         if self._has_particles:
@@ -154,7 +150,7 @@ class _Energy:
             proofs.append(self.prove.vanishes(residual, claims.energy_splits()))
         else:
             proofs.append(self.prove.vanishes(self._cross_term(), claims.no_cross_term()))
-        return _Found(
+        return Found(
             sp.ImmutableMatrix([[self._translational + self._rotational]]),
             "The energy splits, since the velocities relative to the centre of mass add up to "
             "nothing.",
@@ -166,26 +162,26 @@ class _Energy:
         place = particles.vector(self.codec, particles.IN_BODY)
         return self._of_particles(self._crossed(self.values.argument("omega_body"), place))
 
-    def angular_momentum_centre(self) -> _Found:
+    def angular_momentum_centre(self) -> Found:
         momentum = self._crossed(self.centre, self.velocity).scale(self.mass)
         summed = self._of_particles(self._crossed(self.centre, self.velocity))
-        return _Found(
+        return Found(
             self.present.matrix(momentum),
             "It is that of the whole mass in the centre of mass.",
             (self.prove.vanishes(summed - momentum, claims.momentum_of_centre()),),
         )
 
-    def angular_momentum_rotation_body(self) -> _Found:
+    def angular_momentum_rotation_body(self) -> Found:
         values = self.values
         momentum = self.inertia @ values.omega_body
         dotted = momentum.T @ values.omega_body - self._scalar(self._twice)
-        return _Found(
+        return Found(
             momentum_forms.in_body(self.present, self.inertia, values),
             "The inertia tensor takes the angular velocity to the angular momentum.",
             (self.prove.vanishes(dotted, claims.twice_energy_body()),),
         )
 
-    def angular_momentum_rotation(self) -> _Found:
+    def angular_momentum_rotation(self) -> Found:
         values = self.values
         momentum = self._momentum
         turned = values.R @ (self.inertia @ (values.R.T @ values.omega_space))
@@ -197,13 +193,13 @@ class _Energy:
         if self._has_particles:
             summed = self._of_particles(self._crossed(*self._particle))
             proofs.append(self.prove.vanishes(summed - momentum, claims.momentum_of_particles()))
-        return _Found(
+        return Found(
             momentum_forms.in_space(self.present, self.inertia, values),
             "The components along the axes of space follow by the rotation.",
             tuple(proofs),
         )
 
-    def angular_momentum(self) -> _Found:
+    def angular_momentum(self) -> Found:
         of_centre = self._crossed(self.centre, self.velocity).scale(self.mass)
         if self._has_particles:
             place, velocity = self._particle
@@ -213,7 +209,7 @@ class _Energy:
         else:
             proof = self.prove.vanishes(self._cross_term(), claims.no_cross_term())
         rotation = momentum_forms.in_space(self.present, self.inertia, self.values)
-        return _Found(
+        return Found(
             sp.ImmutableMatrix(self.present.matrix(of_centre) + rotation),
             "The momentum splits as the energy does.",
             (proof,),
@@ -248,9 +244,8 @@ class _Energy:
         return self.values.column(cross(self.ring, first.entries, second.entries))
 
 
-_STEPS: Mapping[str, Callable[[_Energy], _Found]] = MappingProxyType(
+_STEPS: Mapping[str, Callable[[_Energy], Found]] = MappingProxyType(
     {
-        "inertia_tensor": _Energy.inertia_tensor,
         "translational_energy": _Energy.translational_energy,
         "rotational_energy": _Energy.rotational_energy,
         "kinetic_energy": _Energy.kinetic_energy,

@@ -39,10 +39,6 @@ def _equal(first: Markup, second: Markup) -> Markup:
     return fill("{0} = {1}", "{0} = {1}", first, second)
 
 
-def symmetric() -> Markup:
-    return _equal(transpose_of(INERTIA), INERTIA)
-
-
 def translation_of_particles() -> Markup:
     return _equal(half_sum(CENTRE_VELOCITY), TRANSLATIONAL)
 

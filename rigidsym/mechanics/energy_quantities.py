@@ -38,15 +38,6 @@ def half_product(omega: Markup, inertia: Markup) -> Markup:
 def _table() -> tuple[Quantity, ...]:
     return (
         Quantity(
-            name="inertia_tensor",
-            symbol=INERTIA,
-            definition=Markup("", ""),
-            about="inertia tensor about the centre of mass, body components",
-            unit="kg m^2",
-            inputs=(),
-            source=lecture("4", "section 1.2"),
-        ),
-        Quantity(
             name="translational_energy",
             symbol=TRANSLATIONAL,
             definition=fill(
@@ -136,4 +127,4 @@ def body_in_words(body: RigidBody | None) -> tuple[str, ...]:
 
 ENERGY_QUANTITIES: Mapping[str, Quantity] = MappingProxyType({q.name: q for q in _table()})
 MOMENTA = tuple(name for name in ENERGY_QUANTITIES if name.startswith("angular_momentum"))
-ENERGIES = tuple(name for name in ENERGY_QUANTITIES if name not in MOMENTA)  # and the tensor
+ENERGIES = tuple(name for name in ENERGY_QUANTITIES if name not in MOMENTA)

@@ -13,6 +13,7 @@ import sympy as sp
 from rigidsym.mechanics.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Step
 from rigidsym.mechanics.energy_quantities import ENERGIES, MOMENTA
+from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.models.rotation import Citation, Turn
 from rigidsym.models.so3 import hat
@@ -127,6 +128,7 @@ class _Composer:
             "The rates of the coordinates": self._rates(),
             "Where the rates fail": self._singularities(),
             "The angular acceleration": self._steps(_ACCELERATION),
+            "The body": self._steps(tuple(INERTIA_QUANTITIES)),
             "The kinetic energy": self._steps(ENERGIES),
             "The angular momentum": self._steps(MOMENTA),
             "What was proved": self._proofs(),

@@ -1,0 +1,128 @@
+"""Principal moments and axes in symbols, where the characteristic polynomial factors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from rigidsym.algebra.rational import Rationals
+
+_LAMBDA = sp.Symbol("lambda")
+_LETTERS = ("x", "y", "z")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Principal:
+    """Principal moments (3, 1) and axes (3, 3), and how they were found."""
+
+    moments: sp.ImmutableMatrix
+    axes: sp.ImmutableMatrix | None  # None where they would hold roots of roots
+    because: str
+
+
+def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
+    """The principal moments and axes; None where the characteristic polynomial does not factor."""
+    if inertia.is_diagonal():
+        return _diagonal(inertia)
+    for alone in (2, 1, 0):
+        others = [k for k in range(3) if k != alone]
+        if all(inertia[alone, k] == 0 for k in others):
+            return _one_axis_apart(inertia, alone)
+    return _factored(inertia)
+
+
+def _diagonal(inertia: sp.ImmutableMatrix) -> Principal:
+    moments = list(inertia.diagonal())
+    because = "The inertia tensor is diagonal: the axes of the description are principal axes"
+    equal = [k for k in range(3) if moments.count(moments[k]) > 1]
+    if len(equal) == 3:
+        because += ", and since all moments are equal, so is every axis through the centre"
+    elif equal:
+        (other,) = set(range(3)) - set(equal)
+        because += f", and since two moments are equal, so is every axis across {_LETTERS[other]}"
+    return Principal(
+        moments=sp.ImmutableMatrix(moments),
+        axes=sp.ImmutableMatrix(sp.eye(3)),
+        because=f"{because}.",
+    )
+
+
+def _one_axis_apart(inertia: sp.ImmutableMatrix, alone: int) -> Principal:
+    """One coordinate axis is principal; the other two are turned about it."""
+    i, j = (alone + 1) % 3, (alone + 2) % 3
+    p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
+    field = Rationals([p, q, r])
+    spread = field.write(field.read((p - q) ** 2 + 4 * r**2))
+    root = sp.sqrt(spread)
+    half = field.write(field.read((p + q) / 2))
+    apart = field.write(field.read(p - q))
+    cosine = sp.sqrt(sp.Rational(1, 2) + apart / (2 * root))
+    sine = r / (root * cosine)
+    moments, axes = [sp.S.Zero] * 3, sp.zeros(3)
+    moments[i], moments[j], moments[alone] = half + root / 2, half - root / 2, inertia[alone, alone]
+    axes[i, i], axes[j, i] = cosine, sine
+    axes[i, j], axes[j, j] = -sine, cosine
+    axes[alone, alone] = sp.S.One
+    return Principal(
+        moments=sp.ImmutableMatrix(moments),
+        axes=sp.ImmutableMatrix(axes),
+        because=f"The {_LETTERS[alone]}-axis is principal; across it a quadratic equation is left.",
+    )
+
+
+def _factored(inertia: sp.ImmutableMatrix) -> Principal | None:
+    """From the factors of the characteristic polynomial over the rational functions."""
+    polynomial = sp.expand(sp.det(inertia - _LAMBDA * sp.eye(3), method="berkowitz"))
+    factors = sp.factor_list(sp.together(polynomial), _LAMBDA)[1]
+    roots: list[sp.Expr] = []
+    for factor, times in factors:
+        degree = sp.degree(factor, _LAMBDA)
+        if degree == 1:
+            roots += [-factor.coeff(_LAMBDA, 0) / factor.coeff(_LAMBDA, 1)] * times
+        elif degree == 2:
+            a, b, c = (factor.coeff(_LAMBDA, k) for k in (2, 1, 0))
+            root = sp.sqrt(sp.expand(b**2 - 4 * a * c))
+            roots += [(-b + root) / (2 * a), (-b - root) / (2 * a)]
+        elif degree == 3:
+            return None
+    is_rational = not any(map(_has_root, roots))
+    repeated = len(set(roots)) < 3
+    because = "The characteristic polynomial factors"
+    if repeated:
+        because += "; two moments are equal, so that every axis across the third is principal"
+    axes = _axes(inertia, roots) if is_rational else None
+    return Principal(moments=sp.ImmutableMatrix(roots), axes=axes, because=f"{because}.")
+
+
+def _has_root(expression: sp.Expr) -> bool:
+    return any(not power.exp.is_Integer for power in expression.atoms(sp.Pow))
+
+
+def _axes(inertia: sp.ImmutableMatrix, roots: list[sp.Expr]) -> sp.ImmutableMatrix | None:
+    """Unit vectors; the roots are put so that the last is single."""
+    roots.sort(key=lambda root: (roots.count(root) == 1, str(root)))
+    last = _null_vector(inertia, roots[2])
+    if last is None:
+        return None
+    first = None if roots[0] == roots[1] else _null_vector(inertia, roots[0])
+    if first is None:
+        crossed = (last.cross(sp.eye(3)[:, k]).applyfunc(sp.cancel) for k in range(3))
+        first = next(vector for vector in crossed if any(vector))
+    first, last = _unit(first), _unit(last)
+    return sp.ImmutableMatrix(sp.Matrix.hstack(first, last.cross(first), last))
+
+
+def _null_vector(inertia: sp.ImmutableMatrix, root: sp.Expr) -> sp.Matrix | None:
+    """A column of the adjugate of I − λ 1, free of common factors; None where all vanish."""
+    adjugate = (inertia - root * sp.eye(3)).adjugate().applyfunc(sp.cancel)
+    for k in range(3):
+        column = sp.Matrix(adjugate[:, k])
+        if any(column):
+            lead = next(entry for entry in column if entry != 0)
+            return sp.Matrix((column / lead).applyfunc(sp.cancel))
+    return None
+
+
+def _unit(vector: sp.Matrix) -> sp.Matrix:
+    return vector / sp.sqrt(sp.factor(sp.cancel(vector.dot(vector))))
