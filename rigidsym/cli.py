@@ -288,6 +288,44 @@ def inertia(file: Path, as_json: bool, **options: Any) -> None:
     click.echo(json.dumps(found.record(), indent=1) if as_json else found.text(counted))
 
 
+@commands.command("eval")
+@click.argument("rotation")
+@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option(
+    "--quantity",
+    "quantities",
+    multiple=True,
+    default=("angular_velocity_body",),
+    show_default=True,
+    metavar="NAME",
+    help="What to evaluate; once for each.",
+)
+@click.option(
+    "--out",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="RESULT",
+    help="NPY, Parquet, or else text with commas, by its ending.",
+)
+@click.option("--columns", metavar="NAME,...", help="Names of the columns of FILE, in order.")
+@click.option("--given", multiple=True, metavar="NAME=NUMBER", help="An input without a column.")
+@click.option("--degrees", is_flag=True, help="Angles and rates in degrees, read and written.")
+@click.option("--threads", type=click.IntRange(1), default=1, show_default=True)
+@click.option("--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster.")
+def evaluate(rotation: str, file: Path, out: Path, **options: Any) -> None:
+    """Evaluate a quantity of ROTATION for every row of FILE, whatever its length.
+
+    ROTATION is what `derive` takes, or a derivation file. FILE is NPY, Parquet, or text with one
+    row a line; its columns are found by their names (phi, theta, psi, phi_dot, ...) or, without
+    names, are the inputs in their order. Interrupted, the same command goes on where it stopped.
+    """
+    from rigidsym.evaluation.command import evaluated
+
+    made = evaluated(rotation, file, out, **options)
+    resumed = f", {made.resumed} of them by an earlier run" if made.resumed else ""
+    click.echo(f"{made.path}: {made.rows} rows{resumed}; {', '.join(made.columns)}")
+
+
 def _read_all(files: Iterable[str]) -> list[DerivationSpec]:
     """Read every file; faults of all files are raised together."""
     from rigidsym.spec import read_file

@@ -114,6 +114,10 @@ class ToolFailed(RigidsymError):
     """A program outside Python that ran and failed; the message holds the end of its log."""
 
 
+class DataError(RigidsymError):
+    """A file of numbers that does not hold what was asked of it; the message says where."""
+
+
 class KernelError(RigidsymError):
     """A kernel that cannot be made: no such target, or a function that no target can print."""
 

@@ -1,0 +1,61 @@
+"""How far a result has come: marks beside its draft, so that it can be taken up again."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import asdict, dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from rigidsym.evaluation.work import Work
+from rigidsym.rows.sinks import draft_of
+from rigidsym.writing import write_text
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Marks:
+    """Places up to which all is done."""
+
+    source: int = 0  # in the file that is read, by its own measure
+    sink: int = 0  # in the draft
+    rows: int = 0
+
+
+class Draft:
+    """The marks of one result; they hold for one input and one piece of work alone."""
+
+    def __init__(self, path: Path, asked: str) -> None:
+        self._asked = asked
+        self._rows = draft_of(path)
+        self._marks = self._rows.with_name(f"{self._rows.name}.json")
+
+    def marks(self) -> Marks:
+        """Where to go on; from the beginning where there is no draft, or one of other work."""
+        if not self._marks.is_file() or not self._rows.exists():
+            return Marks()
+        kept = json.loads(self._marks.read_text(encoding="utf-8"))
+        return Marks(**kept["marks"]) if kept["asked"] == self._asked else Marks()
+
+    def save(self, marks: Marks) -> None:
+        """To be called when the rows are in the draft."""
+        content = {"asked": self._asked, "marks": asdict(marks)}
+        write_text(self._marks, json.dumps(content, indent=1) + "\n")
+
+    def forget(self) -> None:
+        self._marks.unlink(missing_ok=True)
+
+    def remove(self) -> None:
+        """Leave nothing behind."""
+        self.forget()
+        if self._rows.is_dir():
+            shutil.rmtree(self._rows)
+        self._rows.unlink(missing_ok=True)
+
+
+def asked_of(path: Path, work: Work) -> str:
+    """What tells one piece of work from another: the file as it is now, and all that is done."""
+    stat = path.stat()
+    said = (str(path.resolve()), stat.st_size, stat.st_mtime_ns, work.calls, work.inputs)
+    source = sorted(work.kernels.files.items())
+    return sha256(repr((*said, work.columns, source)).encode()).hexdigest()

@@ -1,0 +1,129 @@
+"""A generated function over a file of any length, in bounded memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rigidsym.api import Motion
+from rigidsym.errors import DataError
+from rigidsym.evaluation.draft import Draft, Marks, asked_of
+from rigidsym.evaluation.inputs import inputs_of
+from rigidsym.evaluation.outputs import columns_of
+from rigidsym.evaluation.work import Work
+from rigidsym.progress import Progress
+from rigidsym.rows.piece import ROWS, Piece, Rows, Table
+from rigidsym.rows.sinks import sink_for
+from rigidsym.rows.sources import rows_of
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Evaluated:
+    """What was written."""
+
+    path: Path
+    rows: int
+    resumed: int  # rows that an earlier run had done
+    columns: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Evaluation:
+    """One file to be read, what is computed of each row, and the file to be written."""
+
+    source: Path
+    rows: Rows
+    work: Work
+    path: Path
+    piece: int = ROWS  # rows in memory at once
+    scheduler: str | None = None
+
+    def run(self, progress: Progress | None = None) -> Evaluated:
+        """Go through the file, from where an earlier run of the same stopped.
+
+        Rows go to a draft beside the result, PATH.part, which becomes the result when all are
+        there. Raises DataError, and then leaves no draft, for rows that are no numbers.
+        """
+        draft = Draft(self.path, asked_of(self.source, self.work))
+        marks = draft.marks()
+        begun = marks.rows
+        try:
+            marks = self._filled(draft, marks, progress)
+        except DataError:
+            draft.remove()
+            raise
+        names = tuple(map(str, self.work.columns))
+        return Evaluated(path=self.path, rows=marks.rows, resumed=begun, columns=names)
+
+    def _filled(self, draft: Draft, marks: Marks, progress: Progress | None) -> Marks:
+        names = list(map(str, self.work.columns))
+        sink = sink_for(self.path, names, self.rows.dtype, marks.sink)
+        try:
+            pieces = self.rows.pieces(self.work.inputs.columns, marks.source, self.piece)
+            for piece, table in self._computed(pieces):
+                place = sink.append(table)
+                marks = Marks(source=piece.end, sink=place, rows=marks.rows + len(table))
+                draft.save(marks)
+                if progress is not None:
+                    progress(piece.share)
+            sink.finish(marks.rows)
+        finally:
+            sink.close()
+        draft.forget()
+        return marks
+
+    def _computed(self, pieces: Iterable[Piece]) -> Iterator[tuple[Piece, Table]]:
+        if self.scheduler is None:
+            return ((piece, self.work.of(piece.table)) for piece in pieces)
+        from rigidsym.evaluation.cluster import on_cluster
+
+        return on_cluster(self.scheduler, self.work, pieces)
+
+
+def evaluation(
+    motion: Motion,
+    quantities: Sequence[str],
+    source: Path,
+    path: Path,
+    *,
+    columns: Sequence[str] | None = None,
+    given: Mapping[str, float] | None = None,
+    degrees: bool = False,
+    threads: int = 1,
+    target: str = "numpy",
+    piece: int = ROWS,
+    scheduler: str | None = None,
+) -> Evaluation:
+    """The quantities of a motion for each row of a file: NPY, Parquet, or text with separators.
+
+    Columns are found by their names, or by `columns`; without either they are the arguments in
+    the order of the functions. `given` has numbers for arguments that are in no column.
+    `degrees`: angles and their rates are in degrees, in the file and in the result.
+
+    Raises DataError for a file or columns that do not fit, and QuantityError.
+    """
+    rows = rows_of(source)
+    if columns is not None and len(columns) != rows.width:
+        raise DataError(f"{source}: {rows.width} columns, but {len(columns)} names")
+    if path.resolve() == source.resolve():
+        raise DataError(f"{path}: the result would take the place of what is read")
+    chosen = motion.select(quantities)
+    inputs = inputs_of(
+        chosen,
+        quantities,
+        columns or rows.names,
+        rows.width,
+        given=given or {},
+        degrees=degrees,
+    )
+    work = Work(
+        kernels=chosen.kernels(target),
+        calls=tuple((name, chosen.step(name).quantity.inputs) for name in quantities),
+        inputs=inputs,
+        columns=columns_of(chosen, quantities, degrees=degrees),
+        threads=threads,
+    )
+    return Evaluation(
+        source=source, rows=rows, work=work, path=path, piece=piece, scheduler=scheduler
+    )

@@ -1,0 +1,41 @@
+"""What is computed of each piece: whole in itself, so that it can be sent to another machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from types import ModuleType
+
+import numpy as np
+
+from rigidsym.evaluation.inputs import Inputs
+from rigidsym.evaluation.outputs import Column, in_units
+from rigidsym.kernels.module import KernelModule
+from rigidsym.rows.piece import Table
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Work:
+    """Functions of a generated module on rows of numbers."""
+
+    kernels: KernelModule
+    calls: tuple[tuple[str, tuple[str, ...]], ...]  # functions, with the names of their arrays
+    inputs: Inputs
+    columns: tuple[Column, ...]  # of the result
+    threads: int = 1
+
+    def of(self, table: Table) -> Table:
+        """The results, (rows, columns), of float32 where the rows are."""
+        kernels = self.kernels
+        module = _loaded(kernels.name, kernels.target, tuple(kernels.files.items()))
+        found = []
+        for function, names in self.calls:
+            arguments = [self.inputs.arguments[name].of(table) for name in names]
+            values = getattr(module, function)(*arguments, threads=self.threads)
+            found.append(values.reshape(len(table), -1))
+        return in_units(self.columns, np.concatenate(found, axis=1))
+
+
+@lru_cache(maxsize=4)
+def _loaded(name: str, target: str, files: tuple[tuple[str, str], ...]) -> ModuleType:
+    return KernelModule(name=name, target=target, files=dict(files)).load()

@@ -1,0 +1,16 @@
+"""Names of columns, however they are written: `Roll [deg]`, `roll`, `ROLL` are one."""
+
+from __future__ import annotations
+
+import re
+
+_UNIT = re.compile(r"[\[(].*?[\])]")
+_GREEK = str.maketrans(
+    {"φ": "phi", "θ": "theta", "ψ": "psi", "α": "alpha", "β": "beta", "γ": "gamma", "ω": "omega"}
+)
+
+
+def plain(name: str) -> str:
+    """A name without its unit, quotes, case, spaces, hyphens and underscores."""
+    bare = _UNIT.sub("", name).strip().strip("\"'").translate(_GREEK).lower()
+    return bare.replace("_", "").replace(" ", "").replace("-", "")
