@@ -1,0 +1,296 @@
+"""`rigidsym eval`: files of any length in bounded memory, resumed where they stopped."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+from scipy.spatial.transform import Rotation
+
+import rigidsym as rs
+from rigidsym.errors import DataError
+from rigidsym.evaluation.evaluate import evaluation
+from rigidsym.rows.sources import rows_of
+
+NAMES = ("phi", "theta", "psi", "phi_dot", "theta_dot", "psi_dot")
+COUNT = 1000
+VELOCITY = ("angular_velocity_body",)
+
+
+def _command(*arguments: object) -> list[str]:
+    program = "from rigidsym.cli import main; main()"
+    return [sys.executable, "-c", program, "eval", *map(str, arguments)]
+
+
+def _run(*arguments: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(_command(*arguments), capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def motion() -> rs.Motion:
+    return rs.derive(rs.EulerAngles("ZXZ"))
+
+
+@pytest.fixture(scope="module")
+def table() -> np.ndarray:
+    return np.random.default_rng(7).uniform(-3, 3, (COUNT, 6))
+
+
+@pytest.fixture(scope="module")
+def expected(motion, table):
+    return motion.kernels().load().angular_velocity_body(table[:, :3], table[:, 3:])
+
+
+def _as_npy(path: Path, table: np.ndarray) -> None:
+    np.save(path, table)
+
+
+def _as_text(path: Path, table: np.ndarray) -> None:
+    lines = [",".join(map(repr, row)) for row in table.tolist()]
+    path.write_text("\n".join([",".join(NAMES), *lines]) + "\n", encoding="utf-8")
+
+
+def _as_parquet(path: Path, table: np.ndarray) -> None:
+    import pyarrow
+    from pyarrow import parquet
+
+    columns = dict(zip(NAMES, table.T, strict=True))
+    parquet.write_table(pyarrow.table(columns), path, row_group_size=300)
+
+
+WRITERS = {".npy": _as_npy, ".csv": _as_text, ".parquet": _as_parquet}
+
+
+def _read(path: Path) -> np.ndarray:
+    rows = rows_of(path)
+    return np.concatenate([p.table for p in rows.pieces(range(rows.width))])
+
+
+@pytest.mark.parametrize("target", WRITERS)
+@pytest.mark.parametrize("source", WRITERS)
+def test_each_kind_of_file_to_each(motion, table, expected, tmp_path, source, target):
+    given, result = tmp_path / f"given{source}", tmp_path / f"result{target}"
+    WRITERS[source](given, table)
+    made = evaluation(motion, VELOCITY, given, result, piece=137).run()
+    assert made.rows == COUNT
+    assert_array_equal(_read(result), expected)
+    assert sorted(tmp_path.iterdir()) == sorted([given, result])  # no draft, no marks
+
+
+@pytest.mark.parametrize("target", WRITERS)
+def test_single_precision_is_kept(motion, table, tmp_path, target):
+    single = table.astype(np.float32)
+    np.save(tmp_path / "given.npy", single)
+    result = tmp_path / f"result{target}"
+    evaluation(motion, VELOCITY, tmp_path / "given.npy", result).run()
+    kernel = motion.kernels().load().angular_velocity_body
+    values = kernel(single[:, :3], single[:, 3:])
+    assert values.dtype == np.float32
+    assert_array_equal(_read(result).astype(np.float32), values)
+
+
+def test_columns_are_found_by_names_with_units_in_any_order(tmp_path):
+    text = "t;Yaw [deg];pitch[deg];ROLL (deg);yaw rate;d_pitch;roll_dot\n5;90;0;0;0;0;10\n"
+    (tmp_path / "log.csv").write_text(text, encoding="utf-8")
+    result = tmp_path / "rates.csv"
+    done = _run("z(yaw) y(pitch) x(roll)", tmp_path / "log.csv", "--out", result, "--degrees")
+    assert done.returncode == 0, done.stderr
+    head, line = result.read_text(encoding="utf-8").splitlines()
+    assert head.startswith("angular_velocity_body_1 [deg/s],")
+    assert np.allclose([float(x) for x in line.split(",")], [10, 0, 0])
+
+
+def test_matrices_agree_with_scipy(motion, table, tmp_path):
+    np.save(tmp_path / "angles.npy", table[:, :3])
+    result = tmp_path / "matrices.npy"
+    evaluation(motion, ("rotation_matrix",), tmp_path / "angles.npy", result).run()
+    theirs = Rotation.from_euler("ZXZ", table[:, :3]).as_matrix().reshape(-1, 9)
+    assert np.abs(np.load(result) - theirs).max() < 1e-14
+
+
+def test_rates_are_named_after_the_coordinates(motion, table, tmp_path):
+    np.save(tmp_path / "given.npy", table)
+    name = "rates_from_angular_velocity_body"
+    work = evaluation(motion, (name,), tmp_path / "given.npy", tmp_path / "r.csv", degrees=True)
+    assert work.run().columns == ("phi_dot [deg/s]", "theta_dot [deg/s]", "psi_dot [deg/s]")
+
+
+def test_constants_are_given_as_numbers(table, tmp_path):
+    motion = rs.derive("z(phi) x(alpha0)", only=VELOCITY)
+    np.save(tmp_path / "given.npy", table[:, :2])
+    result = tmp_path / "result.npy"
+    evaluation(motion, VELOCITY, tmp_path / "given.npy", result, given={"alpha0": 0.3}).run()
+    kernel = motion.kernels().load().angular_velocity_body
+    assert_array_equal(np.load(result), kernel(table[:, :1], table[:, 1:2], [0.3]))
+
+
+class _Stopped(Exception):
+    pass
+
+
+@pytest.mark.parametrize("target", WRITERS)
+@pytest.mark.parametrize("source", WRITERS)
+def test_stopped_work_goes_on_where_it_was(motion, table, expected, tmp_path, source, target):
+    given, result = tmp_path / f"given{source}", tmp_path / f"result{target}"
+    WRITERS[source](given, table)
+    work = evaluation(motion, VELOCITY, given, result, piece=100)
+
+    def stop(share: float) -> None:
+        if share > 0.5:
+            raise _Stopped
+
+    with pytest.raises(_Stopped):
+        work.run(stop)
+    assert not result.exists()
+    made = evaluation(motion, VELOCITY, given, result, piece=100).run()
+    assert 400 < made.resumed < COUNT
+    assert made.rows == COUNT
+    assert_array_equal(_read(result), expected)
+
+
+def test_rows_beyond_the_marks_are_written_anew(motion, table, expected, tmp_path):
+    """As after a kill between the rows and their marks."""
+    np.save(tmp_path / "given.npy", table)
+    result = tmp_path / "result.npy"
+
+    def stop(share: float) -> None:
+        if share > 0.5:
+            raise _Stopped
+
+    with pytest.raises(_Stopped):
+        evaluation(motion, VELOCITY, tmp_path / "given.npy", result, piece=100).run(stop)
+    with (tmp_path / "result.npy.part").open("ab") as draft:
+        draft.write(b"half a row")
+    evaluation(motion, VELOCITY, tmp_path / "given.npy", result, piece=100).run()
+    assert_array_equal(np.load(result), expected)
+
+
+def test_a_draft_of_other_work_is_not_taken_up(motion, table, tmp_path):
+    np.save(tmp_path / "given.npy", table)
+    result = tmp_path / "result.npy"
+
+    def stop(_: float) -> None:
+        raise _Stopped
+
+    with pytest.raises(_Stopped):
+        evaluation(motion, VELOCITY, tmp_path / "given.npy", result, piece=100).run(stop)
+    other = ("angular_velocity_space",)
+    made = evaluation(motion, other, tmp_path / "given.npy", result, piece=100).run()
+    kernel = motion.kernels().load().angular_velocity_space
+    assert made.resumed == 0
+    assert_array_equal(np.load(result), kernel(table[:, :3], table[:, 3:]))
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -9)])
+def test_an_interrupted_command_resumes(tmp_path, number, code):
+    count = 600_000
+    angles = np.linspace(0, 1, 6 * count).reshape(count, 6)
+    np.save(tmp_path / "given.npy", angles)
+    result = tmp_path / "result.csv"  # slow to write, so that there is time to interrupt it
+    command = _command("ZXZ", tmp_path / "given.npy", "--out", result)
+    marks = tmp_path / "result.csv.part.json"
+    with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        while not marks.exists() and process.poll() is None:
+            pass
+        os.kill(process.pid, number)
+        process.communicate()
+    assert process.returncode == code
+    assert not result.exists()
+    done = json.loads(marks.read_text(encoding="utf-8"))["marks"]["rows"]
+    assert 0 < done < count
+    again = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert f"{count} rows, " in again.stdout
+    assert "by an earlier run" in again.stdout
+    with result.open(encoding="utf-8") as file:
+        assert sum(1 for _ in file) == count + 1
+
+
+def test_memory_does_not_grow_with_the_file(tmp_path):
+    peaks = []
+    for count in (100_000, 2_000_000):
+        np.save(tmp_path / "given.npy", np.zeros((count, 6)))
+        program = (
+            "import resource, sys\n"
+            "from rigidsym.evaluation.command import evaluated\n"
+            "from pathlib import Path\n"
+            "evaluated('ZXZ', Path(sys.argv[1]), Path(sys.argv[2]), columns=None, given=(),\n"
+            "    quantities=('angular_velocity_body',), degrees=False, threads=1, scheduler=None)\n"
+            "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)\n"
+        )
+        files = map(str, (tmp_path / "given.npy", tmp_path / "result.npy"))
+        done = subprocess.run(
+            [sys.executable, "-c", program, *files], capture_output=True, text=True, check=True
+        )
+        peaks.append(int(done.stdout) / 1024)
+    assert peaks[1] - peaks[0] < 40  # MB, where the larger file has 96 MB
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("phi,theta,psi,phi_dot,theta_dot,psi_dot\n1,2,3,4,5,6\n1,2,x,4,5,6\n", "line 3: field 3"),
+        ("phi,theta,psi,phi_dot,theta_dot,psi_dot\n1,2,3\n", "line 2: 3 fields, expected 6"),
+        ("phi,theta,psi\n1,2,3\n", "no column phi_dot, theta_dot, psi_dot among phi, theta, psi"),
+        ("1,2,3\n", "3 columns without names: expected 6"),
+        ("\n\n", "no rows"),
+    ],
+)
+def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
+    (tmp_path / "log.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(DataError, match=message):
+        evaluation(motion, VELOCITY, tmp_path / "log.csv", tmp_path / "result.npy").run()
+    assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
+
+
+def test_a_fault_is_exit_code_1_and_leaves_nothing(tmp_path):
+    (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
+    done = _run("ZXZ", tmp_path / "log.csv", "--out", tmp_path / "result.npy")
+    assert done.returncode == 1
+    assert done.stderr.startswith("rigidsym: 3 columns without names")
+    assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
+
+
+def test_what_is_no_table_of_numbers_is_refused(tmp_path):
+    np.save(tmp_path / "words.npy", np.array(["a", "b"]))
+    np.save(tmp_path / "flat.npy", np.zeros(3))
+    (tmp_path / "broken.npy").write_bytes(b"nothing")
+    (tmp_path / "broken.parquet").write_bytes(b"nothing")
+    for path in sorted(tmp_path.iterdir()):
+        with pytest.raises(DataError, match=path.name):
+            rows_of(path)
+
+
+def test_the_result_does_not_replace_what_is_read(motion, table, tmp_path):
+    np.save(tmp_path / "given.npy", table)
+    with pytest.raises(DataError, match="what is read"):
+        evaluation(motion, VELOCITY, tmp_path / "given.npy", tmp_path / "given.npy")
+
+
+def test_unknown_numbers_are_refused(motion, table, tmp_path):
+    np.save(tmp_path / "given.npy", table)
+    with pytest.raises(DataError, match="alpha is no input here"):
+        evaluation(
+            motion, VELOCITY, tmp_path / "given.npy", tmp_path / "r.npy", given={"alpha": 1.0}
+        )
+
+
+def test_a_cluster_gives_the_same(motion, table, expected, tmp_path):
+    from distributed import LocalCluster
+
+    np.save(tmp_path / "given.npy", table)
+    result = tmp_path / "result.npy"
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        evaluation(
+            motion, VELOCITY, tmp_path / "given.npy", result, piece=50, scheduler=address
+        ).run()
+    assert_array_equal(np.load(result), expected)
