@@ -1,0 +1,161 @@
+"""Bounds on the rounding error of kernels, from their own operations: static forward analysis.
+
+Every value of a kernel gets a bound on its size and one on its error in units of eps, for inputs
+that are exact as given: angles, of which only sines and cosines are taken, of any size, and other
+inputs of at most one. An operation rounds by half an eps of what it gives and passes on the errors
+of what it takes (Higham, Accuracy and Stability of Numerical Algorithms, chapter 3); terms in eps²
+are covered by rounding the result up. Where a kernel divides, there is no such bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import reduce
+from math import ceil, factorial
+
+from rigidsym.algebra.series import FIRST_SERIES, series_of
+from rigidsym.kernels.ir import (
+    Call,
+    Expression,
+    Kernel,
+    Name,
+    Negative,
+    Number,
+    Product,
+    Sum,
+    names_in,
+)
+
+SINE = 1.1  # eps: of a sine or a cosine, what every target keeps; tests measure it
+_ENTIRE = 3.0  # eps of its size: of c0, c1 and c2
+_SLACK = 1 + 2.0**-30  # for terms in eps² and for the rounding of the analysis itself
+
+
+@dataclass(frozen=True, slots=True)
+class _Bounded:
+    """Bounds on a value."""
+
+    size: float
+    error: float  # in eps
+
+
+class _NoBound(Exception):
+    """The error of a value is not bounded, or not by this analysis."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rounding:
+    """A bound on the error of every entry of a kernel."""
+
+    error: float  # in eps of the type, rounded up to a tenth
+    of_any_size: tuple[str, ...]  # arguments whose components are angles alone
+    up_to_one: tuple[str, ...]  # arguments with components that it holds for up to one
+
+    def __str__(self) -> str:
+        ranges = []
+        if self.of_any_size:
+            ranges.append(f"angles {' and '.join(self.of_any_size)} of any size")
+        if self.up_to_one:
+            ranges.append(f"components of {' and '.join(self.up_to_one)} up to 1")
+        return f"Bound on rounding: {self.error:g} eps in any entry, for {'; '.join(ranges)}."
+
+
+def rounding(kernel: Kernel) -> Rounding | None:
+    """The bound of a kernel; None where there is none: it divides, or takes roots."""
+    plain = _used_plainly(kernel)
+    values = {name: _Bounded(1.0, 0.0) for name in plain}
+    try:
+        for assignment in kernel.assignments:
+            values[assignment.name] = _bounded(assignment.value, values)
+        error = max(_bounded(output, values).error for output in kernel.outputs)
+    except _NoBound:
+        return None
+    is_plain = {a.name: not plain.isdisjoint(a.components) for a in kernel.arguments}
+    used = {name for value in _expressions(kernel) for name in names_in(value)}
+    return Rounding(
+        error=ceil(10 * _SLACK * error) / 10,
+        of_any_size=tuple(
+            argument.name
+            for argument in kernel.arguments
+            if not is_plain[argument.name] and not used.isdisjoint(argument.components)
+        ),
+        up_to_one=tuple(name for name, is_so in is_plain.items() if is_so),
+    )
+
+
+def _expressions(kernel: Kernel) -> Iterator[Expression]:
+    yield from (assignment.value for assignment in kernel.assignments)
+    yield from kernel.outputs
+
+
+def _used_plainly(kernel: Kernel) -> set[str]:
+    """The inputs that more is taken of than a sine or a cosine."""
+    inputs = set(kernel.components)
+    values = (value for value in _expressions(kernel) if not _is_sine(value))
+    return {name for value in values for name in names_in(value)} & inputs
+
+
+def _is_sine(value: Expression) -> bool:
+    return isinstance(value, Call) and value.function in ("sin", "cos")
+
+
+def _bounded(expression: Expression, values: Mapping[str, _Bounded]) -> _Bounded:
+    match expression:
+        case Name(text):
+            return values[text]
+        case Number(value):
+            size = abs(float(value))
+            is_exact = isinstance(value, Fraction) and Fraction(float(value)) == value
+            return _Bounded(size, 0.0 if is_exact else 0.5 * size)
+        case Negative(operand):
+            return _bounded(operand, values)
+        case Sum(terms):
+            return _folded(_sum, (_bounded(term, values) for term in terms))
+        case Product(factors, divisors) if all(isinstance(d, Number) for d in divisors):
+            ones = (_inverse(divisor) for divisor in divisors if isinstance(divisor, Number))
+            return _folded(_product, (*(_bounded(f, values) for f in factors), *ones))
+        case Call("sin" | "cos", argument):
+            return _Bounded(1.0, SINE + _error_of(argument, values))
+        case Call("abs", argument):
+            return values[argument.text]
+        case Call(_, argument) if expression.order is not None:
+            return _entire(expression.order, values[argument.text])
+    raise _NoBound
+
+
+def _error_of(angle: Name, values: Mapping[str, _Bounded]) -> float:
+    """Of an angle; an input is exact as given, whatever its size."""
+    return values[angle.text].error if angle.text in values else 0.0
+
+
+def _folded(
+    operation: Callable[[_Bounded, _Bounded], _Bounded], operands: Iterable[_Bounded]
+) -> _Bounded:
+    """From left to right, as the targets compute."""
+    return reduce(operation, operands)
+
+
+def _sum(a: _Bounded, b: _Bounded) -> _Bounded:
+    size = a.size + b.size
+    return _Bounded(size, a.error + b.error + 0.5 * size)
+
+
+def _product(a: _Bounded, b: _Bounded) -> _Bounded:
+    size = a.size * b.size
+    return _Bounded(size, a.error * b.size + b.error * a.size + 0.5 * size)
+
+
+def _inverse(divisor: Number) -> _Bounded:
+    """What a number divides by, as a factor; one half eps for its own rounding."""
+    size = 1 / abs(float(divisor.value))
+    return _Bounded(size, 0.5 * size)
+
+
+def _entire(order: int, square: _Bounded) -> _Bounded:
+    """c_k of n², at most 1/k! and of the slope (k c_(k+2) - c_(k+1))/2; n is off by half an eps."""
+    size = 1 / factorial(order)
+    slope = 0.5 * (order / factorial(order + 2) + 1 / factorial(order + 1))
+    own = float(series_of(order).error) if order >= FIRST_SERIES else _ENTIRE
+    return _Bounded(size, own * size + slope * (square.error + square.size))
