@@ -17,6 +17,7 @@ from rigidsym.mechanics.derivation import (
     Argument,
     Derivation,
     Markup,
+    Place,
     Proof,
     Singularities,
     Singularity,
@@ -25,7 +26,7 @@ from rigidsym.mechanics.derivation import (
 )
 
 SCHEMA = "rigidsym.derivation"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 Names = Mapping[sp.Expr, sp.Symbol]
 
@@ -139,7 +140,10 @@ def _singularities(found: Singularities | None, names: Names) -> dict[str, Any] 
     if found is None:
         return None
     return {
-        "determinant": _plain(found.determinant, names),
+        "rank": found.rank,
+        "measure": found.measure,
+        "determinant": None if found.determinant is None else _plain(found.determinant, names),
+        "minors": [_plain(minor, names) for minor in found.minors],
         "is_solved": found.is_solved,
         "points": [_point(point, names) for point in found.points],
     }
@@ -147,15 +151,28 @@ def _singularities(found: Singularities | None, names: Names) -> dict[str, Any] 
 
 def _point(point: Singularity, names: Names) -> dict[str, Any]:
     return {
-        "coordinate": _plain(point.coordinate, names),
-        "value": str(point.value),
-        "modulo": "2*pi",
+        "at": [_place(place, names) for place in point.places],
         "rank": point.rank,
         "lost_direction_space": _vector(point.lost_space, names),
         "lost_direction_body": _vector(point.lost_body, names),
-        "undetermined_rates": _vector(point.undetermined, names),
+        "undetermined_rates": [_vector(idle, names) for idle in _columns(point.undetermined)],
         "reached_direction_space": _vector(point.reached, names),
     }
+
+
+def _place(place: Place, names: Names) -> dict[str, Any]:
+    """The values are value + k modulo, for whole k; none of them below `least`, if there is one."""
+    value = _plain(place.value, names)
+    return {
+        "coordinate": _plain(place.coordinate, names),
+        "value": value,
+        "modulo": _plain(place.period, names),
+        "least": value if place.is_length else None,
+    }
+
+
+def _columns(matrix: sp.ImmutableMatrix) -> list[sp.ImmutableMatrix]:
+    return [matrix[:, place] for place in range(matrix.shape[1])]
 
 
 def _markup(markup: Markup) -> dict[str, str]:

@@ -15,7 +15,7 @@ from rigidsym.notes.terminal import show
 from rigidsym.pipeline import product
 from rigidsym.record import record
 from rigidsym.rotations import rotation_from
-from rigidsym.spec import DerivationSpec
+from rigidsym.spec import spec_for
 
 CHOSEN = [
     ("rotation_matrix", "angular_velocity_body"),
@@ -52,9 +52,7 @@ def test_a_file_derives_what_it_asks_for_alone(monkeypatch):
 
     monkeypatch.setattr("rigidsym.pipeline.derive", watched)
     names = ["angular_velocity_space"]
-    output = {"quantities": names, "kernels": ["numpy"], "note": ["tex"]}
-    spec = DerivationSpec.from_data({"rotation": {"sequence": CHAIN}, "output": output})
-    made = product(spec)
+    made = product(replace(spec_for(CHAIN), quantities=tuple(names)))
     assert [list(only) for only in asked] == [names]
     assert [step.quantity.name for step in made.motion.steps] == names
 
@@ -86,7 +84,7 @@ def test_the_terminal_says_why_there_is_no_way_back():
 
 def test_the_summary_counts_the_proofs_of_conversions(tmp_path):
     (tmp_path / "two.toml").write_text(
-        '[rotation]\nsequence = ["ZXZ", "ZYX"]\n[output]\nnote = []\n'
+        '[rotation]\nsequence = ["ZXZ", "ZYX"]\n[output]\nnote = ["tex"]\n'
     )
     counts = [
         int(call("run", "two.toml", *more, cwd=tmp_path).stdout.split()[1])

@@ -193,8 +193,8 @@ def numpy_rank(matrix) -> int:
 
 def at_singularity(point: Point, singular):
     """A point of a path, moved to the singular angle."""
-    fixed = {singular.coordinate: evaluate(sp.Matrix([singular.value]), {})[0]}
-    return {**point.values(), **fixed}
+    (place,) = singular.places
+    return {**point.values(), place.coordinate: evaluate(sp.Matrix([place.value]), {})[0]}
 
 
 @every_case
@@ -255,8 +255,10 @@ def test_the_stated_angles_are_all(case):
     half = sp.pi / 2
     first, last = case.convention.lower()[0], case.convention.lower()[2]
     expected = {0, sp.pi} if first == last else {-half, half}
-    assert {point.value for point in found.points} == expected
-    assert {point.coordinate for point in found.points} == {middle}
+    places = [place for point in found.points for place in point.places]
+    assert {place.value for place in places} == expected
+    assert {place.coordinate for place in places} == {middle}
+    assert {place.period for place in places} == {2 * sp.pi}
     grid = [2 * mp.pi * (k + mp.mpf(1) / 3) / 97 for k in range(98)]
     signs = [
         mp.sign(evaluate(sp.Matrix([found.determinant]), {middle: angle})[0]) for angle in grid

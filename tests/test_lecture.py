@@ -138,8 +138,9 @@ def test_rate_matrices_are_the_coefficients_of_the_printed_velocities():
 def test_only_the_sum_of_the_outer_angles_matters_where_theta_vanishes():
     """The lecture: for θ = 0 all φ and ψ of one sum lead to one orientation."""
     at_zero, at_pi = MOTION.singularities.points
-    assert (at_zero.coordinate, at_zero.value, at_zero.rank) == (theta, 0, 2)
-    assert (at_pi.coordinate, at_pi.value, at_pi.rank) == (theta, sp.pi, 2)
+    for point, value in ((at_zero, 0), (at_pi, sp.pi)):
+        (place,) = point.places
+        assert (place.coordinate, place.value, point.rank) == (theta, value, 2)
     assert at_zero.undetermined == sp.Matrix([1, 0, -1])
     assert at_pi.undetermined == sp.Matrix([1, 0, 1])
     assert MOTION.singularities.is_solved

@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 from conftest import derived
 
-from rigidsym.mechanics.derivation import Derivation, Markup, Proof
+from rigidsym.mechanics.derivation import Derivation, Markup, Place, Proof, Singularity
 from rigidsym.mechanics.kinematics import derive
 from rigidsym.models.catalogue import EulerAngles
 from rigidsym.models.rotation import Citation, RotationModel
@@ -18,8 +18,9 @@ from rigidsym.notes.entries import entry_names
 from rigidsym.notes.escape import escape
 from rigidsym.notes.measure import columns
 from rigidsym.notes.note import Note, note
+from rigidsym.notes.singular_words import determined
 from rigidsym.notes.terminal import show
-from rigidsym.notes.words import determined, listed, plain, unit_in_words, with_symbols
+from rigidsym.notes.words import listed, plain, unit_in_words, with_symbols
 
 ZXZ = "euler_zxz_intrinsic"
 
@@ -147,7 +148,7 @@ def test_the_passive_form_says_that_it_is():
 def test_a_rotation_of_two_coordinates_has_no_inverse_rates():
     document = note(derive(_two_turns())).document
     assert "The rate matrices have no inverse" in _words(document)
-    assert "Where the rates fail" not in [section.title for section in document.sections]
+    assert "the rank is 2 everywhere, which is how many directions" in _words(document)
 
 
 def test_a_rotation_that_is_given_cites_its_source():
@@ -225,12 +226,23 @@ def test_units_in_words(unit, expected):
 
 
 def test_what_idle_rates_leave_determined():
-    q = sp.symbols("a b c")
-    a, _, c = q
-    assert determined(sp.ImmutableMatrix([1, 0, -1]), q) == a + c
-    assert determined(sp.ImmutableMatrix([-1, 0, -1]), q) == a - c
-    assert determined(sp.ImmutableMatrix([1, 1, 1]), q) is None
-    assert determined(sp.ImmutableMatrix([sp.sin(a), 0, 1]), q) is None
+    q, rates = sp.symbols("a b c"), sp.symbols("u v w")
+    a, b, c = q
+
+    def kept(*idle, at=b):
+        place = Place(coordinate=at, value=sp.S.Zero, period=2 * sp.pi)
+        columns = sp.ImmutableMatrix(sp.Matrix([idle]).T)
+        found = Singularity(
+            places=(place,), rank=2, lost_space=None, lost_body=None, undetermined=columns
+        )
+        return determined(found, q, rates)
+
+    assert kept(1, 0, -1) == [a + c]
+    assert kept(-1, 0, -1) == [a - c]
+    assert kept(2, 0, 3) == [3 * a - 2 * c]
+    assert kept(0, 0, 1) == [a]
+    assert kept(1, 1, 0) == [rates[0] - rates[1], rates[2]]  # they leave the place b = 0
+    assert kept(sp.sqrt(2), 0, 1) == []
 
 
 def test_names_of_entries():

@@ -104,8 +104,9 @@ def test_a_chain_of_eight_turns_is_a_rotation():
 def test_a_rate_matrix_of_full_rank_has_a_right_inverse():
     for name in ("rotation vector", "unit quaternion", "axis and angle", "five turns"):
         assert hasattr(derived(name), "inverse_rate_matrix_space")
-    assert derived("rotation vector").singularities is not None
-    assert derived("unit quaternion").singularities is None
+    assert derived("rotation vector").singularities.rank == 3
+    assert derived("unit quaternion").singularities.rank == 3
+    assert derived("gear").singularities.rank == 2
     assert not hasattr(derived("gear"), "inverse_rate_matrix_space")
 
 
@@ -205,37 +206,46 @@ def test_an_inverse_is_not_claimed_where_the_determinant_may_vanish():
     for step in motion.steps:
         if step.quantity.name.startswith(("inverse", "rates_from")):
             assert not all(proof.is_exact for proof in step.proofs)
-    assert motion.singularities is None or not motion.singularities.is_solved
+    assert not motion.singularities.is_solved
 
 
 class TestSingularAngles:
     def singular(self, *turns):
         return derive(model(chain(*turns), phi, theta, psi)).singularities
 
+    def places(self, found):
+        """Value, period and rank of each point, which are all of one coordinate."""
+        assert found.is_solved
+        return {(p.places[0].value, p.places[0].period, p.rank) for p in found.points}
+
     def test_multiples_vanish_more_often(self):
         found = self.singular(("z", phi), ("x", 2 * theta), ("z", psi))
-        assert found.is_solved
-        assert {point.value for point in found.points} == {-pi / 2, 0, pi / 2, pi}
-        assert all(point.rank == 2 for point in found.points)
+        values = (-pi / 2, 0, pi / 2, pi)
+        assert self.places(found) == {(value, 2 * pi, 2) for value in values}
 
-    def test_halves_are_not_called_solved(self):
+    def test_halves_have_twice_the_period(self):
         """After a whole turn sin θ/2 vanishes again, where other rates turn nothing."""
         found = self.singular(("z", phi), ("x", theta / 2), ("z", psi))
-        assert not found.is_solved
-        assert found.points == ()
+        assert self.places(found) == {(0, 4 * pi, 2), (2 * pi, 4 * pi, 2)}
+        assert found.points[0].undetermined == sp.Matrix([1, 0, -1])
+        assert found.points[1].undetermined == sp.Matrix([1, 0, 1])
 
-    @pytest.mark.parametrize("axes", ["zxz", "xyz"])
-    def test_what_does_not_repeat_with_a_full_turn_is_not_called_solved(self, axes):
-        """cos(θ/3) vanishes at 3π/2, and not modulo 2π."""
+    @pytest.mark.parametrize(("axes", "offset"), [("zxz", 0), ("xyz", 3 * pi / 2)])
+    def test_thirds_have_three_times_the_period(self, axes, offset):
         found = self.singular((axes[0], phi), (axes[1], theta / 3), (axes[2], psi))
-        assert not found.is_solved
+        values = (0, 3 * pi) if axes == "zxz" else (-offset, offset)
+        assert self.places(found) == {(value, 6 * pi, 2) for value in values}
 
-    def test_an_offset_is_reported_and_not_guessed(self):
+    def test_an_offset_moves_the_points(self):
         found = self.singular(("z", phi), ("x", theta + alpha), ("z", psi))
-        assert not found.is_solved
-        assert found.determinant.has(alpha)
+        assert self.places(found) == {(-alpha, 2 * pi, 2), (pi - alpha, 2 * pi, 2)}
 
     def test_a_double_zero_is_one_point(self):
         found = self.singular(("z", phi), ("x", theta), ("z", psi * sin(theta)))
         assert found.determinant == -(sin(theta) ** 2)
-        assert {(point.value, point.rank) for point in found.points} == {(0, 2), (pi, 2)}
+        assert self.places(found) == {(0, 2 * pi, 2), (pi, 2 * pi, 2)}
+
+    def test_what_has_no_closed_form_is_reported_and_not_guessed(self):
+        found = self.singular(("z", phi), ("x", theta), ("z", theta * psi))
+        assert not found.is_solved
+        assert found.determinant.has(theta)

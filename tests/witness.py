@@ -40,6 +40,7 @@ _FUNCTIONS: dict[Any, Callable[[Any], Any]] = {
     sp.tanh: mp.tanh,
     sp.sech: mp.sech,
     sp.exp: mp.exp,
+    sp.atan: mp.atan,
 }
 
 
@@ -156,6 +157,8 @@ def _walk(expression: sp.Expr, known: dict[sp.Expr, Any]) -> Any:
         return mp.fprod(number(part, known) for part in expression.args)
     if expression.is_Pow:
         return mp.power(*(number(part, known) for part in expression.args))
+    if expression.func is sp.atan2:
+        return mp.atan2(*(number(part, known) for part in expression.args))
     if expression.func in _FUNCTIONS:
         return _FUNCTIONS[expression.func](number(expression.args[0], known))
     raise TypeError(f"no value is known for {expression!r}")

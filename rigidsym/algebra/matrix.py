@@ -106,6 +106,9 @@ class RingMatrix:
             return self.ring.dot(zip(first, cross(self.ring, second, third), strict=True))
         if len(self.rows) == 1:
             return self.rows[0][0]
+        if len(self.rows) == 2:
+            (a, b), (c, d) = self.rows
+            return self.ring.dot(((a, d),), minus=((b, c),))
         signed = ((-1) ** j * self._minor(0, j).det() for j in range(len(self.rows)))
         return self.ring.dot(zip(self.rows[0], signed, strict=True))
 
@@ -115,6 +118,8 @@ class RingMatrix:
             a, b, c = self.rows
             columns = (cross(self.ring, b, c), cross(self.ring, c, a), cross(self.ring, a, b))
             return RingMatrix(self.ring, columns).T
+        if len(self.rows) == 1:
+            return RingMatrix.identity(self.ring, 1)
         places = range(len(self.rows))
         return RingMatrix(
             self.ring,

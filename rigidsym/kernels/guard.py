@@ -2,7 +2,8 @@
 
 A sine or cosine that divides is not told from zero where it is at most eps times its angle, which
 is as far as the rounding of the angle reaches. The functions c_k of n² may be off by 4 eps of n,
-a sum by 4 eps of the sizes of its terms; a sum of squares loses digits where it underflows.
+a sum by 4 eps of the sizes of its terms; a sum of squares loses digits where it underflows, or
+where what is squared is lost to the rounding of its angles.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from rigidsym.kernels.ir import (
 from rigidsym.kernels.naming import Names
 
 _ROUNDINGS = Number(Fraction(4))
+_TURNED = ("sin", "cos")
 _DOUBLE_ZERO = Number(Fraction(8))  # c₂ near a zero is half the square of the error of n over n
 
 
@@ -82,7 +84,7 @@ class _Guard:
 
     def _of_call(self, divisor: Name, call: Call) -> Name:
         order = call.order
-        if call.function in ("sin", "cos"):
+        if call.function in _TURNED:
             return self._or_nan(divisor, call.argument)
         if order == 0:
             root = self.assign(self._names.numbered("x"), Call("sqrt", call.argument))
@@ -99,7 +101,24 @@ class _Guard:
         if is_positive and any(isinstance(part, Number) for part in parts):
             return divisor
         name = self._named(divisor)
+        if is_positive and not all(map(self._is_given, parts)):
+            return self._or_nan(name, self._reach(), power=2)
         return self._or_nan(name, None if is_positive else self._sizes(total))
+
+    def _is_given(self, part: Expression) -> bool:
+        """Whether a product is one of inputs alone, which hold no rounding."""
+        names = (factor for factor in self._factors(part) if isinstance(factor, Name))
+        return not any(name.text in self._values for name in names)
+
+    def _reach(self) -> Name:
+        """The square of how far rounding reaches where sines and cosines are squared, over eps²."""
+        values = self._values.values()
+        called = {v.argument: None for v in values if isinstance(v, Call) and v.function in _TURNED}
+        sizes = [self.assign(self._names.numbered("x"), Call("abs", angle)) for angle in called]
+        reach = self.assign(
+            self._names.numbered("x"), Product((_ROUNDINGS, Sum((Number(Fraction(1)), *sizes))))
+        )
+        return self.assign(self._names.numbered("x"), Product((reach, reach)))
 
     def _parts(self, total: Sum) -> Iterator[Expression]:
         """The terms of a sum and of the sums among them."""
@@ -108,16 +127,25 @@ class _Guard:
             if isinstance(value, Sum):
                 yield from self._parts(value)
             else:
-                yield value
+                yield term
 
     def _is_positive(self, part: Expression) -> bool:
         """Whether it is a positive number, or a number times squares."""
         if isinstance(part, Number):
             return part.value > 0
-        if not isinstance(part, Product) or part.divisors:
-            return False
-        factors = [factor for factor in part.factors if not isinstance(factor, Number)]
-        return all(factors.count(factor) % 2 == 0 for factor in factors)
+        factors = [factor for factor in self._factors(part) if not isinstance(factor, Number)]
+        numbers = [factor for factor in self._factors(part) if isinstance(factor, Number)]
+        is_even = all(factors.count(factor) % 2 == 0 for factor in factors)
+        return is_even and all(number.value > 0 for number in numbers)
+
+    def _factors(self, part: Expression) -> Iterator[Expression]:
+        """What is multiplied in a part, and in the products among its factors."""
+        value = self._values.get(part.text, part) if isinstance(part, Name) else part
+        if isinstance(value, Product) and not value.divisors:
+            for factor in value.factors:
+                yield from self._factors(factor)
+        else:
+            yield part
 
     def _sizes(self, total: Sum) -> Name:
         """The sum of the sizes of the terms, times the roundings that each may bring."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 
 import sympy as sp
 
@@ -25,7 +26,7 @@ from rigidsym.kernels.guard import guarded
 from rigidsym.kernels.naming import Names
 from rigidsym.kernels.sharing import Factors, Graph, Weighted
 from rigidsym.mechanics.derivation import Argument as Vector
-from rigidsym.mechanics.derivation import Derivation, Singularities, Step
+from rigidsym.mechanics.derivation import Derivation, Measure, Singularities, Step
 from rigidsym.mechanics.energy_quantities import body_in_words
 from rigidsym.models.rotation import RotationModel
 
@@ -105,7 +106,7 @@ class _Lowering:
     def of_step(self, step: Step) -> ir.Kernel:
         """The kernel of one quantity."""
         quantity = step.quantity
-        entries = self._rewritten(step.expression)
+        entries = self._rewritten(map(self._over_squares, step.expression))
         kernel = self._kernel(quantity.name, quantity.inputs, entries, step.shape)
         return replace(
             kernel,
@@ -141,13 +142,34 @@ class _Lowering:
         found = self.derivation.singularities
         if found is None or not _can_fail(found):
             return
-        (determinant,) = self._rewritten([found.determinant])
-        scale, about = _largest(determinant)
-        value = sp.Abs(determinant / scale, evaluate=False)
-        is_free = determinant.free_symbols.isdisjoint(self.derivation.model.constants)
+        minors = self._rewritten(found.minors)
+        scale, about = _scaled(minors, found)
+        value = _size(minors, scale)
+        is_free = value.free_symbols.isdisjoint(self.derivation.model.constants)
         inputs = ("q",) if is_free else ("q", "parameters")
         kernel = self._kernel(MARGIN, inputs, [value], ())
-        yield replace(kernel, symbol="|det W|" + _over(scale), about=about)
+        yield replace(kernel, symbol=_symbol(found.measure) + _over(scale), about=about)
+
+    def _over_squares(self, entry: sp.Expr) -> sp.Expr:
+        """The entry with the minors squared in place of the determinant that divides.
+
+        They are equal, but a sum of squares keeps its digits where it is nearly zero.
+        """
+        for below in entry.atoms(sp.Pow) if self._squares else ():
+            number, base = below.base.as_content_primitive()
+            if below.exp == -1 and base in self._squares:
+                entry = entry.xreplace({below: 1 / (number * self._squares[base])})
+        return entry
+
+    @cached_property
+    def _squares(self) -> dict[sp.Expr, sp.Expr]:
+        """The determinant but for a number, either sign: the same as a sum of squares."""
+        found = self.derivation.singularities
+        if found is None or found.determinant is None or len(found.minors) < 2:
+            return {}
+        number, base = found.determinant.as_content_primitive()
+        squares = sp.Add(*(minor**2 for minor in found.minors)) / number
+        return {base: squares, -base: -squares}
 
     def _rewritten(self, entries: Iterable[sp.Expr]) -> list[sp.Expr]:
         """The entries in forms that keep their digits where they can: see `algebra`."""
@@ -180,22 +202,37 @@ class _Lowering:
 
 
 def _can_fail(found: Singularities) -> bool:
-    return bool(found.points) or not found.is_solved
+    return any(point.places for point in found.points) or not found.is_solved
 
 
-def _largest(determinant: sp.Expr) -> tuple[sp.Rational, str]:
+def _size(minors: Sequence[sp.Expr], scale: sp.Rational) -> sp.Expr:
+    """The size of the only minor over a scale; of several, the root of the sum of their squares."""
+    if len(minors) == 1:
+        return sp.Abs(minors[0] / scale, evaluate=False)
+    return sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
+
+
+def _symbol(measure: Measure) -> str:
+    roots = {"det W Wᵀ": "√det(W Wᵀ)", "det Wᵀ W": "√det(Wᵀ W)", "det [W, J]": "|det [W; J]|"}
+    return roots.get(measure, "|det W|" if measure == "det W" else "√Σ minors²")
+
+
+def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rational, str]:
     """The number that scales the margin to at most 1, and what the margin is in words.
 
     A product of sines, cosines and entire functions is largest where each of them is; of anything
     else the determinant is taken as it is.
     """
-    number, rest = determinant.as_coeff_Mul()
+    about = "how far the rates are from failing"
+    if found.measure not in ("det W", "det [W, J]"):
+        return sp.S.One, f"{about}, the product of the singular values of W; 0 where they do"
+    number, rest = minors[0].as_coeff_Mul()
     factors = [factor.as_base_exp()[0] for factor in sp.Mul.make_args(rest)]
     if not all(isinstance(factor, sp.sin | sp.cos | Entire) for factor in factors):
-        return sp.S.One, "how far the rates are from failing; 0 where they do"
+        return sp.S.One, f"{about}; 0 where they do"
     value = at_zero(rest) if rest.has(Entire) else sp.S.One
     scale = abs(number) * (value if value.is_Rational and value else 1)
-    return scale, "how far the rates are from failing; 1 at most, 0 where they do"
+    return scale, f"{about}; 1 at most, 0 where they do"
 
 
 def _over(scale: sp.Rational) -> str:

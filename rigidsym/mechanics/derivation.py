@@ -112,26 +112,58 @@ class Step:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Singularity:
-    """Where the rate matrix loses rank, and what is lost there."""
+class Place:
+    """A coordinate, or the length of all of them, at one value, over and over again.
+
+    The values are value + k period for all whole k; of a length, which is never negative, for
+    k = 0, 1, 2, ... alone.
+    """
 
     coordinate: sp.Expr
-    value: sp.Expr  # the angle in (−π, π] at which it fails, modulo 2π
+    value: sp.Expr  # of an angle in (−period/2, period/2]; of a length the least, above zero
+    period: sp.Expr  # 2π, or a multiple of it where parts of the angle are turned by
+    is_length: bool = False
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Singularity:
+    """Where the rate matrix loses rank, and what is lost there.
+
+    Rates are those that keep to the conditions on the coordinates, where there are any.
+    """
+
+    places: tuple[Place, ...]  # all at once; none where the rank is too low everywhere
     rank: int
     lost_space: sp.ImmutableMatrix | None  # no q̇ gives Ω along this direction; (3, 1)
     lost_body: sp.ImmutableMatrix | None  # the same direction in body components
-    undetermined: sp.ImmutableMatrix | None  # the q̇ that turns nothing, (n, 1)
+    undetermined: sp.ImmutableMatrix  # columns that span the q̇ that turn nothing, (n, k)
     reached: sp.ImmutableMatrix | None = None  # the direction of all Ω, where the rank is 1; (3, 1)
+
+
+Measure = Literal["det W", "det [W, J]", "det W Wᵀ", "det Wᵀ W", "minors"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Singularities:
-    """Where det W vanishes: the determinant, and the angles where that can be said."""
+    """Where the rate matrix has less than its highest rank.
 
-    determinant: sp.Expr
+    That is where the determinant vanishes: of W, where it is square; of W Wᵀ or Wᵀ W, where it is
+    wide or tall, which is the sum of the squares of the minors; of W above the rows J = ∂c/∂q of
+    the conditions c = 0, where these make a square of it. The points are where all minors vanish.
+    """
+
+    rank: int  # of W where it does not fail
+    measure: Measure
+    determinant: sp.Expr | None  # None where it was not worked out: no divisor, hence no failure
+    minors: tuple[sp.Expr, ...]  # the determinant itself, or minors whose squares add up to it
     points: tuple[Singularity, ...]
-    is_solved: bool  # whether `points` are all the places where the determinant vanishes
-    length: sp.Expr | None = None  # what takes the place of an angle at the points; never at 0
+    is_solved: bool  # whether `points` are all the places where the rank falls
+
+    @property
+    def length(self) -> sp.Expr | None:
+        """What takes the place of an angle at the points; never at 0."""
+        places = (place for point in self.points for place in point.places)
+        return next((place.coordinate for place in places if place.is_length), None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,7 +175,7 @@ class Derivation:
     model: RotationModel
     arguments: tuple[Argument, ...]
     steps: tuple[Step, ...]
-    singularities: Singularities | None  # None where the rate matrix is not square
+    singularities: Singularities | None  # None where no quantity of the rates was asked for
     body: RigidBody | None = None  # what turns, where energy and momentum were asked for
 
     def step(self, quantity: str) -> Step:

@@ -280,14 +280,9 @@ class _Kinematics:
             (self.prove.vanishes(residual, claim),),
         )
 
-    def singularities(self) -> Singularities | None:
-        """Where the rate matrix loses rank; None where it is not square or never has full rank."""
-        values = self.values
-        matrix = values.rate_matrix_space
-        if matrix.shape != (3, 3) or values.inverse_space is None:
-            return None
-        coordinates = values.arguments["q"].symbols
-        return singularities_of(matrix, values.R, self.present, values.codec, coordinates)
+    def singularities(self) -> Singularities:
+        """Where the rate matrix loses rank."""
+        return singularities_of(self.values, self.present)
 
     def _matrix(
         self,

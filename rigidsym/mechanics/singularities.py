@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from fractions import Fraction
-from functools import lru_cache
+from functools import reduce
 from itertools import combinations
-from math import ceil
-from typing import Any
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -15,196 +12,225 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.entire import at_zero, rewriter_for
 from rigidsym.algebra.matrix import RingMatrix, Row, cross
-from rigidsym.algebra.present import Presenter
-from rigidsym.algebra.ring import Monomial
+from rigidsym.algebra.present import Presenter, presenter_for
+from rigidsym.algebra.ring import Ring
 from rigidsym.algebra.shorten import shortest
-from rigidsym.mechanics.derivation import Singularities, Singularity
+from rigidsym.mechanics.derivation import Measure, Singularities, Singularity
+from rigidsym.mechanics.rate_map import rate_map_of
+from rigidsym.mechanics.values import Values
+from rigidsym.mechanics.zeros import Zero, matrix_at, solver_for
 
-Zero = tuple[sp.Expr, sp.Expr, dict[int, int]]  # coordinate, value, what the generators become
 
+def singularities_of(values: Values, presenter: Presenter) -> Singularities:
+    """The places where the rates that a model allows give fewer directions of Ω than elsewhere.
 
-def singularities_of(
-    matrix: RingMatrix,
-    rotation: RingMatrix,
-    presenter: Presenter,
-    codec: Codec,
-    coordinates: tuple[sp.Expr, ...],
-) -> Singularities:
-    """The zeros of det W, for a square rate matrix in space components.
-
-    Solved where every factor of the determinant is a number, a reciprocal, the sine or cosine of a
-    rational multiple of one coordinate, or sin n, cos n or 1 ± cos n of one coordinate or of the
-    length n of all of them; otherwise the determinant is reported and nothing is guessed.
+    These are the common zeros of the minors of the rate matrix, solved where `Solver` can; else
+    the minors are reported and nothing is guessed.
     """
-    determinant = matrix.det()
-    shown = presenter.element(determinant)
-    zeros, is_solved = _zeros(shortest(codec.ring, determinant), codec, coordinates)
-    length = _length(coordinates)
-    if any(zero[0] == length for zero in zeros):
-        is_solved = is_solved and _is_regular_at_zero(shown, codec)
+    inverse = values.inverse_space
+    if values.model.pullback is not None and inverse is not None and inverse[1].is_ground:
+        return _without_divisor()
+    study = _Study(values, presenter)
+    found = study.singularities()
+    if found.is_solved or not study.solver.missing:
+        return found
+    wider = Values(values.model, numbers=study.solver.missing)
+    return _Study(wider, presenter_for(wider.codec)).singularities()
+
+
+def _without_divisor() -> Singularities:
+    """W G = 1 with a G that holds no divisor: the rank is 3 wherever the coordinates may be."""
     return Singularities(
-        determinant=shown,
-        points=tuple(_at(zero, matrix, rotation, presenter) for zero in zeros),
-        is_solved=is_solved,
-        length=next((zero[0] for zero in zeros if zero[0] == length), None),
+        rank=3, measure="det W Wᵀ", determinant=None, minors=(), points=(), is_solved=True
     )
 
 
-@lru_cache(maxsize=128)
-def _length(coordinates: tuple[sp.Expr, ...]) -> sp.Expr:
-    return sp.sqrt(sp.Add(*(coordinate**2 for coordinate in coordinates)))
+class _Study:
+    """The rank of the rate matrix of one model."""
+
+    def __init__(self, values: Values, presenter: Presenter) -> None:
+        self.present = presenter
+        self.codec: Codec = values.codec
+        self.coordinates = values.arguments["q"].symbols
+        self.map = rate_map_of(values)
+        self.solver = solver_for(values.codec, self.coordinates)
+        bound = self.map.bound
+        self.bound_rank = _rank_and_minors(bound)[0] if bound is not None else 0
+
+    def singularities(self) -> Singularities:
+        whole = self.map.whole
+        full, minors = _rank_and_minors(whole)
+        rank = full - self.bound_rank
+        is_one = full == len(whole.rows) == whole.shape[1]
+        squares = minors[0] if is_one else self._sum(minors)
+        points, is_solved = self._strata(whole, (), full, minors)
+        free = len(self.coordinates) - self.bound_rank
+        if rank < min(3, free):
+            points.insert(0, self._point((), whole, full))
+        shown = [self.present.element(minor) for minor in minors]
+        if any(place.is_length for point in points for place in point.places):
+            is_solved = is_solved and self._is_regular_at_zero(shown)
+        return Singularities(
+            rank=rank,
+            measure=self._measure(whole, full),
+            determinant=self.present.element(squares),
+            minors=tuple(shown),
+            points=tuple(points),
+            is_solved=is_solved,
+        )
+
+    def _sum(self, minors: Sequence[PolyElement]) -> PolyElement:
+        return self.codec.ring.dot((minor, minor) for minor in minors)
+
+    def _measure(self, whole: RingMatrix, full: int) -> Measure:
+        rows, columns = whole.shape
+        if rows == columns == full:
+            return "det W" if rows == 3 else "det [W, J]"
+        if rows == full == 3:
+            return "det W Wᵀ"
+        return "det Wᵀ W" if columns == full and rows == 3 else "minors"
+
+    def _is_regular_at_zero(self, minors: Sequence[sp.Expr]) -> bool:
+        """Whether a minor is not zero where all coordinates are, by its entire form."""
+        rewriter = rewriter_for(self.codec)
+        forms = (rewriter.rewritten(minor) for minor in minors) if rewriter else ()
+        return any(form is not None and bool(at_zero(form) != 0) for form in forms)
+
+    def _strata(
+        self, matrix: RingMatrix, zero: Zero, rank: int, minors: Sequence[PolyElement]
+    ) -> tuple[list[Singularity], bool]:
+        """The points where the rank falls, and those among them where it falls once more."""
+        is_never_less = any(minor.is_ground for minor in minors) or self._is_never_zero(minors)
+        if not rank or is_never_less:
+            return [], True
+        zeros, is_solved = self.solver.common(minors)
+        points = []
+        for more in zeros:
+            there = matrix_at(matrix, more)
+            full, smaller = _rank_and_minors(there, rank - 1)
+            points.append(self._point((*zero, *more), there, full))
+            further, is_known = self._strata(there, (*zero, *more), full, smaller)
+            points.extend(further)
+            is_solved = is_solved and is_known
+        return points, is_solved
+
+    def _is_never_zero(self, minors: Sequence[PolyElement]) -> bool:
+        """Whether the sum of the squares of several minors tells that one is not zero."""
+        return len(minors) > 1 and self.solver.is_never_zero(self._sum(minors))
+
+    def _point(self, zero: Zero, there: RingMatrix, full: int) -> Singularity:
+        rank = full - self.bound_rank
+        lost = _kernel(there.T, full) if rank == 2 else None
+        line = self._line(there) if rank == 1 else None
+        space, body = self._in_space_and_body(lost, zero)
+        return Singularity(
+            places=tuple(root.place for root in zero),
+            rank=rank,
+            lost_space=space,
+            lost_body=body,
+            undetermined=self.present.matrix(_kernel(there, full)),
+            reached=self._in_space_and_body(line, zero)[0],
+        )
+
+    def _line(self, there: RingMatrix) -> RingMatrix:
+        """The direction of all that allowed rates give, where the rank is one."""
+        reached = RingMatrix(there.ring, there.rows[:3])
+        if self.bound_rank:
+            reached = reached @ _kernel(RingMatrix(there.ring, there.rows[3:]), self.bound_rank)
+        column = next(row for row in reached.T.rows if any(row))
+        return RingMatrix.column(there.ring, column)
+
+    def _in_space_and_body(
+        self, found: RingMatrix | None, zero: Zero
+    ) -> tuple[sp.ImmutableMatrix | None, sp.ImmutableMatrix | None]:
+        """A direction in the frame of the map, along the axes of space and of the body."""
+        if found is None:
+            return None, None
+        ring = found.ring
+        here = RingMatrix.column(ring, found.T.rows[0][:3])
+        space, body = (
+            reduce(lambda v, turn: matrix_at(turn, zero) @ v, turns, here)
+            for turns in (self.map.to_space, self.map.to_body)
+        )
+        whole = _primitive((*space.entries, *body.entries), ring)
+        halves = (RingMatrix.column(ring, part) for part in (whole[:3], whole[3:]))
+        first, second = map(self.present.matrix, halves)
+        return first, second
 
 
-def _is_regular_at_zero(determinant: sp.Expr, codec: Codec) -> bool:
-    """Whether the determinant is not zero where all coordinates are, by its entire form."""
-    rewriter = rewriter_for(codec)
-    form = rewriter.rewritten(determinant) if rewriter else None
-    return form is not None and bool(at_zero(form) != 0)
+def _rank_and_minors(matrix: RingMatrix, most: int = 9) -> tuple[int, list[PolyElement]]:
+    """The rank, if it is `most` at most, where nothing vanishes but zero; its minors but zeros."""
+    for size in range(min(*matrix.shape, most), 0, -1):
+        minors = [minor for minor in _minors(matrix, size) if minor]
+        if minors:
+            return size, minors
+    return 0, []
 
 
-def _zeros(
-    determinant: PolyElement, codec: Codec, coordinates: tuple[sp.Expr, ...]
-) -> tuple[list[Zero], bool]:
-    zeros: list[Zero] = []
-    is_solved = True
-    for factor in _factors(determinant):
-        found = _zeros_of_factor(factor, codec, coordinates)
-        is_solved = is_solved and found is not None
-        zeros.extend(found or ())
-    return zeros, is_solved
+def _minors(matrix: RingMatrix, size: int) -> Iterator[PolyElement]:
+    """The determinants of all parts of a matrix with so many rows and columns."""
+    dot = matrix.ring.dot
+    for rows in combinations(matrix.rows, size):
+        if size == 2:
+            first, second = rows
+            for j, k in combinations(range(matrix.shape[1]), 2):
+                yield dot(((first[j], second[k]),), minus=((first[k], second[j]),))
+        else:
+            for columns in combinations(range(matrix.shape[1]), size):
+                yield _part(matrix.ring, rows, columns).det()
 
 
-def _factors(element: PolyElement) -> list[PolyElement]:
-    """The irreducible factors that are not numbers; a product of generators needs no search."""
-    if len(element) == 1:
-        (powers,) = element
-        return [gen for gen, power in zip(element.ring.gens, powers, strict=True) if power]
-    return [factor for factor, _ in element.factor_list()[1]]
+def _part(ring: Ring, rows: Sequence[Row], columns: Sequence[int]) -> RingMatrix:
+    return RingMatrix(ring, tuple(tuple(row[k] for k in columns) for row in rows))
 
 
-def _zeros_of_factor(
-    factor: PolyElement, codec: Codec, coordinates: tuple[sp.Expr, ...]
-) -> list[Zero] | None:
-    """Zeros of one irreducible factor in (−π, π]; None where they are not known.
-
-    For a length they lie in (0, 2π].
-    """
-    if _is_reciprocal(factor, codec):
-        return []
-    length = _length(coordinates)
-    for sine, cosine in codec.angle_pairs:
-        argument = codec.ring.generators[sine].expression.args[0]
-        if argument == length or argument in coordinates:
-            turned = _quarter_turns(factor, codec, sine, cosine)
-            if turned:
-                return [(argument, _placed(turn, argument == length), b) for turn, b in turned]
-    for sine, cosine in codec.angle_pairs:
-        argument = codec.ring.generators[sine].expression.args[0]
-        rate, coordinate = argument.as_coeff_Mul()
-        if coordinate not in coordinates or rate.q != 1:
-            continue  # sin θ/3 does not vanish again after a whole turn
-        for place, other, offset in ((sine, cosine, Fraction(0)), (cosine, sine, Fraction(1, 2))):
-            if factor.monic() == codec.ring.generator(place):
-                return [
-                    (coordinate, sp.Rational(turn) * sp.pi, {place: 0, other: sign})
-                    for turn, sign in _half_turns(offset, Fraction(int(rate.p), int(rate.q)))
-                ]
-    return None
+def _kernel(matrix: RingMatrix, rank: int) -> RingMatrix:
+    """Columns that span what the matrix, wider than its rank, takes to zero; by Cramer's rule."""
+    width = matrix.shape[1]
+    if not rank:
+        return RingMatrix.identity(matrix.ring, width)
+    if (rank, width) == (2, 3):
+        pairs = combinations(matrix.rows, 2)
+        normal = next(n for u, v in pairs if any(n := cross(matrix.ring, u, v)))
+        return RingMatrix.column(matrix.ring, _primitive(normal, matrix.ring))
+    vectors: dict[Row, None] = {}
+    for rows, pivots in _regular_parts(matrix, rank):
+        square = _part(matrix.ring, rows, pivots)
+        found = list(_solutions(square, rows, pivots, width))
+        if square.det().is_ground:
+            return RingMatrix(matrix.ring, tuple(found)).T
+        vectors |= dict.fromkeys(found)
+    return RingMatrix(matrix.ring, tuple(vectors)).T
 
 
-def _is_reciprocal(factor: PolyElement, codec: Codec) -> bool:
-    """Whether it is 1/d for a d of the ring: their product is one, so that it is never zero."""
-    for place, generator in enumerate(codec.ring.generators):
-        if factor.monic() == codec.ring.generator(place):
-            expression = generator.expression
-            return bool(expression.is_Pow and expression.exp.is_negative)
-    return False
+def _regular_parts(matrix: RingMatrix, rank: int) -> list[tuple[Sequence[Row], Sequence[int]]]:
+    """Rows and columns of the parts that are regular; one alone if its determinant is constant."""
+    found: list[tuple[Sequence[Row], Sequence[int]]] = []
+    for rows in combinations(matrix.rows, rank):
+        for columns in combinations(range(matrix.shape[1]), rank):
+            determinant = _part(matrix.ring, rows, columns).det()
+            if determinant.is_ground and determinant:
+                return [(rows, columns)]
+            if determinant:
+                found.append((rows, columns))
+    return found
 
 
-def _quarter_turns(
-    factor: PolyElement, codec: Codec, sine: int, cosine: int
-) -> list[tuple[int, dict[int, int]]]:
-    """Quarters of a turn in (−2, 2] at which a factor 1 ± cos n, sin n or cos n vanishes."""
-    ring = codec.ring
-    quarters = {0: (0, 1), 1: (1, 0), 2: (0, -1), -1: (-1, 0)}
-    zeros = {
-        ring.generator(cosine) - 1: (0,),
-        ring.generator(cosine) + 1: (2,),
-        ring.generator(sine): (0, 2),
-        ring.generator(cosine): (-1, 1),
-    }
-    return [
-        (turn, dict(zip((sine, cosine), quarters[turn], strict=True)))
-        for turn in zeros.get(factor.monic(), ())
-    ]
+def _solutions(
+    square: RingMatrix, rows: Sequence[Row], pivots: Sequence[int], width: int
+) -> Iterator[Row]:
+    """Each column that is no pivot in terms of those that are: a vector that is taken to zero."""
+    ring = square.ring
+    above, below = square.adjugate(), square.det()
+    for free in (k for k in range(width) if k not in pivots):
+        solved = above @ RingMatrix.column(ring, [-row[free] for row in rows])
+        found = dict(zip(pivots, solved.entries, strict=True)) | {free: below}
+        yield _primitive([found.get(k, ring.zero) for k in range(width)], ring)
 
 
-def _placed(quarters: int, is_length: bool) -> sp.Expr:
-    """The angle in (−π, π]; of a length, which is no angle below zero, in (0, 2π]."""
-    return sp.Rational(quarters + 4 if is_length and quarters <= 0 else quarters, 2) * sp.pi
-
-
-def _half_turns(offset: Fraction, rate: Fraction) -> Iterator[tuple[Fraction, int]]:
-    """(offset + k)/rate in (−1, 1], in half turns, with the ±1 of what does not vanish there."""
-    reach = ceil(rate) + 1
-    for k in range(-reach, reach + 1):
-        turn = (offset + k) / rate
-        if -1 < turn <= 1:
-            yield turn, -1 if k % 2 else 1
-
-
-def _at(zero: Zero, matrix: RingMatrix, rotation: RingMatrix, presenter: Presenter) -> Singularity:
-    coordinate, value, becomes = zero
-    reduce = matrix.ring.reduce
-    there = matrix.map(lambda entry: reduce(_substituted(entry, becomes)))
-    lost = _normal_to(there.T)
-    idle = _normal_to(there)
-    rank = 2 if idle is not None else int(any(there.entries))  # less than 3, since det W vanishes
-    body = None
-    if lost is not None:
-        turned = rotation.T @ RingMatrix.column(matrix.ring, lost)
-        body = turned.map(lambda entry: _substituted(entry, becomes))
-    return Singularity(
-        coordinate=coordinate,
-        value=value,
-        rank=rank,
-        lost_space=_presented(lost, matrix, presenter),
-        lost_body=None if body is None else presenter.matrix(body),
-        undetermined=_presented(idle, matrix, presenter),
-        reached=_presented(_line(there) if rank == 1 else None, matrix, presenter),
-    )
-
-
-def _substituted(element: PolyElement, becomes: dict[int, int]) -> PolyElement:
-    """The element with some generators replaced by whole numbers."""
-    terms: dict[Monomial, Any] = {}
-    for monomial, coefficient in element.items():
-        powers = list(monomial)
-        for place, value in becomes.items():
-            coefficient *= value ** powers[place]
-            powers[place] = 0
-        rest = tuple(powers)
-        terms[rest] = terms.get(rest, 0) + coefficient
-    return element.new({monomial: c for monomial, c in terms.items() if c})
-
-
-def _normal_to(matrix: RingMatrix) -> Row | None:
-    """A direction at right angles to three rows that span a plane; None where they do not."""
-    for u, v in combinations(matrix.rows, 2):
-        normal = cross(matrix.ring, u, v)
-        if any(normal):
-            return _primitive(normal)
-    return None
-
-
-def _line(matrix: RingMatrix) -> Row:
-    """The direction of the columns of a matrix of rank one."""
-    column = next(row for row in matrix.T.rows if any(row))
-    return _primitive([shortest(matrix.ring, entry) for entry in column])
-
-
-def _primitive(entries: Sequence[PolyElement]) -> Row:
+def _primitive(given: Sequence[PolyElement], ring: Ring) -> Row:
     """The entries without their common factor, the first of them with a plus sign."""
+    entries = [shortest(ring, entry) for entry in given]
     first, *others = (entry for entry in entries if entry)
     common = first
     for entry in others:
@@ -215,9 +241,3 @@ def _primitive(entries: Sequence[PolyElement]) -> Row:
         (term,) = common.items()
         return tuple(entry.quo_term(term) for entry in entries)
     return tuple(entry.exquo(common) for entry in entries)
-
-
-def _presented(
-    entries: Row | None, matrix: RingMatrix, presenter: Presenter
-) -> sp.ImmutableMatrix | None:
-    return None if entries is None else presenter.matrix(RingMatrix.column(matrix.ring, entries))

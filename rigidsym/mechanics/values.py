@@ -24,7 +24,13 @@ _FEW_TURNS = 4  # up to here the product is multiplied out; the proof by turns i
 class Values:
     """R, dR/dt, Ω, Ω′, W, W′ and the inverses of one model, each worked out when asked for."""
 
-    def __init__(self, model: RotationModel, body: RigidBody | None = None) -> None:
+    def __init__(
+        self,
+        model: RotationModel,
+        body: RigidBody | None = None,
+        numbers: Iterable[sp.Expr] = (),
+    ) -> None:
+        """`numbers`: roots that the ring shall hold beside what the model asks for."""
         self.model = model
         self.body = body
         self.arguments = {argument.name: argument for argument in arguments_of(model, body)}
@@ -36,6 +42,7 @@ class Values:
         held = [e for turn in model.turns for e in turn.matrix.flat()] or [*model.matrix]
         if body is not None:
             held += [body.mass, *body.inertia, sp.Rational(1, 2), *particles.SYMBOLS]
+        held += numbers
         order = 1 if body else 2
         self.codec = codec_for([*inputs, *held], constraints=model.constraints, order=order)
         self.ring = self.codec.ring
@@ -104,12 +111,12 @@ class Values:
     @cached_property
     def inverse_space(self) -> Inverse | None:
         entries = self._entry_rates(lambda skew: skew @ self.R)
-        return entries or right_inverse(self.rate_matrix_space, self._bound)
+        return entries or right_inverse(self.rate_matrix_space, self.bound)
 
     @cached_property
     def inverse_body(self) -> Inverse | None:
         entries = self._entry_rates(lambda skew: self.R @ skew)
-        return entries or right_inverse(self.rate_matrix_body, self._bound)
+        return entries or right_inverse(self.rate_matrix_body, self.bound)
 
     def _entry_rates(self, rate_of: Callable[[RingMatrix], RingMatrix]) -> Inverse | None:
         """The columns dR/dt of unit angular velocities, where the coordinates are R's entries."""
@@ -120,7 +127,7 @@ class Values:
         return RingMatrix(self.ring, tuple(columns)).T, self.ring.one
 
     @cached_property
-    def _bound(self) -> RingMatrix | None:
+    def bound(self) -> RingMatrix | None:
         return bound_on_rates(self.model.constraints, self.model.coordinates, self.codec)
 
     def _jacobian(self, omega: RingMatrix) -> RingMatrix:

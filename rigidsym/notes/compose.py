@@ -40,14 +40,14 @@ from rigidsym.notes.layout import PAGE, display
 from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.naming import Namer, Part
 from rigidsym.notes.notation import Notation, notation_of
-from rigidsym.notes.prose import DETERMINANTS, motion, product, turn, zeros
+from rigidsym.notes.prose import motion, product, turn
 from rigidsym.notes.rewriting import in_manner
 from rigidsym.notes.short import in_short
+from rigidsym.notes.singular_words import failures, meaning, measured
 from rigidsym.notes.vector_words import sum_of_vectors
 from rigidsym.notes.words import (
     convention,
     equal,
-    singular,
     symbols_of,
     unit_in_words,
     with_symbols,
@@ -209,20 +209,19 @@ class _Composer:
             )
         )
         yield from self._steps(_RATES)
-        names = {step.quantity.name for step in self.derivation.steps}
-        if "rate_matrix_space" in names and "inverse_rate_matrix_space" not in names:
+        found = self.derivation.singularities
+        if found is not None and found.rank < 3:
             yield Paragraph(("The rate matrices have no inverse; the rates are not solved for.",))
 
     def _singularities(self) -> Iterator[Block]:
-        singularities = self.derivation.singularities
-        if singularities is None:
+        found = self.derivation.singularities
+        if found is None:
             return
-        yield Paragraph(("Both rate matrices have the determinant",))
-        value = markup(singularities.determinant, self.notation)
-        yield Equation(sides=(*DETERMINANTS, value))
-        yield Paragraph(zeros(singularities, self.notation))
-        for point in singularities.points:
-            yield Paragraph(singular(point, self.derivation))
+        if found.determinant is not None:
+            yield Paragraph(meaning(found))
+            value = markup(found.determinant, self.notation)
+            yield Equation(sides=(*measured(found), value))
+        yield from map(Paragraph, failures(self.derivation, found))
 
     def _steps(self, names: Sequence[str]) -> Iterator[Block]:
         for step in self.derivation.steps:

@@ -5,21 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rigidsym.mechanics.claims import fill, rate_of, spin_of
-from rigidsym.mechanics.derivation import Markup, Singularities
+from rigidsym.mechanics.derivation import Markup
 from rigidsym.mechanics.quantities import BODY, COSINES, ROTATION, SPACE
 from rigidsym.models.rotation import Turn, lecture
 from rigidsym.notes.document import Block, Cited, Equation, Paragraph, Text
 from rigidsym.notes.formula import markup
 from rigidsym.notes.layout import Done
 from rigidsym.notes.notation import Notation
-from rigidsym.notes.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION, equal, listed, words
+from rigidsym.notes.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION, equal, words
 
 _MOTION = lecture("15", "section 3.2")
 _VELOCITY = Markup(r"\dot{\mathbf{x}}", "ẋ")
 _BODY_VELOCITY = Markup(r"\dot{\mathbf{x}}'", "ẋ′")
-DETERMINANTS = tuple(
-    fill(r"\det {0}", "det {0}", frame.matrix) for frame in (SPACE, BODY)
-)  # of the two rate matrices, which are equal
 _SHORTHAND = (
     Markup(r"s_\alpha", "s_α"),
     Markup(r"\sin\alpha", "sin α"),
@@ -122,32 +119,6 @@ def announcement(equation: Equation, done: Done) -> Text:
     if done == "listed":
         return words("The entries of {} are", equal(*equation.sides))
     return ()
-
-
-def zeros(singularities: Singularities, notation: Notation) -> Text:
-    """Where the determinant vanishes, as far as that was decided."""
-    angles = [
-        (equal(markup(point.coordinate, notation), markup(point.value, notation)),)
-        for point in singularities.points
-    ]
-    if angles and singularities.length is not None:
-        zero = equal(markup(singularities.length, notation), Markup("0", "0"))
-        known = "" if singularities.is_solved else "; where else it vanishes was not decided"
-        return (
-            "It vanishes at ",
-            *listed(angles),
-            ", up to whole turns, not at ",
-            zero,
-            f"{known}.",
-        )
-    if angles and singularities.is_solved:
-        return ("It vanishes at ", *listed(angles), ", up to whole turns, and nowhere else.")
-    if angles:
-        more = ", up to whole turns; where else it vanishes was not decided."
-        return ("It vanishes at ", *listed(angles), more)
-    if singularities.is_solved:
-        return ("It never vanishes: the rates always follow from the angular velocity.",)
-    return ("Where it vanishes was not decided.",)
 
 
 def proofs_in_words(*, is_proved: bool) -> Text:

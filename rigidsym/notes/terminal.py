@@ -16,18 +16,18 @@ from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.breaking import break_lines
 from rigidsym.notes.document import Text
 from rigidsym.notes.entries import RESIDUAL, entry_names, indexed
-from rigidsym.notes.formula import markup, text
+from rigidsym.notes.formula import text
 from rigidsym.notes.grid import grid
 from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.measure import columns
 from rigidsym.notes.notation import Notation, notation_of
-from rigidsym.notes.prose import DETERMINANTS, product, turn, zeros
+from rigidsym.notes.prose import product, turn
+from rigidsym.notes.singular_words import failures, measured
 from rigidsym.notes.vector_words import sum_of_vectors
 from rigidsym.notes.words import (
     convention,
     equal,
     plain,
-    singular,
     symbols_of,
     unit_in_words,
     with_symbols,
@@ -220,11 +220,12 @@ class _Screen(_Steps):
             return
         yield ""
         yield self.style("Where the rates fail", "heading")
-        value = markup(found.determinant, self.notation)
-        yield _INDENT + self.written(equal(*DETERMINANTS, value).text)
-        yield from self._wrapped(zeros(found, self.notation))
-        for point in found.points:
-            yield from self._wrapped(singular(point, self.derivation))
+        if found.determinant is not None:
+            yield from self._listing(
+                [equal(*measured(found))], [text(found.determinant, self.notation)]
+            )
+        for sentence in failures(self.derivation, found):
+            yield from self._wrapped(sentence)
 
     def _conversions(self) -> Iterator[str]:
         """To the unit quaternion and back, or why there is no way back."""

@@ -9,7 +9,7 @@ from itertools import chain, zip_longest
 import sympy as sp
 
 from rigidsym.mechanics.claims import fill
-from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Singularity
+from rigidsym.mechanics.derivation import Argument, Derivation, Markup
 from rigidsym.mechanics.energy_quantities import CENTRE
 from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.models.so3 import AXES
@@ -189,52 +189,3 @@ def unit_in_words(unit: str) -> str:
 def vector(entries: Iterable[sp.Expr], notation: Notation) -> Text:
     """The components in a row, with a place to break the line after each comma."""
     return ("(", *listed([(markup(entry, notation),) for entry in entries], ", "), ")")
-
-
-def singular(point: Singularity, derivation: Derivation) -> Text:
-    """What is lost at a singular angle, and what remains determined."""
-    notation = notation_of(derivation.arguments, model=derivation.model)
-    coordinate, value = markup(point.coordinate, notation), markup(point.value, notation)
-    at = equal(coordinate, value)
-    return (
-        *words("At {} ", at),
-        *_determined(point, derivation, notation),
-        *_lost(point, notation),
-        ".",
-    )
-
-
-def _determined(point: Singularity, derivation: Derivation, notation: Notation) -> Text:
-    idle = point.undetermined
-    if idle is None:
-        return (f"the rate matrix has rank {point.rank}",)
-    rates = vector(idle, notation)
-    kept = determined(idle, derivation.argument("q").symbols)
-    only = () if kept is None else words("only {} is determined; ", markup(kept, notation))
-    return (*only, "rates in proportion to ", *rates, " turn nothing")
-
-
-def determined(idle: sp.ImmutableMatrix, coordinates: Sequence[sp.Expr]) -> sp.Expr | None:
-    """The combination of two coordinates that rates along `idle` leave as it is.
-
-    None where `idle` is not constant or does not move exactly two coordinates.
-    """
-    moved = [(rate, q) for rate, q in zip(idle, coordinates, strict=True) if rate != 0]
-    if len(moved) != 2 or not all(rate.is_Rational for rate, _ in moved):
-        return None
-    (first, q), (second, r) = moved
-    return q - first / second * r
-
-
-def _lost(point: Singularity, notation: Notation) -> Text:
-    if point.reached is not None:
-        return (", and rates turn the body about ", *vector(point.reached, notation), " alone")
-    if point.lost_space is None or point.lost_body is None:
-        return ()
-    return (
-        ", and no rates turn the body about ",
-        *vector(point.lost_space, notation),
-        " in space, that is ",
-        *vector(point.lost_body, notation),
-        " in the body",
-    )

@@ -108,6 +108,9 @@ _GUARDED = {
     "elsewhere the error is a few eps n/|sin(n/2)| of the largest entry.",
     "sum": "Where a sum that divides is at most 4 eps of its terms' sizes together, what is "
     "divided is NaN; elsewhere the error is a few eps of the sizes over the sum.",
+    "minors": "Where the root of a sum of squares of sines and cosines divides, squared, and is at "
+    "most 4 eps times one plus the sizes of their angles, what is divided is NaN; elsewhere the "
+    "error is a few times that over the root, of the largest entry.",
     "squares": "Where a sum of squares that divides is so small that squares underflow, what is "
     "divided is NaN.",
 }
@@ -137,7 +140,7 @@ def _kinds(kernel: Kernel) -> Iterator[str]:
         if call is not None:
             yield "angle" if call.order is None else "length"
         else:
-            yield "squares" if guard.scale is None else "sum"
+            yield "squares" if guard.scale is None else {1: "sum", 2: "minors"}[guard.power]
 
 
 def _bound(series: Series) -> str:
