@@ -17,7 +17,8 @@ from rigidsym.mechanics.derivation import Derivation, Markup, Step
 from rigidsym.notes.document import Document, Equation
 from rigidsym.notes.html import escape, rendered
 from rigidsym.notes.mathml import mathml
-from rigidsym.notes.words import singular, unit_in_words
+from rigidsym.notes.singular_words import singular
+from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
 from rigidsym.page.copies import copies_of
 from rigidsym.page.functions import SHOWN, functions_of
@@ -130,9 +131,17 @@ class _Page:
         found = self.derivation.singularities
         coordinates = self.derivation.model.coordinates
         for k, point in enumerate(found.points if found else ()):
-            if point.coordinate in coordinates:
-                place = coordinates.index(point.coordinate)
-                yield {"id": f"pole-{k}", "place": place, "value": float(point.value)}
+            is_shown = all(p.coordinate in coordinates and p.value.is_number for p in point.places)
+            if point.places and is_shown:
+                places = [
+                    {
+                        "place": coordinates.index(place.coordinate),
+                        "value": float(place.value),
+                        "period": float(place.period),
+                    }
+                    for place in point.places
+                ]
+                yield {"id": f"pole-{k}", "places": places}
 
     def _messages(self, printer: PagePrinter) -> Iterator[dict[str, str]]:
         found = self.derivation.singularities
