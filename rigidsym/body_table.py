@@ -13,11 +13,12 @@ from rigidsym.body_reader import BodyReader, Declared
 from rigidsym.distribution_table import KINDS as DISTRIBUTIONS
 from rigidsym.distribution_table import keys_of, read_distribution
 from rigidsym.errors import RigidsymError
-from rigidsym.measured_table import read_known
+from rigidsym.measured_table import numbers_of, read_known
 from rigidsym.models.body import RigidBody, general_inertia, given_inertia, principal_moments
 from rigidsym.tables import Table
 
 _MOMENTS = ("A", "B", "C")
+_LONGEST = 10**6  # a larger denominator is a measured number's
 _KEYS_OF: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {"principal_moments": ("mass",), "inertia": ("mass", "centre")}
 )
@@ -90,6 +91,13 @@ def _read_inertia(reader: BodyReader, name: str) -> RigidBody | None:
     )
 
 
+def _is_measured(body: RigidBody) -> bool:
+    """Whether a body is given in numbers that nobody wants to see in formulas."""
+    entries = (body.mass, *body.inertia, *body.centre)
+    long = any(number.q > _LONGEST for entry in entries for number in entry.atoms(sp.Rational))
+    return len(body.values) == len(body.parameters) and (bool(body.parameters) or long)
+
+
 def _mass(reader: BodyReader) -> sp.Expr | None:
     """The mass, or the symbol M where the file does not say."""
     if reader.table.value("mass") is None:
@@ -106,12 +114,12 @@ def _read_distributed(kind: str) -> Reading:
             return None
         from rigidsym.mechanics.bodies import body_of
 
-        return body_of(
-            found,
-            name=name,
-            parameters=reader.declared.given(),
-            allow=bool(reader.table.flag("allow")),
-        )
+        allow = bool(reader.table.flag("allow"))
+        body = body_of(found, name=name, parameters=reader.declared.given(), allow=allow)
+        if kind == "shape" or not _is_measured(body):
+            return body
+        measured = _read_inertia(reader.fresh(numbers_of(body)), name)
+        return measured and replace(measured, title=body.title)
 
     return read
 

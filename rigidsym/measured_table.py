@@ -5,17 +5,20 @@ The derivation stays exact: what was measured becomes parameters that have a val
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from rigidsym.body_reader import BodyReader
+from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Known
 
 if TYPE_CHECKING:
     from rigidsym.measured.result import Measured
 
+_DIGITS = 30  # with which exact sums are evaluated
 _ROUNDING = 1e-14  # of the largest moment: smaller numbers are what rounding leaves
 _SLOTS = tuple(f"I_{min(i, j)}{max(i, j)}" for i in (1, 2, 3) for j in (1, 2, 3))
 _CENTRE = ("x_C", "y_C", "z_C")
@@ -90,20 +93,45 @@ def read_known(reader: BodyReader) -> Known | None:
 
 
 def known(reader: BodyReader, found: Measured) -> Known | None:
-    """The numbers of a file, as if the table had them itself; what rounding left is zero.
+    """The numbers of a file, as if the table had them itself.
 
     The request keeps the numbers in place of the file, so that it can be repeated without it.
     """
-    scale = float(abs(found.inertia).max())
-    size = float(abs(found.centre).max() + (scale / found.mass) ** 0.5)
-    numbers = {
-        "inertia": [[_clean(entry, scale) for entry in row] for row in found.inertia.tolist()],
-        "mass": found.mass,
-        "centre": [_clean(value, size) for value in found.centre.tolist()],
-    }
+    numbers = _cleaned(found.mass, found.centre.tolist(), found.inertia.tolist())
     table = reader.table.instead(numbers)
     reader.declared.files[table.path] = numbers
     return read_known(BodyReader(table, reader.declared, reader.folder, reader.suffix))
+
+
+def numbers_of(body: RigidBody) -> dict[str, object]:
+    """What [body] would say of a body whose parameters all have values.
+
+    The sums over its parts were made exactly; they are rounded once.
+    """
+    values = {
+        p.symbol: sp.Rational(*p.value.as_integer_ratio())
+        for p in body.parameters
+        if p.value is not None
+    }
+
+    def rounded(entries: Iterable[sp.Expr]) -> list[float]:
+        return [float(entry.xreplace(values).evalf(_DIGITS)) for entry in entries]
+
+    inertia = rounded(body.inertia)
+    rows = [inertia[k : k + 3] for k in (0, 3, 6)]
+    (mass,) = rounded([body.mass])
+    return _cleaned(mass, rounded(body.centre), rows)
+
+
+def _cleaned(mass: float, centre: list[float], inertia: list[list[float]]) -> dict[str, object]:
+    """The values of [body]; what rounding left in the place of zero is zero."""
+    scale = max(abs(entry) for row in inertia for entry in row)
+    size = max(map(abs, centre)) + (scale / mass) ** 0.5
+    return {
+        "inertia": [[_clean(entry, scale) for entry in row] for row in inertia],
+        "mass": mass,
+        "centre": [_clean(value, size) for value in centre],
+    }
 
 
 def _clean(value: float, scale: float) -> float | int:

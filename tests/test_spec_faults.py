@@ -173,8 +173,8 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
             'line 4: output.kernels[0]: unknown name "nunpy"; did you mean numpy?',
         ),
         (
-            f'{ZXZ}[output]\nquantities = ["mass\\u001b[2J"]',
-            'line 4: output.quantities[0]: unknown name "mass\\u001b[2J"; known: '
+            f'{ZXZ}[output]\nquantities = ["weight\\u001b[2J"]',
+            'line 4: output.quantities[0]: unknown name "weight\\u001b[2J"; known: '
             + ", ".join(QUANTITIES),
         ),
         (

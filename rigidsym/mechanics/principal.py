@@ -9,6 +9,7 @@ import sympy as sp
 from rigidsym.algebra.rational import Rationals
 
 _LAMBDA = sp.Symbol("lambda")
+_MOST_OPERATIONS = 200  # of a tensor whose characteristic polynomial is tried
 _LETTERS = ("x", "y", "z")
 
 
@@ -73,7 +74,10 @@ def _one_axis_apart(inertia: sp.ImmutableMatrix, alone: int) -> Principal:
 
 def _factored(inertia: sp.ImmutableMatrix) -> Principal | None:
     """From the factors of the characteristic polynomial over the rational functions."""
-    polynomial = sp.expand(sp.det(inertia - _LAMBDA * sp.eye(3), method="berkowitz"))
+    if sp.count_ops(inertia) > _MOST_OPERATIONS:
+        return None
+    matrix = sp.Matrix(inertia - _LAMBDA * sp.eye(3))
+    polynomial = sp.expand(matrix.det(method="berkowitz"))
     factors = sp.factor_list(sp.together(polynomial), _LAMBDA)[1]
     roots: list[sp.Expr] = []
     for factor, times in factors:
