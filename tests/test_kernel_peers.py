@@ -1,0 +1,75 @@
+"""Generated functions inside Dask and xarray, as they are."""
+
+from __future__ import annotations
+
+import pickle
+
+import dask.array as da
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import derived
+from distributed import Client, LocalCluster
+from kernel_modules import inputs, module
+from numpy.testing import assert_array_equal
+
+
+@pytest.mark.parametrize("name", ["angular_velocity_body", "rotation_matrix"])
+def test_apply_gufunc_takes_the_signature(name):
+    arrays = inputs(name, (100,))
+    function = getattr(module(), name)
+    chunked = [da.from_array(array, chunks=(30, 3)) for array in arrays]
+    found = da.apply_gufunc(function, function.signature, *chunked, output_dtypes=float)
+    assert_array_equal(found.compute(scheduler="threads"), function(*arrays))
+
+
+def test_apply_gufunc_gives_value_and_jacobian():
+    asked = {"angular_velocity_body": "q"}
+    function = derived("ZXZ").kernels(derivatives=asked).load().angular_velocity_body_jacobian_q
+    arrays = inputs("angular_velocity_body", (50,))
+    chunked = [da.from_array(array, chunks=(20, 3)) for array in arrays]
+    both = da.apply_gufunc(function, function.signature, *chunked, output_dtypes=(float, float))
+    for found, expected in zip(both, function(*arrays), strict=True):
+        assert_array_equal(found.compute(scheduler="sync"), expected)
+
+
+@pytest.mark.parametrize("is_chunked", [False, True])
+def test_apply_ufunc_keeps_the_dimensions(is_chunked):
+    q, q_dot = inputs("angular_velocity_body", (40,))
+    function = module().angular_velocity_body
+    given = [
+        xr.DataArray(q, dims=("time", "angle"), coords={"time": np.arange(40)}),
+        xr.DataArray(q_dot, dims=("time", "rate")),
+    ]
+    found = xr.apply_ufunc(
+        function,
+        *([array.chunk(time=15) for array in given] if is_chunked else given),
+        input_core_dims=[["angle"], ["rate"]],
+        output_core_dims=[["axis"]],
+        dask="parallelized",
+        output_dtypes=[float],
+        dask_gufunc_kwargs={"output_sizes": {"axis": 3}},
+    )
+    assert found.dims == ("time", "axis")
+    assert_array_equal(found.compute(), function(q, q_dot))
+
+
+def test_two_workers_of_a_cluster_share_the_chunks(tmp_path, monkeypatch):
+    """A written module goes to the workers by its name, as pickle sends it."""
+    path = derived("ZYX").kernels().write(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    functions = __import__(path.stem)
+    matrix = functions.rotation_matrix
+    assert pickle.loads(pickle.dumps(matrix)) is matrix
+    q = inputs("rotation_matrix", (1000,))[0]
+    with (
+        LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=tmp_path
+        ) as cluster,
+        Client(cluster) as client,
+    ):
+        client.upload_file(str(path))
+        chunked = da.from_array(q, chunks=(100, 3))
+        found = da.apply_gufunc(matrix, matrix.signature, chunked, output_dtypes=float)
+        assert_array_equal(found.compute(), matrix(q))
+        assert len(client.scheduler_info()["workers"]) == 2
