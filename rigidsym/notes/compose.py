@@ -21,46 +21,35 @@ from rigidsym.notes.claims_table import claims_in_a_table
 from rigidsym.notes.document import (
     Block,
     Cited,
-    Code,
     Document,
     Equation,
-    EquationReference,
     EquationRow,
     Figure,
     Paragraph,
-    Program,
     Section,
-    Table,
     Text,
 )
 from rigidsym.notes.entries import entry_names, indexed
 from rigidsym.notes.figure import figure_of
+from rigidsym.notes.fitting import Fitter
 from rigidsym.notes.formula import markup
-from rigidsym.notes.layout import PAGE, display
 from rigidsym.notes.manner import DEFAULT, Manner
-from rigidsym.notes.naming import Namer, Part
-from rigidsym.notes.notation import Notation, notation_of
+from rigidsym.notes.notation import notation_of
 from rigidsym.notes.prose import motion, product, turn
 from rigidsym.notes.rewriting import in_manner
-from rigidsym.notes.short import in_short
 from rigidsym.notes.singular_words import failures, meaning, measured
-from rigidsym.notes.vector_words import sum_of_vectors
+from rigidsym.notes.summary import summary
+from rigidsym.notes.tables import functions, symbols
 from rigidsym.notes.words import (
     convention,
     equal,
     symbols_of,
-    unit_in_words,
     with_symbols,
     words,
 )
 
 _OPERATOR = Markup(r"\mathbf{C}(\mathbf{u})", "C(u)")
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
-
-_LINES_AN_ENTRY = 1.5  # of a listing; with more of them, parts get names
-_MOST_LINES = 24  # of one quantity, where there is a short way to say it
-_ROOM_OF_A_NAME = 6.0  # ems
-_CODE_WIDTH = 76  # columns of typewriter type on a page
 
 _ANGULAR_VELOCITY = (
     "rotation_rate",
@@ -117,7 +106,7 @@ class _Composer:
         self.functions = functions
         self.notation = notation_of(derivation.arguments, manner, derivation.model)
         self.symbols = symbols_of(derivation)
-        self.namer = Namer(self.notation)
+        self.fitter = Fitter(derivation, self.notation)
         self.said: set[str] = set()
 
     def sections(self) -> Iterator[Section]:
@@ -132,10 +121,13 @@ class _Composer:
             "The kinetic energy": self._steps(ENERGIES),
             "The angular momentum": self._steps(MOMENTA),
             "What was proved": self._proofs(),
+            "Symbols": iter([symbols(self.derivation, self.notation)]),
             "Functions": self._functions(),
         }
         filled = ((title, tuple(blocks)) for title, blocks in parts.items())
-        return (Section(title, blocks) for title, blocks in filled if blocks)
+        sections = [Section(title, blocks) for title, blocks in filled if blocks]
+        yield from sections
+        yield summary(self.derivation, sections, self.notation)
 
     def _convention(self) -> Iterator[Block]:
         return (Paragraph(text) for text in convention(self.derivation, self.notation.manner))
@@ -227,35 +219,7 @@ class _Composer:
         for step in self.derivation.steps:
             if step.quantity.name in names:
                 yield Paragraph(self._lead(step))
-                yield from self._fitted(self._equation(step), step)
-
-    def _fitted(self, equation: Equation, step: Step) -> Iterator[Block]:
-        """An equation; where it would be long, in short, or its parts with their names first."""
-        if equation.matrix is None or not self._is_long(equation):
-            yield equation
-            return
-        short = in_short(step, self.derivation, self.notation)
-        if short is not None and self.model.vector:
-            yield replace(equation, sides=(*equation.sides, *short), matrix=None, entries=())
-            return
-        named = self.namer.named(equation.matrix, PAGE - _ROOM_OF_A_NAME)
-        parts = definitions(named.parts, self.notation) if named.parts else None
-        renamed = replace(equation, matrix=named.matrix)
-        lines = sum(display(e, self.notation, PAGE).lines for e in (parts, renamed) if e)
-        if short is not None and lines > _MOST_LINES:
-            self.namer.forget(named)
-            yield replace(equation, sides=(*equation.sides, *short), matrix=None, entries=())
-            yield Paragraph((f"Written out, this would fill {lines} lines.",))
-            return
-        if parts is not None:
-            yield Paragraph(("With the abbreviations",))
-            yield parts
-        yield renamed
-
-    def _is_long(self, equation: Equation) -> bool:
-        shown = display(equation, self.notation, PAGE)
-        fits = shown.width <= PAGE and shown.lines <= _LINES_AN_ENTRY * len(equation.entries)
-        return shown.done == "listed" and not fits
+                yield from self.fitter.fitted(self._equation(step), step)
 
     def _lead(self, step: Step) -> Text:
         """How the quantity follows; what has been said once is not said again."""
@@ -278,13 +242,6 @@ class _Composer:
     def _equation(self, step: Step) -> Equation:
         function = _call(step) if step.quantity.name in self.functions else ""
         equation = equation_of(step, self.derivation.arguments)
-        form = step.vector_form
-        if form is not None:
-            # the vector says it; its components are what the function evaluates
-            sides = (*equation.sides, sum_of_vectors(form, self.notation))
-            as_vector = replace(equation, sides=sides)
-            is_short = not display(as_vector, self.notation, PAGE).done
-            equation = as_vector if is_short else replace(as_vector, matrix=None, entries=())
         return replace(equation, function=function)
 
     def _proofs(self) -> Iterator[Block]:
@@ -292,56 +249,8 @@ class _Composer:
         yield from claims_in_a_table([(s.quantity.name, p) for s in steps for p in s.proofs])
 
     def _functions(self) -> Iterator[Block]:
-        if not self.functions:
-            return
-        yield Paragraph(
-            words(
-                "The module {} evaluates the equations for arrays of any shape, components last.",
-                Code(self.module),
-            )
-        )
-        yield Table(
-            caption="The function that evaluates each equation",
-            head=(("Equation",), ("Quantity",), ("Function",), ("Unit",)),
-            rows=tuple(
-                (
-                    _reference(step),
-                    (step.quantity.symbol,),
-                    (Code(_call(step)),),
-                    (unit_in_words(step.quantity.unit),),
-                )
-                for step in self.derivation.steps
-                if step.quantity.name in self.functions
-            ),
-        )
-        yield Paragraph(("For example,",))
-        yield Program(self._example())
-
-    def _example(self) -> str:
-        """A call of one function with made-up numbers; of the angular velocity, if it is there."""
-        shown = "angular_velocity_body"
-        name = shown if shown in self.functions else self.functions[0]
-        module = self.module.removesuffix(".py")
-        inputs = self.derivation.step(name).quantity.inputs
-        given = (_given(self.derivation.argument(argument)) for argument in inputs)
-        return "\n".join(
-            [
-                f"import {module} as kinematics",
-                "",
-                *given,
-                f"kinematics.{name}({', '.join(inputs)})",
-            ]
-        )
-
-
-def definitions(parts: Sequence[Part], notation: Notation) -> Equation:
-    """k₁ = ..., k₂ = ...: what the names of parts stand for."""
-    names, values = zip(*parts, strict=True)
-    return Equation(
-        sides=(),
-        matrix=sp.ImmutableMatrix(values),
-        entries=tuple(markup(name, notation) for name in names),
-    )
+        if self.functions:
+            yield from functions(self.derivation, self.module, self.functions)
 
 
 def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
@@ -362,15 +271,3 @@ def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
 
 def _call(step: Step) -> str:
     return f"{step.quantity.name}({', '.join(step.quantity.inputs)})"
-
-
-def _given(argument: Argument) -> str:
-    """q = [0.1, 0.2, 0.3]  # phi, theta, psi"""
-    numbers = ", ".join(f"{k / 10:.1f}" for k in range(1, 1 + len(argument.symbols)))
-    line = f"{argument.name} = [{numbers}]"
-    explained = f"{line}  # {', '.join(argument.names)}"
-    return explained if len(explained) <= _CODE_WIDTH else line
-
-
-def _reference(step: Step) -> Text:
-    return (EquationReference(step.quantity.name),)

@@ -104,6 +104,7 @@ Block = Paragraph | Equation | EquationRow | Table | Program | Figure
 class Section:
     title: str
     blocks: tuple[Block, ...]
+    on_own_page: bool = False  # at the end, on a sheet that can be handed out alone
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rigidsym import resources
+from rigidsym import __version__, resources
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.notes.document import (
     Block,
@@ -25,6 +25,7 @@ from rigidsym.notes.document import (
 )
 from rigidsym.notes.escape import escape
 from rigidsym.notes.layout import display, pack
+from rigidsym.notes.plain import cleaned
 from rigidsym.notes.prose import announcement
 from rigidsym.notes.tikz import tikz
 
@@ -51,11 +52,34 @@ def print_latex(document: Document) -> str:
         sections=[
             {"title": escape(section.title), "body": printer.body(section)}
             for section in document.sections
+            if not section.on_own_page
         ],
+        sheets=[
+            {"title": escape(section.title), "body": printer.body(section)}
+            for section in document.sections
+            if section.on_own_page
+        ],
+        metadata=metadata(document),
         sources=[
             {"key": printer.key(source), "text": escape(source)} for source in document.sources
         ],
     )
+
+
+def metadata(document: Document) -> str:
+    """What a PDF says of itself, as the entries of its information dictionary."""
+    said = {
+        "Title": document.title,
+        "Subject": document.subtitle,
+        "Author": "rigidsym",
+        "Creator": f"rigidsym {__version__}",
+    }
+    return " ".join(f"/{key} <{_utf16(text)}>" for key, text in said.items())
+
+
+def _utf16(text: str) -> str:
+    """Any text as a string of a PDF; nothing in it is TeX."""
+    return ("\ufeff" + cleaned(text)).encode("utf-16-be", "replace").hex().upper()
 
 
 class _Printer:
@@ -82,7 +106,7 @@ class _Printer:
             case Figure():
                 return self._figure(block)
             case Program():
-                return f"\\begin{{verbatim}}\n{block.code}\n\\end{{verbatim}}"
+                return f"{{\\keep\n\\begin{{verbatim}}\n{block.code}\n\\end{{verbatim}}\n}}"
 
     def _equation(self, equation: Equation) -> str:
         width = _NUMBERED_LINE if equation.number else _LINE

@@ -43,9 +43,9 @@ class Display:
 def display(equation: Equation, notation: Notation, width: float) -> Display:
     """The equation in the first form that fits into `width` ems; a listing where none does."""
     if equation.scalar is not None:
-        return Display(*_scalar(equation, latex(equation.scalar, notation), width))
+        return _scalar(equation, latex(equation.scalar, notation), width)
     if equation.matrix is None:
-        return Display(*_chain(equation, width))
+        return _chain(equation, width)
     full = _rows(equation.matrix, notation, shorthand=False)
     if not equation.sides:
         return _definitions(equation, full, width)
@@ -60,12 +60,22 @@ def display(equation: Equation, notation: Notation, width: float) -> Display:
     return Display(_environment("aligned", _ROW.join(lines)), widest, "listed", len(lines))
 
 
+def height(equation: Equation, notation: Notation) -> float:
+    """About how many lines of text an equation takes, with the air around it."""
+    if equation.matrix is None:
+        line = 2.4 if any(r"\frac" in side.latex for side in equation.sides) else 1.3
+        return 0.7 + line * display(equation, notation, PAGE).lines
+    rows = _rows(equation.matrix, notation, shorthand=False)
+    return 1.2 + sum(2.4 if any(r"\frac" in entry for entry in row) else 1.2 for row in rows)
+
+
 def pack(equations: Sequence[Equation], notation: Notation, width: float) -> str:
     """Short equations, as many on a line as fit into `width` ems."""
     lines: list[str] = []
     room = 0.0
     for equation in equations:
-        form, needed = _one_line(equation, _rows(equation.matrix, notation, shorthand=False))
+        shown = display(equation, notation, width)
+        form, needed = shown.latex, shown.width
         if lines and needed + 2 * _QUAD <= room:
             lines[-1] += rf" \qquad {form}"
             room -= needed + 2 * _QUAD
@@ -155,34 +165,31 @@ def _listing(equation: Equation, rows: Rows, width: float) -> tuple[list[str], f
     return lines, head + widest
 
 
-def _scalar(equation: Equation, value: str, width: float) -> tuple[str, float]:
-    """A value on one line with its sides, or below them and broken at + and −; with the width."""
+def _scalar(equation: Equation, value: str, width: float) -> Display:
+    """A value on one line with its sides, or below them and broken at + and −."""
     *sides, last = (side.latex for side in equation.sides)
     whole = " = ".join([*sides, last, value])
     if ems(whole) <= width:
-        return whole, ems(whole)
-    head = sides[0] if sides else last
+        return Display(whole, ems(whole))
+    first = sides[0] if sides else last
     above = [" = ".join([*sides[1:], last])] if sides else []
-    room = width - ems(head) - _EQUAL
-    first, *others = break_lines(value, room, ems, _QUAD)
-    lines = [*above, first.text]
-    text = f"{head} &= " + f"{_ROW}&= ".join(lines)
-    for line in others:
-        text += _ROW + "&" + r"\quad" * (1 + line.depth) + f" {{}}{line.text}"
-    widths = [*map(ems, lines), *(_QUAD * (1 + line.depth) + ems(line.text) for line in others)]
-    return _environment("aligned", text), ems(head) + _EQUAL + max(widths)
+    head = ems(first) + _EQUAL
+    lines, widest = _hanging("=", [*above, value], width - head)
+    inside = first + _HIGH_ROW.join(lines)
+    return Display(_environment("aligned", inside), head + widest, lines=len(lines))
 
 
-def _chain(equation: Equation, width: float) -> tuple[str, float]:
-    """Sides that are equal: on one line, or each on its own; with the width."""
+def _chain(equation: Equation, width: float) -> Display:
+    """Sides that are equal: on one line, or each on its own."""
     sides = [side.latex for side in equation.sides]
     whole = " = ".join(sides)
     if ems(whole) <= width:
-        return whole, ems(whole)
+        return Display(whole, ems(whole))
     first, *others = sides
     head = ems(first) + _EQUAL
     lines, widest = _hanging("=", others, width - head)
-    return _environment("aligned", first + _HIGH_ROW.join(lines)), head + widest
+    inside = first + _HIGH_ROW.join(lines)
+    return Display(_environment("aligned", inside), head + widest, lines=len(lines))
 
 
 def _hanging(sign: str, formulas: Sequence[str], room: float) -> tuple[list[str], float]:

@@ -1,0 +1,116 @@
+"""The results of a derivation on one sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.energy_quantities import ENERGIES, MOMENTA
+from rigidsym.notes.document import (
+    Block,
+    Equation,
+    EquationReference,
+    EquationRow,
+    Paragraph,
+    Section,
+    Text,
+)
+from rigidsym.notes.formula import markup
+from rigidsym.notes.layout import PAGE, display, height
+from rigidsym.notes.notation import Notation
+from rigidsym.notes.singular_words import failures, meaning, measured
+from rigidsym.notes.words import convention, listed
+
+TITLE = "Summary"
+_SENTENCES = 2  # what the coordinates are, and which way the rotation goes
+_SHEET = 46.0  # lines of a page that displays may take, beside their headings
+
+_GROUPS: Sequence[tuple[str, tuple[str, ...]]] = (
+    ("The rotation", ("rotation_matrix",)),
+    ("The angular velocity", ("angular_velocity_space", "angular_velocity_body")),
+    ("The rate matrices", ("rate_matrix_space", "rate_matrix_body")),
+    ("Their inverses", ("inverse_rate_matrix_space", "inverse_rate_matrix_body")),
+    (
+        "The rates of the coordinates",
+        ("rates_from_angular_velocity_space", "rates_from_angular_velocity_body"),
+    ),
+    ("The angular acceleration", ("angular_acceleration_space", "angular_acceleration_body")),
+    ("The kinetic energy", ENERGIES),
+    ("The angular momentum", MOMENTA),
+)
+
+
+def summary(derivation: Derivation, sections: Sequence[Section], notation: Notation) -> Section:
+    """A section that fits on one sheet: results that are short enough, others by their numbers."""
+    blocks = tuple(_blocks(derivation, _numbered(sections), notation))
+    return Section(TITLE, blocks, on_own_page=True)
+
+
+def _numbered(sections: Sequence[Section]) -> Mapping[str, Equation]:
+    blocks = (block for section in sections for block in section.blocks)
+    return {b.label: b for b in blocks if isinstance(b, Equation) and b.number}
+
+
+def _blocks(
+    derivation: Derivation, equations: Mapping[str, Equation], notation: Notation
+) -> Iterator[Block]:
+    yield from (Paragraph(text) for text in convention(derivation, notation.manner)[:_SENTENCES])
+    room = _SHEET
+    for title, labels in _GROUPS:
+        there = [equations[label] for label in labels if label in equations]
+        if not there:
+            continue
+        results = [_result(equation) for equation in there if _is_whole(equation, derivation)]
+        short = [result for result in results if _fits(result, notation)]
+        needed = _height(short, notation)
+        if short and needed <= room:
+            room -= needed
+            yield Paragraph((f"{title} ", *_numbers(there), ":"))
+            yield EquationRow(tuple(short))
+        else:
+            yield Paragraph((f"{title}: see ", *_numbers(there), "."))
+    yield from _where_it_fails(derivation, notation)
+
+
+def _height(equations: Sequence[Equation], notation: Notation) -> float:
+    """Of a row of equations, which may share a line."""
+    heights = [height(equation, notation) for equation in equations]
+    widths = [display(equation, notation, PAGE).width for equation in equations]
+    return max(heights, default=0.0) if sum(widths) + 2 * len(widths) <= PAGE else sum(heights)
+
+
+def _numbers(equations: Sequence[Equation]) -> Text:
+    return listed([(EquationReference(equation.label),) for equation in equations])
+
+
+def _result(equation: Equation) -> Equation:
+    """The symbol and what it comes to, without the steps between and what was proved of it."""
+    has_value = equation.matrix is not None or equation.scalar is not None
+    sides = equation.sides[:1] if has_value else (equation.sides[0], equation.sides[-1])
+    return Equation(
+        sides=sides, matrix=equation.matrix, scalar=equation.scalar, entries=equation.entries
+    )
+
+
+def _is_whole(equation: Equation, derivation: Derivation) -> bool:
+    """Whether it needs no abbreviations that were explained beside it."""
+    expression = derivation.step(equation.label).expression
+    return equation.matrix is None or equation.matrix == expression
+
+
+def _fits(equation: Equation, notation: Notation) -> bool:
+    shown = display(equation, notation, PAGE)
+    return not shown.done and shown.width <= PAGE
+
+
+def _where_it_fails(derivation: Derivation, notation: Notation) -> Iterator[Block]:
+    """What vanishes there, and where it does; what is lost there stands in the note."""
+    found = derivation.singularities
+    if found is None:
+        return
+    if found.determinant is not None:
+        determinant = Equation(sides=(*measured(found), markup(found.determinant, notation)))
+        if display(determinant, notation, PAGE).lines == 1:
+            yield Paragraph(meaning(found))
+            yield determinant
+    yield Paragraph(next(failures(derivation, found)))
