@@ -48,7 +48,7 @@ class _Page:
 
     def __init__(self, derivation: Derivation, document: Document) -> None:
         self.derivation = derivation
-        self.document = document
+        self.document = document.without_sheets  # a page has no room to say it twice
         self.functions = functions_of(derivation.model)
         self.groups = groups_of(derivation, shown_angles(derivation.model))
         self.copies = copies_of(derivation, document)
