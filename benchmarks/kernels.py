@@ -1,132 +1,251 @@
-"""Kernels beside `sympy.lambdify(..., modules="numpy", cse=True)` on one batch of orientations.
+"""Kernels of every target beside their peers: time, threads, memory, generation, growth, errors.
 
-Both evaluate the same expressions in float64. Ours takes q as one C-contiguous (N, 3) and gives
-one (N, ...). lambdify takes and gives a contiguous array a component, the layout it is fastest
-in; stacking its results to one array, as ours gives them, is timed beside it.
+All sides evaluate the same expressions in float64, on one processor core, by turns. Ours take q as
+one C-contiguous (N, 3) and fill an `out`; each peer has the layout that it is fastest in.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
-from benchmarks.measure import Settings, Spread, interleaved, peak_memory, ratios, timed
-from benchmarks.report import Column, Figure, Report, Table, spread_columns
-from rigidsym.api import derive
-from rigidsym.models.catalogue import EulerAngles
-
-SEQUENCES = ("ZXZ", "ZYX")
-QUANTITIES = (
-    "rotation_matrix",
-    "angular_velocity_space",
-    "angular_velocity_body",
-    "rates_from_angular_velocity_space",
-    "rates_from_angular_velocity_body",
+from benchmarks.kernel_parts import (
+    calls,
+    chains,
+    errors,
+    figures_of_parts,
+    generation,
+    memory,
+    sizes_of_targets,
+    threads,
 )
-LEAST_RATIO = 1.5
-MOST_EXTRA = 2.0  # MB beyond the outputs
+from benchmarks.measure import Settings, Spread, interleaved, progress, ratios, timed
+from benchmarks.peers import PEERS, Array, Side, Task, jitted
+from benchmarks.report import Cell, Column, Figure, Report, Table, spread_columns
+from rigidsym.api import Motion, derive
+from rigidsym.kernels.targets import TARGETS
+
+SEQUENCE = "ZXZ"
+QUANTITIES = {"angular_velocity_body": "Ω′", "rotation_matrix": "R"}
+ARRAYS = ("numpy", "numba", "c", "jax")  # javascript has no arrays
 REPEATS = 15
-MEGABYTE = 1e6
-
-OURS, APART, STACKED = "rigidsym", "lambdify, components apart", "lambdify, stacked"
-
-Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class Case:
-    """One quantity of one convention, ready to be called by each side."""
-
-    sequence: str
-    quantity: str
-    calls: dict[str, Callable[[], Any]]
+COPY = "a plain copy of as many bytes"
+LAMBDIFY, JAX, HEYOKA = "lambdify, cse", "JAX jit", "heyoka cfunc"
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Seconds of each repeat and extra bytes, by side."""
+    """Seconds of each repeat of one case, by side."""
 
-    case: Case
-    seconds: dict[str, list[float]]
-    extra: dict[str, int]
+    quantity: str
+    size: int
+    bytes: int  # read and written, each once
+    seconds: Mapping[str, Sequence[float]]
 
     @property
-    def ratio(self) -> Spread:
-        """lambdify's time over ours, components apart."""
-        return ratios(self.seconds[APART], self.seconds[OURS])
+    def name(self) -> str:
+        return f"{QUANTITIES[self.quantity]} at {self.size:.0e}".replace("e+0", "e")
+
+    def ratio(self, above: str, below: str) -> Spread | None:
+        """Times of one side over those of another, turn by turn; None where one is missing."""
+        if above not in self.seconds or below not in self.seconds:
+            return None
+        return ratios(self.seconds[above], self.seconds[below])
+
+    def nanoseconds(self, side: str) -> float | None:
+        return (
+            Spread.of(self.seconds[side]).middle / self.size * 1e9 if side in self.seconds else None
+        )
 
 
 def run(settings: Settings) -> Report:
-    """Every case, its sides interleaved."""
-    made = [case for sequence in SEQUENCES for case in cases(sequence, settings.size)]
+    """Every case and every part; a line of each that takes long on standard error."""
+    sizes = (settings.size, settings.size // 10)
     repeats = settings.repeats or REPEATS
-    return report([measure(case, repeats) for case in made], settings.size)
+    with on_one_core():
+        outcomes = [measure(q, size, repeats) for size in sizes for q in QUANTITIES]
+        tables, found = calls(motion(), modules(), repeats)
+        grown = chains(repeats, settings.size // 10)
+    parts = [
+        (tables, found),
+        threads(modules(), settings.size, repeats),
+        memory(modules(), settings.size),
+        generation(motion(), present()),
+        grown,
+        errors(present(), settings.samples),
+        sizes_of_targets(),
+    ]
+    return report(outcomes, parts)
 
 
-def cases(sequence: str, size: int) -> list[Case]:
-    """The quantities of one convention over `size` random orientations."""
-    motion = derive(EulerAngles(sequence))
-    module = motion.kernels("numpy").load()
-    random = np.random.default_rng(0)
-    found = []
-    for quantity in QUANTITIES:
-        step = motion.step(quantity)
-        names = step.quantity.inputs
-        batches = [random.uniform(-3.0, 3.0, (size, 3)) for _ in names]
-        symbols = [symbol for name in names for symbol in motion.argument(name).symbols]
-        peer = lambdified(symbols, step.expression)
-        found.append(_case(sequence, quantity, getattr(module, quantity), peer, batches))
+@cache
+def motion() -> Motion:
+    return derive(SEQUENCE)
+
+
+def present() -> list[str]:
+    """The targets on arrays that can be loaded here."""
+    return [name for name in ARRAYS if name in TARGETS and not TARGETS[name].missing]
+
+
+@cache
+def modules() -> Mapping[str, ModuleType]:
+    found = {}
+    for name in present():
+        progress(f"loading {name}")
+        found[name] = motion().kernels(name).load()
     return found
 
 
-def lambdified(symbols: Sequence[Any], expression: Any) -> Callable[..., list[Array]]:
-    """SymPy's own way to NumPy: all entries, with common subexpressions taken once."""
-    function: Callable[..., list[Array]] = sp.lambdify(
-        symbols, list(expression), modules="numpy", cse=True
+@contextmanager
+def on_one_core() -> Iterator[None]:
+    """Let no library spread over more, where the system can say so."""
+    if not hasattr(os, "sched_setaffinity"):
+        yield
+        return
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {max(before)})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)
+
+
+def sides(quantity: str, size: int) -> tuple[dict[str, Side], int]:
+    """All sides of one case, and the bytes that it reads and writes."""
+    step = motion().step(quantity)
+    arguments = [motion().argument(name) for name in step.quantity.inputs]
+    names = [name for argument in arguments for name in argument.names]
+    symbols = dict(
+        zip((s for a in arguments for s in a.symbols), map(sp.Symbol, names), strict=True)
     )
-    return function
+    plain = [entry.xreplace(symbols) for entry in step.expression]
+    points = np.random.default_rng(0).uniform(-3.0, 3.0, (size, len(names)))
+    task = Task(list(symbols.values()), plain, points, SEQUENCE)
+    found = {name: _ours(module, quantity, points) for name, module in modules().items()}
+    for name, peer in PEERS.items():
+        if peer.is_there and (quantity == "rotation_matrix" or peer.package != "scipy"):
+            progress(f"preparing {name}")
+            found[name] = peer.make(task)
+    moved = 8 * size * (len(names) + len(plain))
+    source, target = np.ones(moved // 16), np.ones(moved // 16)
+    found[COPY] = Side(lambda: np.copyto(target, source), lambda: target)
+    return found, moved
 
 
-def _case(
-    sequence: str,
-    quantity: str,
-    function: Callable[..., Array],
-    peer: Callable[..., list[Array]],
-    batches: Sequence[Array],
-) -> Case:
-    components = [np.ascontiguousarray(column) for batch in batches for column in batch.T]
-    calls: dict[str, Callable[[], Any]] = {
-        OURS: lambda: function(*batches),
-        APART: lambda: peer(*components),
-        STACKED: lambda: np.stack(peer(*components), axis=-1),
-    }
-    return Case(sequence, quantity, calls)
+def _ours(module: ModuleType, quantity: str, points: Array) -> Side:
+    """A target's function, on (N, 3) arrays and with an `out` where it takes one."""
+    batches = [np.ascontiguousarray(part) for part in np.split(points, points.shape[1] // 3, 1)]
+    function = getattr(module, quantity)
+    if module.__name__.endswith("_jax"):
+        return jitted(function, batches)
+    out = function(*batches)
+    return Side(lambda: function(*batches, out=out), lambda: out.reshape(len(points), -1))
 
 
-def measure(case: Case, repeats: int) -> Outcome:
-    """Times and memory of one case; raises where the sides differ in value."""
-    ours, stacked = case.calls[OURS](), case.calls[STACKED]()
-    if not np.allclose(ours.reshape(stacked.shape), stacked, rtol=1e-9, atol=1e-9):
-        raise ArithmeticError(f"{case.sequence} {case.quantity}: ours and lambdify's differ")
-    actions = {side: partial(timed, call) for side, call in case.calls.items()}
-    extra = {side: peak_memory(call) - ours.nbytes for side, call in case.calls.items()}
-    return Outcome(case, interleaved(actions, repeats, warm_up=2), extra)
+def measure(quantity: str, size: int, repeats: int) -> Outcome:
+    """Times of one case; raises where a side differs in value from the first of ours."""
+    found, moved = sides(quantity, size)
+    first = next(iter(found.values())).values()
+    for name, side in found.items():
+        side.call()
+        if name != COPY and not np.allclose(side.values(), first, rtol=1e-9, atol=1e-9):
+            raise ArithmeticError(f"{quantity}: {name} differs from ours")
+    actions = {name: partial(timed, side.call) for name, side in found.items()}
+    return Outcome(quantity, size, moved, interleaved(actions, repeats, warm_up=2))
 
 
-def report(outcomes: Sequence[Outcome], size: int) -> Report:
-    """Times, ratios and memory of each case."""
+Part = tuple[Sequence[Table], Sequence[Figure]]
+
+
+def report(outcomes: Sequence[Outcome], parts: Sequence[Part] = ()) -> Report:
+    """Times, ratios and figures; the first table is the README's."""
+    tables = [_table(outcomes), _ratios(outcomes), _bandwidths(outcomes)]
+    figures = [*_figures(outcomes)]
+    for more, found in parts:
+        tables += more
+        figures += found
+    absent = [name for name, peer in PEERS.items() if not peer.is_there]
+    notes = [f"NumPy's vector instructions here: {_vector_instructions()}"]
+    notes += [f"not installed, and so not beside: {', '.join(absent)}"] if absent else []
     return Report(
-        title=f"Kernels: {size:,} orientations, float64",
-        tables=(_times(outcomes), _ratios(outcomes)),
-        figures=_figures(outcomes),
-        notes=(f"NumPy's vector instructions here: {_vector_instructions()}",),
+        title="Kernels: one core, float64, ZXZ",
+        tables=tuple(tables),
+        figures=(*figures, *figures_of_parts(absent)),
+        notes=tuple(notes),
+        readme=tables[0],
     )
+
+
+def _table(outcomes: Sequence[Outcome]) -> Table:
+    """A side a line, a case a column: medians in nanoseconds an orientation."""
+    names = [*ARRAYS, *PEERS, COPY]
+    there = [name for name in names if any(name in o.seconds for o in outcomes)]
+    ours = {name: f"rigidsym {name}" for name in ARRAYS}
+    rows = tuple(
+        (ours.get(name, name), *(outcome.nanoseconds(name) for outcome in outcomes))
+        for name in there
+    )
+    columns = (Column("ns an orientation"), *(Column(o.name, ".1f") for o in outcomes))
+    return Table("Medians, one core", columns, rows)
+
+
+def _ratios(outcomes: Sequence[Outcome]) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for outcome in outcomes:
+        for below in ("numpy", "c"):
+            for above in (*PEERS, *ARRAYS):
+                spread = outcome.ratio(above, below)
+                if above != below and spread is not None:
+                    rows.append((outcome.name, above, below, *spread.in_order()))
+    columns = (Column("case"), Column("time of"), Column("over ours"), *spread_columns("ratio", 2))
+    return Table("Ratios, turn by turn", columns, tuple(rows))
+
+
+def _bandwidths(outcomes: Sequence[Outcome]) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for outcome in outcomes:
+        limit = outcome.nanoseconds(COPY)
+        for name in ARRAYS:
+            taken = outcome.nanoseconds(name)
+            if taken is not None and limit is not None:
+                per = outcome.bytes / outcome.size
+                rows.append((outcome.name, name, per / taken, per / limit, taken / limit))
+    columns = (
+        Column("case"),
+        Column("target"),
+        Column("GB/s", ".1f"),
+        Column("plain copy GB/s", ".1f"),
+        Column("times the copy's time", ".1f"),
+    )
+    return Table("Bytes read and written, each once, a second", columns, tuple(rows))
+
+
+def _figures(outcomes: Sequence[Outcome]) -> Iterator[Figure]:
+    for outcome in outcomes:
+        is_large = outcome is outcomes[0] or outcome.size == outcomes[0].size
+        if is_large:
+            yield _figure(outcome, "numpy", LAMBDIFY, 3.0)
+            yield _figure(outcome, "numpy", JAX, 1.0)
+        yield _figure(outcome, "c", HEYOKA, 1.0 if is_large else 1.3)
+
+
+def _figure(outcome: Outcome, ours: str, peer: str, least: float) -> Figure:
+    spread = outcome.ratio(peer, ours)
+    name, reach = f"{outcome.name}: {ours} against {peer}", f"at least {least:g} times as fast"
+    if spread is None:
+        return Figure(name, reach, "one of the two is not here", False)
+    low, middle, high = spread.in_order()
+    found = f"{middle:.2f} times ({low:.2f} to {high:.2f})"
+    return Figure(name, reach, found, middle >= least)
 
 
 def _vector_instructions() -> str:
@@ -134,65 +253,3 @@ def _vector_instructions() -> str:
     found: Any = np.show_config(mode="dicts")  # typed differently from one NumPy to the next
     extensions = found.get("SIMD Extensions", {})
     return ", ".join([*extensions.get("baseline", []), *extensions.get("found", [])]) or "unknown"
-
-
-def _times(outcomes: Sequence[Outcome]) -> Table:
-    rows = tuple(
-        (
-            outcome.case.sequence,
-            outcome.case.quantity,
-            side,
-            *Spread.of(seconds).in_order(1000),
-            outcome.extra[side] / MEGABYTE,
-        )
-        for outcome in outcomes
-        for side, seconds in outcome.seconds.items()
-    )
-    columns = (
-        Column("convention"),
-        Column("quantity"),
-        Column("side"),
-        *spread_columns("ms", 1),
-        Column("MB beyond the outputs", ".2f"),
-    )
-    return Table("Time of a call, and memory at its worst moment", columns, rows)
-
-
-def _ratios(outcomes: Sequence[Outcome]) -> Table:
-    rows = tuple(
-        (
-            outcome.case.sequence,
-            outcome.case.quantity,
-            side,
-            *ratios(outcome.seconds[side], outcome.seconds[OURS]).in_order(),
-        )
-        for outcome in outcomes
-        for side in (APART, STACKED)
-    )
-    columns = (
-        Column("convention"),
-        Column("quantity"),
-        Column("over rigidsym's time"),
-        *spread_columns("ratio", 2),
-    )
-    return Table("Ratios, turn by turn", columns, rows)
-
-
-def _figures(outcomes: Sequence[Outcome]) -> tuple[Figure, ...]:
-    slowest = min(outcomes, key=lambda outcome: outcome.ratio.middle)
-    largest = max(outcome.extra[OURS] for outcome in outcomes) / MEGABYTE
-    ratio = slowest.ratio.middle
-    return (
-        Figure(
-            "time against lambdify, components apart, the worst case",
-            f"at least {LEAST_RATIO:g} times faster",
-            f"{ratio:.2f} times, {slowest.case.sequence} {slowest.case.quantity}",
-            ratio >= LEAST_RATIO,
-        ),
-        Figure(
-            "memory beyond the outputs, the worst case",
-            f"at most {MOST_EXTRA:g} MB",
-            f"{largest:.2f} MB",
-            largest <= MOST_EXTRA,
-        ),
-    )

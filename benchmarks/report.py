@@ -43,6 +43,16 @@ class Table:
             padded = (self._padded(k, texts[k], width) for k, width in enumerate(widths))
             yield ("  " + "  ".join(padded)).rstrip()
 
+    def markdown(self) -> str:
+        """The same for a Markdown file; what was not measured stays empty."""
+        head = [column.heading for column in self.columns]
+        body = [
+            [column.text(value) for column, value in zip(self.columns, row, strict=True)]
+            for row in self.rows
+        ]
+        lines = [head, ["---"] * len(head), *body]
+        return "".join(f"| {' | '.join(texts)} |\n" for texts in lines)
+
     def _padded(self, place: int, text: str, width: int) -> str:
         is_words = any(isinstance(row[place], str) for row in self.rows)
         return text.ljust(width) if is_words else text.rjust(width)
@@ -71,6 +81,7 @@ class Report:
     figures: tuple[Figure, ...]
     notes: tuple[str, ...] = ()
     data: tuple[dict[str, Cell], ...] = ()  # for programs, where the tables are too coarse
+    readme: Table | None = None  # the one that stands in the README, between its marks
 
     def text(self) -> str:
         parts = [[self.title, "=" * len(self.title)], *(list(t.lines()) for t in self.tables)]

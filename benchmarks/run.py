@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from benchmarks.measure import Settings
     from benchmarks.report import Report
 
+README = Path(__file__).resolve().parent.parent / "README.md"
 NAMES = ("derivation", "form", "catalogue", "cold_start", "kernels", "accuracy", "identify")
 
 
@@ -36,11 +37,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"\n\n{reports[name].text()}", flush=True)
     if len(reports) > 1:
         print(f"\n\n{summary(reports)}")
+    if given.readme:
+        for name, report in reports.items():
+            if report.readme is not None:
+                write_readme(README, name, report.readme.markdown())
     if given.json:
         plain = {name: asdict(report) for name, report in reports.items()}
         whole = {"schema": 1, "machine": machine(), "benchmarks": plain}
         given.json.write_text(json.dumps(whole, indent=1, ensure_ascii=False) + "\n", "utf-8")
     return 0
+
+
+def write_readme(path: Path, name: str, text: str) -> None:
+    """Put a table between the marks of a benchmark; raises ValueError where there are none."""
+    marks = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->\n"
+    before, begin, rest = path.read_text(encoding="utf-8").partition(marks[0])
+    _, end, after = rest.partition(marks[1])
+    if not (begin and end):
+        raise ValueError(f"{path}: no lines {marks[0].strip()} and {marks[1].strip()}")
+    path.write_text(f"{before}{begin}{text}{end}{after}", encoding="utf-8")
 
 
 def run(name: str, settings: Settings) -> Report:
@@ -70,6 +85,7 @@ def _parser() -> argparse.ArgumentParser:
         ("--samples", usual.samples, "orientations of each kind whose errors are taken"),
     ):
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)
+    parser.add_argument("--readme", action="store_true", help="put the tables into README.md")
     parser.add_argument("--fresh", action="store_true", help="survey SymPy's forms anew (minutes)")
     return parser
 

@@ -7,11 +7,25 @@ import json
 import numpy as np
 import pytest
 
-from benchmarks import accuracy, cold_start, derivation, form, identify, kernels, run, sympy_forms
+from benchmarks import (
+    accuracy,
+    cold_start,
+    derivation,
+    form,
+    identify,
+    kernel_parts,
+    kernels,
+    peers,
+    run,
+    sympy_forms,
+)
 from benchmarks.measure import Spread, interleaved, peak_memory, ratios, run_process
 from benchmarks.report import Column, Figure, Report, Table, summary
 
 AS_IT_COMES = {"as it comes": sympy_forms.SIMPLIFIED["as it comes"]}
+
+
+RATIOS = "Ratios, turn by turn"
 
 
 # measure
@@ -135,14 +149,64 @@ def test_cold_start_compares_with_the_import_of_sympy():
 # kernels
 
 
+@pytest.fixture(autouse=True)
+def two_targets(monkeypatch):
+    """The others are compiled elsewhere often enough."""
+    monkeypatch.setattr(kernels, "ARRAYS", ("numpy", "c"))
+
+
 def test_kernels_are_compared_on_equal_values():
-    cases = kernels.cases("ZXZ", 50)
-    outcome = kernels.measure(cases[0], 2)
-    report = kernels.report([outcome], 50)
-    assert [case.quantity for case in cases] == list(kernels.QUANTITIES)
-    assert {len(seconds) for seconds in outcome.seconds.values()} == {2}
-    assert len(report.figures) == 2
-    assert "50 orientations" in report.text()
+    sides, moved = kernels.sides("rotation_matrix", 50)
+    assert {"numpy", kernels.LAMBDIFY, "SciPy from_euler", kernels.COPY} <= set(sides)
+    assert moved == 50 * 12 * 8
+    outcome = kernels.measure("rotation_matrix", 50, 2)
+    report = kernels.report([outcome, kernels.measure("angular_velocity_body", 40, 2)])
+    assert [table.title for table in report.tables][:2] == ["Medians, one core", RATIOS]
+    names = [figure.name for figure in report.figures]
+    assert f"R at 5e1: numpy against {kernels.LAMBDIFY}" in names
+    assert f"Ω′ at 4e1: c against {kernels.HEYOKA}" in names
+    assert all(figure.found for figure in report.figures)
+
+
+def test_a_side_that_differs_is_refused(monkeypatch):
+    wrong = peers.Side(lambda: None, lambda: np.zeros((20, 9)))
+    monkeypatch.setitem(peers.PEERS, "wrong", peers.Peer("numpy", lambda _: wrong))
+    with pytest.raises(ArithmeticError, match="rotation_matrix: wrong differs from ours"):
+        kernels.measure("rotation_matrix", 20, 1)
+
+
+def test_parts_of_kernels_find_what_they_look_for():
+    loaded = {"numpy": kernels.motion().kernels("numpy").load()}
+    for part in (
+        kernel_parts.calls(kernels.motion(), loaded, 1),
+        kernel_parts.threads(loaded, 100, 1),
+        kernel_parts.memory(loaded, 20_000),
+        kernel_parts.generation(kernels.motion(), ["numpy"], 1),
+        kernel_parts.errors(["numpy"], 1),
+        kernel_parts.sizes_of_targets(),
+    ):
+        (table,), figures = part
+        assert table.rows
+        assert figures
+        assert list(table.lines())
+    assert [figure.met for figure in kernel_parts.errors(["numpy"], 2)[1]] == [True]
+
+
+def test_the_smallest_target_is_one_file_and_one_template():
+    assert [figure.met for figure in kernel_parts.sizes_of_targets()[1]] == [True]
+
+
+def test_a_table_goes_between_its_marks(tmp_path):
+    path = tmp_path / "README.md"
+    path.write_text("a\n<!-- kernels: begin -->\nold\n<!-- kernels: end -->\nb\n", "utf-8")
+    table = Table("Title", (Column("what"), Column("ns", ".1f")), (("x", 1.0), ("y", None)))
+    run.write_readme(path, "kernels", table.markdown())
+    assert path.read_text("utf-8") == (
+        "a\n<!-- kernels: begin -->\n| what | ns |\n| --- | --- |\n| x | 1.0 |\n| y |  |\n"
+        "<!-- kernels: end -->\nb\n"
+    )
+    with pytest.raises(ValueError, match="no lines <!-- accuracy: begin -->"):
+        run.write_readme(path, "accuracy", "")
 
 
 # accuracy
