@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import cycle
 from math import degrees, lcm, pi
 
 import sympy as sp
@@ -14,7 +15,11 @@ from rigidsym.notes.words import unit_in_words
 
 _DEGREE = pi / 180
 _SECTIONS = {"q": "Coordinates", "q_dot": "Rates", "parameters": "Constants"}
-_NUMBERS = (0.9, 0.2, -0.4, -0.1, 0.9, 0.4, 0.4, -0.3, 0.8)  # by rows, not far from a rotation
+_VECTOR = (0.4, 0.8, 0.8)
+_NUMBERS = {  # by how many of the coordinates are no angles; a vector where nothing is said
+    4: (0.84, 0.2, 0.4, 0.4),  # a quaternion of about 65°
+    9: (0.5, -0.7, 0.5, 0.8, 0.6, 0.1, -0.4, 0.3, 0.8),  # by rows, not far from a rotation
+}
 _RATES = (0.4, 0.25, 0.7)
 _ANGLE = 40.0  # degrees, where no figure says better
 
@@ -67,10 +72,11 @@ def groups_of(derivation: Derivation, shown: dict[sp.Expr, float]) -> tuple[Grou
 def _coordinates(
     argument: Argument, model: RotationModel, shown: dict[sp.Expr, float]
 ) -> Iterator[Control]:
-    for place, coordinate in enumerate(model.coordinates):
-        period = period_of(coordinate, model)
+    periods = [period_of(coordinate, model) for coordinate in model.coordinates]
+    numbers = cycle(_NUMBERS.get(periods.count(0.0), _VECTOR))
+    for place, (coordinate, period) in enumerate(zip(model.coordinates, periods, strict=True)):
         angle = round(degrees(shown[coordinate])) if coordinate in shown else _ANGLE
-        start = angle if period else _NUMBERS[place % len(_NUMBERS)]
+        start = angle if period else next(numbers)
         yield _control(argument, place, start, period, _reach(argument.units[place], model))
 
 
@@ -92,7 +98,7 @@ def _constants(argument: Argument | None, model: RotationModel) -> Iterator[Cont
         return
     for place, symbol in enumerate(model.constants):
         period = period_of(symbol, model)
-        start = 30.0 if period else _NUMBERS[place % len(_NUMBERS)]
+        start = 30.0 if period else _VECTOR[place % len(_VECTOR)]
         yield _control(argument, place, start, period, 1.0)
 
 

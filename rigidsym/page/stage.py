@@ -19,6 +19,7 @@ from rigidsym.notes.scene import BODY
 from rigidsym.notes.svg import as_in_formulas
 
 _AZIMUTH, _ELEVATION = 35, 22  # degrees, where no figure says better
+_LENGTH = Markup("n", "n")  # of a vector: the angle of the one turn, as in the figure of the note
 
 
 def has_turns(model: RotationModel) -> bool:
@@ -44,12 +45,16 @@ def stage_of(model: RotationModel, notation: Notation) -> Mapping[str, Any]:
         "elevation": round(degrees(asin(toward[2]))) if toward else _ELEVATION,
         "space": list(AXES),
         "body": [_written(named(axis)) for axis in BODY],
-        "turns": [_written(markup(turn.angle, notation)) for turn in model.turns]
-        if has_turns(model)
-        else [],
+        "turns": [_written(name) for name in _names_of_turns(model, notation)],
         "node": "N" if has_turns(model) else "e",
         "omega": _written(named(SPACE.omega)),
     }
+
+
+def _names_of_turns(model: RotationModel, notation: Notation) -> list[Markup]:
+    if has_turns(model):
+        return [markup(turn.angle, notation) for turn in model.turns]
+    return [_LENGTH] if model.vector else []
 
 
 def _written(symbol: Markup) -> str:
