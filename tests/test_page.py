@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
 import re
@@ -183,10 +184,35 @@ def test_what_is_copied_as_python_runs_and_agrees_with_the_kernels():
             np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-13)
 
 
+@pytest.mark.skipif(not shutil.which("cc"), reason="no C compiler")
+def test_what_is_copied_as_c_compiles_without_a_warning_and_agrees(tmp_path: Path):
+    strict = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-shared", "-fPIC")
+    for rotation in ("ZXZ", "rotation_vector", "davenport"):
+        motion = motion_of(rotation)
+        known = motion.kernels().load()
+        rng = np.random.default_rng(4)
+        for name, text in copied(page_of(rotation), "c").items():
+            source, made = tmp_path / f"{rotation}_{name}.c", tmp_path / f"{rotation}_{name}.so"
+            source.write_text(text, encoding="utf-8")
+            subprocess.run(["cc", *strict, source, "-o", made, "-lm"], check=True)
+            inputs = motion.step(name).quantity.inputs
+            vectors = [rng.uniform(-2, 2, len(motion.argument(i).symbols)) for i in inputs]
+            expected = getattr(known, name)(*vectors)
+            out = np.empty(expected.size)
+            pointers = [ctypes.c_void_p(array.ctypes.data) for array in (*vectors, out)]
+            getattr(ctypes.CDLL(str(made)), name)(*pointers)
+            np.testing.assert_allclose(out, expected.ravel(), rtol=1e-12, atol=1e-13)
+
+
 def copied(page: str, language: str) -> dict[str, str]:
     (data,) = re.findall(r"^const \{ stage, .*?\} = (.*);$", page, re.MULTILINE)
-    copies = json.loads(data.replace("<\\/", "</"))["copies"]
-    return {name: texts[language] for name, texts in copies.items()}
+    known = json.loads(data.replace("<\\/", "</"))
+    return {
+        name: "\n".join(
+            f"{known['shared'][language]}\n" if part is None else part for part in texts[language]
+        )
+        for name, texts in known["copies"].items()
+    }
 
 
 def test_what_is_copied_as_latex_is_the_equation():
@@ -363,7 +389,7 @@ def test_a_pole_is_shown_when_it_is_near(tab, tmp_path):
 def test_buttons_copy(tab, tmp_path):
     opened(tab, page_of("ZXZ"), tmp_path)
     tab.call("Browser.grantPermissions", permissions=["clipboardReadWrite"])
-    for language in ("latex", "python"):
+    for language in ("latex", "python", "c"):
         expected = copied(page_of("ZXZ"), language)["angular_velocity_body"]
         tab.click(f'[data-copy="{language}"][data-of="angular_velocity_body"]')
         tab.wait_for("document.getElementById('said').textContent.includes('is copied')")

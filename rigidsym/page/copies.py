@@ -2,29 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from rigidsym.kernels.lower import lower
-from rigidsym.kernels.targets import numpy
+from rigidsym.kernels.targets import c, numpy
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document import Document
 from rigidsym.notes.layout import display
+from rigidsym.page.c import c_of
 from rigidsym.page.python import python_of
+from rigidsym.page.series import series_for
 
-LANGUAGES: Mapping[str, str] = {"latex": "LaTeX", "python": "Python"}  # and how they are written
+LANGUAGES: Mapping[str, str] = {"latex": "LaTeX", "python": "Python", "c": "C"}  # as shown
 
 _PAPER = 30.0  # ems of a display on paper
 
 
-def copies_of(derivation: Derivation, document: Document) -> Mapping[str, Mapping[str, str]]:
-    """label: language: text, for each numbered equation that a kernel evaluates."""
-    program = lower(derivation, numpy.RESERVED)
-    python = {kernel.name: python_of(kernel) for kernel in program.kernels}
-    return {
-        label: {"latex": text, "python": python[label]}
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Copies:
+    """label: language: parts of the text; None stands for what the language has in `shared`."""
+
+    texts: Mapping[str, Mapping[str, Sequence[str | None]]]
+    shared: Mapping[str, str]
+
+    def without(self, labels: Collection[str]) -> Copies:
+        texts = {label: text for label, text in self.texts.items() if label not in labels}
+        return replace(self, texts=texts)
+
+
+def copies_of(derivation: Derivation, document: Document) -> Copies:
+    """The texts for each numbered equation that a kernel evaluates."""
+    program = lower(derivation, numpy.RESERVED | c.RESERVED)
+    kernels = {kernel.name: kernel for kernel in program.kernels}
+    texts: dict[str, dict[str, list[str | None]]] = {
+        label: {"latex": [text], "python": python_of(kernels[label]), "c": c_of(kernels[label])}
         for label, text in _latex(document)
-        if label in python
+        if label in kernels
     }
+    return Copies(texts=texts, shared=series_for(program.kernels))
 
 
 def _latex(document: Document) -> Iterator[tuple[str, str]]:

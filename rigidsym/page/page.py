@@ -8,7 +8,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 from typing import Any
 
 from rigidsym import resources
@@ -20,7 +20,7 @@ from rigidsym.notes.mathml import mathml
 from rigidsym.notes.singular_words import singular
 from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
-from rigidsym.page.copies import copies_of
+from rigidsym.page.copies import Copies, copies_of
 from rigidsym.page.functions import SHOWN, functions_of
 from rigidsym.page.printer import PagePrinter
 from rigidsym.page.stage import shown_angles, stage_of
@@ -55,7 +55,7 @@ class _Page:
 
     def largest(self, over: int) -> Iterator[Equation]:
         """Equations that take as many bytes together, the largest first; those shown live last."""
-        printer = PagePrinter(self.document, copied=self.copies)
+        printer = PagePrinter(self.document, copied=self.copies.texts)
         blocks = (block for section in self.document.sections for block in section.blocks)
         sizes = {b: self._size(b, printer) for b in blocks if isinstance(b, Equation)}
         for equation in sorted(sizes, key=lambda e: (e.label in SHOWN, -sizes[e])):
@@ -64,13 +64,13 @@ class _Page:
                 yield equation
 
     def _size(self, equation: Equation, printer: PagePrinter) -> int:
-        copied = json.dumps(self.copies.get(equation.label, {}))
+        copied = json.dumps(self.copies.texts.get(equation.label, {}))
         return len((printer.forms(equation) + printer.tools(equation) + copied).encode())
 
     def text(self, left_out: Collection[Equation] = ()) -> str:
-        printer = PagePrinter(self.document, copied=self.copies, left_out=left_out)
+        printer = PagePrinter(self.document, copied=self.copies.texts, left_out=left_out)
         labels = {equation.label for equation in left_out}
-        script = self._script({k: copy for k, copy in self.copies.items() if k not in labels})
+        script = self._script(self.copies.without(labels))
         return rendered(
             TEMPLATE,
             printer,
@@ -86,14 +86,15 @@ class _Page:
             stage=self._stage(),
         )
 
-    def _script(self, copies: Mapping[str, Mapping[str, str]]) -> str:
+    def _script(self, copies: Copies) -> str:
         """The script of the page; nothing in it can end its element."""
         data = {
             "stage": self._stage(),
             "controls": [_data(c) for group in self.groups for c in group.controls],
             "inputs": self.functions.arguments,
             "poles": [*self._poles()],
-            "copies": copies,
+            "copies": copies.texts,
+            "shared": copies.shared,
         }
         written = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
         text = (

@@ -5,25 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from rigidsym import resources
-from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.infix import infix
 from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Name, Number
 from rigidsym.kernels.layout import WIDTH, assignment_lines, bracketed, docstring, exploded
 from rigidsym.kernels.narrow import narrowed
 from rigidsym.kernels.targets import numpy_singular as singular
+from rigidsym.page.series import orders_of
 
-_SERIES = "page_series.py.jinja"
 _show = partial(infix, functions={name: name for name in FUNCTIONS})
 
 
-def python_of(kernel: Kernel) -> str:
-    """Imports, what the function calls, and the function."""
+def python_of(kernel: Kernel) -> list[str | None]:
+    """Imports, None for the functions c_k that it calls, and the function."""
     fitted = narrowed(kernel, _show, line=WIDTH - 4, output=WIDTH - 13)
     imports = ", ".join(sorted(_imports(fitted)))
-    parts = [f"from math import {imports}\n"] if imports else []
-    parts += [_series(fitted)] if _orders(fitted) else []
-    return "\n\n".join([*parts, "\n".join(_function(fitted))]) + "\n"
+    head = [f"from math import {imports}\n\n"] if imports else []
+    series = [None] if orders_of(kernel) else []
+    return [*head, *series, "\n".join(_function(fitted)) + "\n"]
 
 
 def _imports(kernel: Kernel) -> set[str]:
@@ -31,20 +29,6 @@ def _imports(kernel: Kernel) -> set[str]:
     named = calls.intersection(FUNCTIONS) - {"abs"}
     guards = {"nan"} if singular.guards_of(kernel) else set()
     return named | guards | ({"sqrt", "tan"} if calls.difference(FUNCTIONS) else set())
-
-
-def _orders(kernel: Kernel) -> list[int]:
-    orders = (call.order for call in singular.calls_of(kernel).values())
-    return [order for order in orders if order is not None]
-
-
-def _series(kernel: Kernel) -> str:
-    lines = []
-    for order in range(FIRST_SERIES, max(_orders(kernel)) + 1):
-        series = series_of(order)
-        numbers = [series.switch, taylor(order - 2)[0], *series.coefficients]
-        lines.append(exploded(4, f"{order}: (", [repr(float(n)) for n in numbers], "),"))
-    return resources.environment().get_template(_SERIES).render(series=lines)
 
 
 def _function(kernel: Kernel) -> Iterator[str]:
