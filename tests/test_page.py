@@ -391,7 +391,7 @@ def test_buttons_copy(tab, tmp_path):
     tab.call("Browser.grantPermissions", permissions=["clipboardReadWrite"])
     for language in ("latex", "python", "c"):
         expected = copied(page_of("ZXZ"), language)["angular_velocity_body"]
-        tab.click(f'[data-copy="{language}"][data-of="angular_velocity_body"]')
+        tab.click(f'[data-of="angular_velocity_body"] [data-copy="{language}"]')
         tab.wait_for("document.getElementById('said').textContent.includes('is copied')")
         assert tab.run("navigator.clipboard.readText()") == expected
         tab.run("document.getElementById('said').textContent = ''")
@@ -402,7 +402,7 @@ def test_buttons_copy_without_a_clipboard_to_write_to(tab, tmp_path):
     tab.call("Browser.grantPermissions", permissions=["clipboardReadWrite"])
     expected = copied(page_of("ZXZ"), "latex")["rotation_matrix"]
     tab.run("navigator.clipboard.writeText = () => Promise.reject(new Error())")
-    tab.click('[data-copy="latex"][data-of="rotation_matrix"]')
+    tab.click('[data-of="rotation_matrix"] [data-copy="latex"]')
     tab.wait_for("document.getElementById('said').textContent.includes('is copied')")
     assert tab.run("navigator.clipboard.readText()") == expected
 

@@ -67,11 +67,15 @@ def _expressions(kernel: Kernel) -> Iterator[Expression]:
 
 def _taken(argument: Argument, used: set[str]) -> Iterator[str]:
     """The components that are used; a compiler warns of others."""
-    if used.isdisjoint(argument.components):
+    taken = [
+        f"{name} = {argument.name}[{place}]"
+        for place, name in enumerate(argument.components)
+        if name in used
+    ]
+    lines = filled(", ".join(taken), WIDTH - len("    const double ;"))
+    if not taken:
         yield f"    (void){argument.name};"
-    for place, name in enumerate(argument.components):
-        if name in used:
-            yield f"    const double {name} = {argument.name}[{place}];"
+    yield from (f"    const double {line.removesuffix(',')};" for line in lines)
 
 
 def _assigned(name: str, value: singular.Value) -> Iterator[str]:

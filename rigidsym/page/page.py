@@ -20,7 +20,7 @@ from rigidsym.notes.mathml import mathml
 from rigidsym.notes.singular_words import singular
 from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
-from rigidsym.page.copies import Copies, copies_of
+from rigidsym.page.copies import LANGUAGES, Copies, copies_of
 from rigidsym.page.functions import SHOWN, functions_of
 from rigidsym.page.printer import PagePrinter
 from rigidsym.page.stage import shown_angles, stage_of
@@ -95,6 +95,7 @@ class _Page:
             "poles": [*self._poles()],
             "copies": copies.texts,
             "shared": copies.shared,
+            "languages": LANGUAGES,
         }
         written = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
         text = (

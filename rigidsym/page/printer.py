@@ -8,7 +8,6 @@ from rigidsym.mechanics.derivation import Markup
 from rigidsym.notes.document import Document, Equation, Paragraph, Text
 from rigidsym.notes.html import Printer, escape
 from rigidsym.notes.layout import display
-from rigidsym.page.copies import LANGUAGES
 
 _ROOM = 39.5  # ems of a display; what is wider scrolls in a box of its own
 
@@ -37,15 +36,10 @@ class PagePrinter(Printer):
         return "" if equation in self.left_out else self.buttons(equation)
 
     def buttons(self, equation: Equation) -> str:
-        """A button a language, where there is something to copy."""
+        """Where the script puts a button a language, if there is something to copy."""
         if equation.label not in self.copied:
             return ""
-        made = "".join(
-            f'<button type="button" data-copy="{language}" data-of="{escape(equation.label)}" '
-            f'aria-label="Copy equation ({equation.number}) as {shown}">{shown}</button>'
-            for language, shown in LANGUAGES.items()
-        )
-        return f'<div class="copy"><span aria-hidden="true">Copy</span>{made}</div>'
+        return f'<p class="copy" data-of="{escape(equation.label)}">{equation.number}</p>'
 
     def words(self, text: Text) -> str:
         """A sentence, in the notation of the document."""
