@@ -115,18 +115,23 @@ class MotionStep(Step):
 
 
 def derive(
-    model: RotationModel | str, only: Collection[str] = (), *, body: RigidBody | None = None
+    model: RotationModel | str,
+    only: Collection[str] = (),
+    *,
+    body: RigidBody | None = None,
+    theory: bool = False,
 ) -> Motion:
     """The proved kinematics of a rotation model; `only` names the quantities that are wanted.
 
     A text is read as on the command line: "ZXZ", "z(phi) x(theta)", "quaternion". With a `body`
-    its kinetic energy and angular momentum follow, in the principal axes or any others.
+    its kinetic energy and angular momentum follow, in the principal axes or any others. `theory`
+    puts before it what holds for every body and rotation, equations 1 to 16 of the lecture.
 
     Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over, and
     AlgebraError for expressions that the ring cannot hold.
     """
     rotation = rotation_from(model) if isinstance(model, str) else model
-    derivation = _derivation(rotation, only, body)
+    derivation = _derivation(rotation, only, body, has_theory=theory)
     steps = tuple(
         MotionStep(**_values(step), arguments=derivation.arguments, model=rotation)
         for step in derivation.steps
@@ -134,7 +139,14 @@ def derive(
     return Motion(**(_values(derivation) | {"steps": steps}))
 
 
-def _derivation(model: RotationModel, only: Collection[str], body: RigidBody | None) -> Derivation:
+def _derivation(
+    model: RotationModel, only: Collection[str], body: RigidBody | None, *, has_theory: bool
+) -> Derivation:
+    if has_theory:
+        from rigidsym.mechanics.lecture.numbers import NEEDED, with_theory
+
+        wanted = only and {*only, *NEEDED}
+        return with_theory(_derivation(model, wanted, body, has_theory=False))
     if body is None:
         return kinematics.derive(model, only)
     from rigidsym.mechanics import energy

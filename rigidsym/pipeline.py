@@ -71,7 +71,7 @@ def page(spec: DerivationSpec) -> tuple[str, str]:
 
 def _motion(spec: DerivationSpec) -> Motion:
     (model,) = spec.models
-    motion = derive(model, only=spec.quantities, body=spec.body)
+    motion = derive(model, only=spec.quantities, body=spec.body, theory=spec.theory)
     motion = replace(motion, name=spec.name, title=spec.title or motion.title)
     return motion.written(**asdict(spec.manner))
 

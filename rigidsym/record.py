@@ -51,6 +51,7 @@ def record(
         "source": str(derivation.model.source),
         "is_proved": derivation.is_proved and (not conversions or conversions.is_proved),
         "request": dict(request),
+        **({"theory": _theory(derivation)} if derivation.theory else {}),
         "arguments": [_argument(argument) for argument in derivation.arguments],
         "quantities": [_step(step, names) for step in derivation.steps],
         "singularities": _singularities(derivation.singularities, names),
@@ -73,6 +74,25 @@ def _conversions(found: Conversions, names: Names) -> dict[str, Any]:
         else None,
         "without": found.without or None,
     }
+
+
+def _theory(derivation: Derivation) -> list[dict[str, Any]]:
+    """The equations for every body and rotation, in order."""
+    return [
+        {
+            "number": statement.number,
+            "name": statement.name,
+            "section": statement.section,
+            "because": statement.because_text,
+            "sides": [_markup(side) for side in statement.sides],
+            "summands": None
+            if statement.summands is None
+            else _entries(statement.summands, {}, is_vector=False),
+            "source": str(statement.source),
+            "proofs": [_proof(proof, {}) for proof in statement.proofs],
+        }
+        for statement in derivation.theory
+    ]
 
 
 def _plain_names(arguments: tuple[Argument, ...]) -> Names:

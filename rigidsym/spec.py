@@ -33,7 +33,7 @@ NOTE_FORMATS = ("tex", "html", "md", "ipynb", "page", "pdf")
 QUANTITIES = (*QUANTITY_NAMES, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES)
 _OUTPUT = {"quantities": QUANTITIES, "kernels": tuple(TARGETS), "note": NOTE_FORMATS}
 _MORE_OUTPUT = ("conversions", "derivatives")
-_FILE = ("title", "rotation", "parameters", "body", "notation", "output")
+_FILE = ("title", "theory", "rotation", "parameters", "body", "notation", "output")
 _HINTS = {
     **dict.fromkeys(CHOICES, "it belongs in [notation]"),
     "potential": f"not read yet (known: {', '.join(_FILE)})",
@@ -59,6 +59,7 @@ class DerivationSpec:
     title: str | None = None  # None: the rotation's own
     models: tuple[RotationModel, ...]
     body: RigidBody | None = None  # what turns, where the file says
+    theory: bool = False  # whether what holds for every body and rotation goes before it
     quantities: tuple[str, ...] = ()  # empty: all
     kernels: tuple[str, ...] = ("numpy",)
     note: tuple[str, ...] = ("tex", "html")
@@ -108,6 +109,7 @@ class DerivationSpec:
             "kernels": list(self.kernels),
             "note": list(self.note),
             **(dict(self.body.request) if self.body else {}),
+            **({"theory": True} if self.theory else {}),
             **({"conversions": True} if self.conversions else {}),
             **({"derivatives": list(self.derivatives)} if self.derivatives else {}),
             **({"notation": asdict(self.manner)} if self.manner != DEFAULT else {}),
@@ -120,7 +122,7 @@ class DerivationSpec:
             raise SpecError(source, [Fault(line=0, path="", message="expected an object")])
         faults = Faults(source)
         table = Table(data, (), faults)
-        own = ("name", "title", "rotations", "parameters", "body", "notation")
+        own = ("name", "title", "theory", "rotations", "parameters", "body", "notation")
         table.refuse_others((*own, *_OUTPUT, *_MORE_OUTPUT))
         rotations = table.tables("rotations", "a list of objects with sequence and angles")
         name, title, output = table.text("name"), _read_title(table), _read_output(table)
@@ -128,6 +130,7 @@ class DerivationSpec:
         if table.value("name") is None:
             table.fault("missing; expected the name of the derivation", "name")
         manner, body = _read_notation(table), _read_body(table, name or "", Path())
+        output["theory"] = _read_theory(table, models)
         faults.raise_if_any()
         return cls(
             name=name or "", title=title, models=tuple(models), body=body, manner=manner, **output
@@ -196,6 +199,7 @@ def read_spec(text: str, *, source: str, name: str, folder: Path | None = None) 
     if output:
         output.refuse_others((*_OUTPUT, *_MORE_OUTPUT), _HINTS)
     choices = _read_output(output) if output else {}
+    choices["theory"] = _read_theory(table, models)
     manner = _read_notation(table)
     is_list = rotation is not None and isinstance(rotation.value("sequence"), list)
     if not is_list and (message := _fault_of_name(name)):
@@ -205,6 +209,14 @@ def read_spec(text: str, *, source: str, name: str, folder: Path | None = None) 
     return DerivationSpec(
         name=name, title=title, models=tuple(models), body=body, manner=manner, **choices
     )
+
+
+def _read_theory(table: Table, models: Sequence[RotationModel]) -> bool:
+    """Whether the theory is asked for, which is that of active rotations."""
+    is_wanted = bool(table.flag("theory"))
+    if is_wanted and any(model.passive for model in models):
+        table.fault("the theory is that of active rotations; leave passive out", "theory")
+    return is_wanted
 
 
 def _read_body(table: Table, name: str, folder: Path) -> RigidBody | None:

@@ -112,6 +112,26 @@ class Step:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Statement:
+    """One equation of the theory, for every body and every rotation."""
+
+    name: str
+    number: int | None  # in the lecture; None for what it leaves without one
+    section: str  # the heading that it stands under
+    because: tuple[str | Markup, ...]  # how it follows from those before
+    sides: tuple[Markup, ...]  # of the equation
+    claims: tuple[tuple[str, Markup], ...]  # what is to be proved, by name
+    source: Citation
+    proofs: tuple[Proof, ...] = ()
+    shows_summands: bool = False  # whether the matrix of the generic particle belongs to it
+    summands: sp.ImmutableMatrix | None = None  # that matrix; its sum is the last side
+
+    @property
+    def because_text(self) -> str:
+        return "".join(span if isinstance(span, str) else span.text for span in self.because)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Place:
     """A coordinate, or the length of all of them, at one value, over and over again.
 
@@ -177,6 +197,7 @@ class Derivation:
     steps: tuple[Step, ...]
     singularities: Singularities | None  # None where no quantity of the rates was asked for
     body: RigidBody | None = None  # what turns, where energy and momentum were asked for
+    theory: tuple[Statement, ...] = ()  # the equations that the steps rest on, where asked for
 
     def step(self, quantity: str) -> Step:
         """The step that defines a quantity; raises QuantityError for one that is not here."""
@@ -200,6 +221,8 @@ class Derivation:
     @property
     def subject(self) -> str:
         """What it is about, in words."""
+        if self.theory:
+            return "The equations of the lecture, each with its proof"
         return "Kinematics of a rotation" if self.body is None else "Motion of a rigid body"
 
     def argument(self, name: str) -> Argument:
@@ -207,7 +230,7 @@ class Derivation:
 
     @property
     def proofs(self) -> Iterator[Proof]:
-        return (proof for step in self.steps for proof in step.proofs)
+        return (proof for each in (*self.theory, *self.steps) for proof in each.proofs)
 
     @property
     def is_proved(self) -> bool:

@@ -79,7 +79,7 @@ def compose(
     taken for one of the notation.
     """
     manner.check(derivation.model)
-    composer = _Composer(derivation, module, tuple(functions), manner)
+    composer = Composer(derivation, module, tuple(functions), manner)
     document = Document(
         name=derivation.name,
         title=derivation.title,
@@ -90,7 +90,7 @@ def compose(
     return in_manner(document, manner)
 
 
-class _Composer:
+class Composer:
     """The sections of one note."""
 
     def __init__(

@@ -11,6 +11,7 @@ from rigidsym.notes.compose import compose
 from rigidsym.notes.conversions import with_conversions
 from rigidsym.notes.document import Document
 from rigidsym.notes.latex import print_latex
+from rigidsym.notes.lecture import compose_lecture
 from rigidsym.notes.manner import DEFAULT, Manner
 
 
@@ -58,7 +59,8 @@ def note(
     """
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
-    document = compose(derivation, module=module, functions=names if module else (), manner=manner)
+    composed = compose_lecture if derivation.theory else compose
+    document = composed(derivation, module=module, functions=names if module else (), manner=manner)
     if conversions is None:
         return Note(document)
     return Note(

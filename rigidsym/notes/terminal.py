@@ -198,6 +198,7 @@ class _Screen(_Steps):
     def lines(self) -> Iterator[str]:
         yield self.style(self.derivation.title, "heading")
         yield ""
+        yield from self._theory()
         yield from self._convention()
         for step in self.derivation.steps:
             yield ""
@@ -205,6 +206,18 @@ class _Screen(_Steps):
         yield from self._singularities()
         yield from self._conversions()
         yield from self._proofs()
+
+    def _theory(self) -> Iterator[str]:
+        """The equations for every body and rotation, under their headings."""
+        section = ""
+        for statement in self.derivation.theory:
+            if statement.section != section:
+                section = statement.section
+                yield self.style(section, "heading")
+            yield from self._wrapped(statement.because)
+            number = f"({statement.number})" if statement.number else ""
+            yield f"{_DEEPER}{number:<6}{self.written(equal(*statement.sides).text)}"
+            yield ""
 
     def _convention(self) -> Iterator[str]:
         for sentence in convention(self.derivation, self.notation.manner):
@@ -243,9 +256,9 @@ class _Screen(_Steps):
     def _proofs(self) -> Iterator[str]:
         yield ""
         yield self.style("What was proved", "heading")
-        for step in self.steps:
-            for proof in step.proofs:
-                yield from self._proof(f"({step.number})", proof)
+        for each in (*self.derivation.theory, *self.steps):
+            for proof in each.proofs:
+                yield from self._proof(f"({each.number})" if each.number else "", proof)
         back = self.conversions and self.conversions.backward
         for proof in back.proofs if back else ():
             yield from self._proof("", proof)

@@ -1,0 +1,235 @@
+"""The lecture's equations 1 to 16 for any body and any rotation, each proved in the ring.
+
+What is a sum over particles is proved for the generic summand, by the rules of `particles`, with
+Σ m = M and Σ m x = 0 alone. A rotation R(t) is that of a unit quaternion, which every rotation
+is; what holds in its ring holds for all. Vectors without a derivation of their own are free.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
+
+import sympy as sp
+from sympy.polys.rings import PolyElement
+
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.matrix import RingMatrix, cross
+from rigidsym.algebra.present import presenter_for
+from rigidsym.mechanics.composition import hat, unhat
+from rigidsym.mechanics.derivation import Markup, Proof, Statement
+from rigidsym.mechanics.lecture import bases, bodies, momenta
+from rigidsym.mechanics.particles import IN_BODY, MASS, Sum
+from rigidsym.mechanics.prove import Prover
+from rigidsym.models.quaternions import UnitQuaternion
+from rigidsym.models.so3 import TIME, time_function
+
+_WHOLE = sp.Symbol("M")
+_PLACE = tuple(time_function(f"x_{k}") for k in (1, 2, 3))
+_CENTRE = tuple(time_function(f"r_{k}") for k in (1, 2, 3))
+_OMEGA, _U, _V, _W = (sp.symbols(f"{name}_1:4") for name in ("Omega", "u", "v", "w"))
+_LINE = sp.symbols("e_1:4")
+_TENSOR = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"I_{min(i, j) + 1}{max(i, j) + 1}"))
+
+Residual = RingMatrix | PolyElement
+
+
+@cache
+def theory() -> tuple[Statement, ...]:
+    """The equations in order, each with what was proved of it."""
+    work = _Theory()
+    return tuple(
+        replace(statement, proofs=work.proofs(statement), summands=work.summands(statement))
+        for statement in (*bodies.STATEMENTS, *bases.STATEMENTS, *momenta.STATEMENTS)
+    )
+
+
+def _rates(functions: Sequence[sp.Expr]) -> list[sp.Expr]:
+    return [sp.diff(function, TIME) for function in functions]
+
+
+class _Theory:
+    """Free vectors, one particle and one rotation, over one ring."""
+
+    def __init__(self) -> None:
+        model = UnitQuaternion()
+        moving = [*model.coordinates, *_PLACE, *_CENTRE]
+        fixed = [MASS, _WHOLE, *IN_BODY, *_OMEGA, *_U, *_V, *_W, *_LINE, *_TENSOR]
+        unit = sum(part**2 for part in _LINE) - 1
+        constraints = (*model.constraints, unit)
+        self.codec = codec_for(
+            [*moving, *_rates(moving), *fixed, *model.matrix], constraints=constraints, order=1
+        )
+        self.ring = self.codec.ring
+        self.prover = Prover(model, self.codec)
+        self.R = self._matrix(model.matrix)
+        self.R_dot = self.R.dt()
+        self.x, self.x_dot = self._column(_PLACE), self._column(_rates(_PLACE))
+        self.r, self.r_dot = self._column(_CENTRE), self._column(_rates(_CENTRE))
+        self.at_rest, self.line = self._column(IN_BODY), self._column(_LINE)
+        self.omega, self.u, self.v, self.w = map(self._column, (_OMEGA, _U, _V, _W))
+        self.I = self._matrix(_TENSOR)
+        self.one = RingMatrix.identity(self.ring, 3)
+        self.m, self.M = self.codec.encode(MASS), self.codec.encode(_WHOLE)
+        own = [MASS, *_PLACE, *_rates(_PLACE)]
+        nothing = {MASS * part: sp.S.Zero for part in own[1:]}
+        self.sum = Sum(self.codec, own, {MASS: _WHOLE, **nothing})
+        pairs = zip(own[1:], [*_CENTRE, *_rates(_CENTRE)], strict=True)
+        self.sum_of_places = Sum(
+            self.codec, own, {MASS: _WHOLE, **{MASS * part: _WHOLE * mean for part, mean in pairs}}
+        )
+
+    def proofs(self, statement: Statement) -> tuple[Proof, ...]:
+        """Each claim of a statement, put to the ring."""
+        return tuple(self._proof(name, claim) for name, claim in statement.claims)
+
+    def _proof(self, name: str, claim: Markup) -> Proof:
+        left = _CLAIMS[name](self)
+        matrix = left if isinstance(left, RingMatrix) else RingMatrix.column(self.ring, [left])
+        return self.prover.vanishes(matrix, claim)
+
+    def summands(self, statement: Statement) -> sp.ImmutableMatrix | None:
+        """The matrix of the generic particle, where the statement shows one."""
+        if not statement.shows_summands:
+            return None
+        tensor = self.inertia(self.at_rest)
+        return presenter_for(self.codec).matrix(tensor)
+
+    # One particle.
+
+    def inertia(self, place: RingMatrix) -> RingMatrix:
+        """m (e_j × x)·(e_k × x), the summand of equation 4."""
+        crossed = [self.cross(self._column(row), place) for row in self._units]
+        rows = [[self.ring.reduce(self.m * self.dot(u, v)) for v in crossed] for u in crossed]
+        return RingMatrix.of(self.ring, rows)
+
+    @property
+    def _units(self) -> list[list[sp.Expr]]:
+        return [list(row) for row in sp.eye(3).tolist()]
+
+    def spin(self) -> RingMatrix:
+        """Ω of the rotation, from the skew matrix dR/dt Rᵀ."""
+        return unhat(self.R_dot @ self.R.T)
+
+    # Products over the ring.
+
+    def dot(self, first: RingMatrix, second: RingMatrix) -> PolyElement:
+        return (first.T @ second)[0, 0]
+
+    def square(self, vector: RingMatrix) -> PolyElement:
+        return self.dot(vector, vector)
+
+    def cross(self, first: RingMatrix, second: RingMatrix) -> RingMatrix:
+        return RingMatrix.column(self.ring, cross(self.ring, first.entries, second.entries))
+
+    def form(self, matrix: RingMatrix, vector: RingMatrix) -> PolyElement:
+        """vᵀ M v."""
+        return self.dot(vector, matrix @ vector)
+
+    def diagonal(self) -> RingMatrix:
+        """The tensor in its principal axes."""
+        zero = self.ring.zero
+        rows = [[self.I[j, k] if j == k else zero for k in range(3)] for j in range(3)]
+        return RingMatrix.of(self.ring, rows)
+
+    def by_mass(self, vector: RingMatrix) -> RingMatrix:
+        return vector.scale(self.m)
+
+    def _column(self, parts: Sequence[sp.Expr]) -> RingMatrix:
+        return RingMatrix.column(self.ring, [self.codec.encode(part) for part in parts])
+
+    def _matrix(self, matrix: sp.MatrixBase) -> RingMatrix:
+        rows = matrix.tolist()
+        return RingMatrix.of(self.ring, [[self.codec.encode(e) for e in row] for row in rows])
+
+
+def _energy_splits(t: _Theory) -> Residual:
+    whole = t.sum.of(t.m * t.square(t.r_dot + t.x_dot))
+    return whole - t.ring.reduce(t.M * t.square(t.r_dot)) - t.sum.of(t.m * t.square(t.x_dot))
+
+
+def _energy_is_a_form(t: _Theory) -> Residual:
+    speed = t.square(t.cross(t.omega, t.x))
+    return t.sum.of(t.m * speed) - t.sum.of(t.form(t.inertia(t.x), t.omega))
+
+
+def _lagrange(t: _Theory) -> Residual:
+    """(u × v)·(w × Ω) = (u·w)(v·Ω) − (u·Ω)(v·w)."""
+    left = t.dot(t.cross(t.u, t.v), t.cross(t.w, t.omega))
+    right = t.dot(t.u, t.w) * t.dot(t.v, t.omega) - t.dot(t.u, t.omega) * t.dot(t.v, t.w)
+    return left - t.ring.reduce(right)
+
+
+def _about_a_line(t: _Theory) -> Residual:
+    """Σ m |x − (x·e) e|² = eᵀ I e for a unit vector e."""
+    across = t.x - t.line.scale(t.dot(t.x, t.line))
+    return t.sum.of(t.m * t.square(across)) - t.sum.of(t.form(t.inertia(t.x), t.line))
+
+
+def _momentum_splits(t: _Theory) -> Residual:
+    whole = t.sum.of_matrix(t.by_mass(t.cross(t.r + t.x, t.r_dot + t.x_dot)))
+    of_centre = t.cross(t.r, t.r_dot).scale(t.M)
+    return whole - of_centre - t.sum.of_matrix(t.by_mass(t.cross(t.x, t.x_dot)))
+
+
+def _momentum_is_linear(t: _Theory) -> Residual:
+    turning = t.by_mass(t.cross(t.x, t.cross(t.omega, t.x)))
+    return t.sum.of_matrix(turning - t.inertia(t.x) @ t.omega)
+
+
+def _twice_the_energy(t: _Theory) -> Residual:
+    turned = t.cross(t.omega, t.x)
+    momentum = t.by_mass(t.cross(t.x, turned))
+    return t.sum.of(t.dot(momentum, t.omega)) - t.sum.of(t.m * t.square(turned))
+
+
+def _components_of_momentum(t: _Theory) -> Residual:
+    parts = [t.diagonal()[k, k] * t.omega[k, 0] for k in range(3)]
+    return t.diagonal() @ t.omega - RingMatrix.column(t.ring, parts)
+
+
+def _energy_in_principal_axes(t: _Theory) -> Residual:
+    squares = sum((t.diagonal()[k, k] * t.omega[k, 0] ** 2 for k in range(3)), t.ring.zero)
+    return t.form(t.diagonal(), t.omega) - t.ring.reduce(squares)
+
+
+def _entries(t: _Theory) -> Residual:
+    """The matrix of section 2.2 is m (x·x 1 − x xᵀ)."""
+    outer = t.x @ t.x.T
+    return t.inertia(t.x) - (t.one.scale(t.square(t.x)) - outer).scale(t.m)
+
+
+_CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
+    "no_moment": lambda t: t.sum_of_places.of_matrix(t.by_mass(t.x - t.r)),
+    "no_momentum": lambda t: t.sum_of_places.of_matrix(t.by_mass(t.x_dot - t.r_dot)),
+    "no_mixed_energy": lambda t: t.sum.of(t.m * t.dot(t.x_dot, t.r_dot)),
+    "energy_splits": _energy_splits,
+    "skew": lambda t: t.R_dot @ t.R.T + (t.R_dot @ t.R.T).T,
+    "turning": lambda t: t.R_dot @ t.at_rest - t.cross(t.spin(), t.R @ t.at_rest),
+    "energy_is_a_form": _energy_is_a_form,
+    "symmetric": lambda t: t.inertia(t.x) - t.inertia(t.x).T,
+    "keeps_products": lambda t: t.dot(t.u, t.v) - t.dot(t.R @ t.u, t.R @ t.v),
+    "goes_over": lambda t: t.dot(t.R.T @ t.u, t.v) - t.dot(t.u, t.R @ t.v),
+    "components": lambda t: t.R.T @ t.omega - (t.omega.T @ t.R).T,
+    "inverse": lambda t: t.R @ t.R.T - t.one,
+    "and_back": lambda t: t.R @ (t.R.T @ t.omega) - t.omega,
+    "same_energy": lambda t: t.form(t.I, t.R @ t.omega) - t.form(t.R.T @ t.I @ t.R, t.omega),
+    "tensor_turns": lambda t: t.R.T @ t.inertia(t.R @ t.at_rest) @ t.R - t.inertia(t.at_rest),
+    "entries": _entries,
+    "lagrange": _lagrange,
+    "about_a_line": _about_a_line,
+    "stays_symmetric": lambda t: t.R.T @ t.I @ t.R - (t.R.T @ t.I @ t.R).T,
+    "energy_in_principal_axes": _energy_in_principal_axes,
+    "momentum_splits": _momentum_splits,
+    "no_mixed_momentum": lambda t: t.sum.of_matrix(
+        t.by_mass(t.cross(t.r, t.x_dot) + t.cross(t.x, t.r_dot))
+    ),
+    "momentum_is_linear": _momentum_is_linear,
+    "components_of_momentum": _components_of_momentum,
+    "twice_the_energy": _twice_the_energy,
+    "velocity": lambda t: t.R_dot @ t.at_rest - t.R_dot @ t.R.T @ (t.R @ t.at_rest),
+    "operator": lambda t: hat(t.u) @ t.v - t.cross(t.u, t.v),
+    "spin": lambda t: t.R_dot @ t.R.T - hat(t.spin()),
+    "body_spin": lambda t: t.R.T @ t.R_dot - hat(t.R.T @ t.spin()),
+}
