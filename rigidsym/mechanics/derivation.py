@@ -230,7 +230,8 @@ class Derivation:
 
     @property
     def proofs(self) -> Iterator[Proof]:
-        return (proof for each in (*self.theory, *self.steps) for proof in each.proofs)
+        yield from (proof for statement in self.theory for proof in statement.proofs)
+        yield from (proof for step in self.steps for proof in step.proofs)
 
     @property
     def is_proved(self) -> bool:

@@ -6,11 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 
-import sympy as sp
-
 from rigidsym.mechanics.derivation import Derivation, Markup, Statement, Step
 from rigidsym.mechanics.energy_quantities import ENERGIES, MOMENTA
-from rigidsym.mechanics.particles import MASS
 from rigidsym.notes.claims_table import claims_in_a_table
 from rigidsym.notes.compose import Composer
 from rigidsym.notes.document import (
@@ -22,11 +19,9 @@ from rigidsym.notes.document import (
     Section,
     Text,
 )
-from rigidsym.notes.formula import markup
 from rigidsym.notes.manner import DEFAULT, Manner
-from rigidsym.notes.notation import Notation
-from rigidsym.notes.order import is_negative
 from rigidsym.notes.rewriting import in_manner
+from rigidsym.notes.summands import in_brackets, sums
 from rigidsym.notes.words import words
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
@@ -96,8 +91,9 @@ class _Lecture(Composer):
     def _statement(self, statement: Statement) -> Iterator[Block]:
         yield Paragraph(_with_source(statement))
         sides = statement.sides
-        if statement.summands is not None:
-            sides = (*sides, _summed(statement, self.notation))
+        rows = sums(statement, self.notation)
+        if rows:
+            sides = (*sides, in_brackets(rows))
         yield Equation(
             sides=sides,
             number=statement.number,
@@ -141,23 +137,3 @@ def _with_source(statement: Statement) -> Text:
         return statement.because
     end = last[-1] if last[-1] in ".,:;" else ""
     return (*head, last.removesuffix(end), "\u00a0", Cited(statement.source), end or "")
-
-
-def _summed(statement: Statement, notation: Notation) -> Markup:
-    """The matrix of sums whose summands are those of the generic particle."""
-    assert statement.summands is not None
-    rows = [[_sum(entry, notation) for entry in row] for row in statement.summands.tolist()]
-    inside = r" \\[5pt]".join(" & ".join(entry.latex for entry in row) for row in rows)
-    text = "; ".join(", ".join(entry.text for entry in row) for row in rows)
-    return Markup(rf"\begin{{pmatrix}} {inside} \end{{pmatrix}}", f"({text})")
-
-
-def _sum(summand: sp.Expr, notation: Notation) -> Markup:
-    """Σ mᵢ (b² + c²): the mass first, and no blanks at which a line could break."""
-    minus = is_negative(summand)
-    rest = (-summand if minus else summand) / MASS
-    written = markup(rest, notation)
-    latex = f"({written.latex})" if rest.is_Add else rf"\,{written.latex}"
-    text = f"({written.text})" if rest.is_Add else written.text
-    sign = ("-", "−") if minus else ("", "")
-    return Markup(rf"{sign[0]}\sum_i m_i{latex.replace(' + ', '+')}", f"{sign[1]}Σ mᵢ {text}")

@@ -23,6 +23,7 @@ from rigidsym.notes.measure import columns
 from rigidsym.notes.notation import Notation, notation_of
 from rigidsym.notes.prose import product, turn
 from rigidsym.notes.singular_words import failures, measured
+from rigidsym.notes.summands import sums
 from rigidsym.notes.vector_words import sum_of_vectors
 from rigidsym.notes.words import (
     convention,
@@ -216,7 +217,9 @@ class _Screen(_Steps):
                 yield self.style(section, "heading")
             yield from self._wrapped(statement.because)
             number = f"({statement.number})" if statement.number else ""
-            yield f"{_DEEPER}{number:<6}{self.written(equal(*statement.sides).text)}"
+            head = f"{_DEEPER}{number:<6}{self.written(equal(*statement.sides).text)}"
+            rows = [[entry.text for entry in row] for row in sums(statement, self.notation)]
+            yield from grid(f"{head} = ", rows) if rows else [head]
             yield ""
 
     def _convention(self) -> Iterator[str]:
@@ -256,9 +259,11 @@ class _Screen(_Steps):
     def _proofs(self) -> Iterator[str]:
         yield ""
         yield self.style("What was proved", "heading")
-        for each in (*self.derivation.theory, *self.steps):
-            for proof in each.proofs:
-                yield from self._proof(f"({each.number})" if each.number else "", proof)
+        numbered = [(s.number, s.proofs) for s in self.derivation.theory]
+        numbered += [(step.number, step.proofs) for step in self.steps]
+        for number, proofs in numbered:
+            for proof in proofs:
+                yield from self._proof(f"({number})" if number else "", proof)
         back = self.conversions and self.conversions.backward
         for proof in back.proofs if back else ():
             yield from self._proof("", proof)

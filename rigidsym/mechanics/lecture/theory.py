@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
+from typing import TypeAlias
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -32,7 +33,7 @@ _OMEGA, _U, _V, _W = (sp.symbols(f"{name}_1:4") for name in ("Omega", "u", "v", 
 _LINE = sp.symbols("e_1:4")
 _TENSOR = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"I_{min(i, j) + 1}{max(i, j) + 1}"))
 
-Residual = RingMatrix | PolyElement
+Residual: TypeAlias = "RingMatrix | PolyElement"
 
 
 @cache
