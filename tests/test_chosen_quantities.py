@@ -77,9 +77,9 @@ def test_the_terminal_shows_conversions_and_their_proofs():
 
 
 def test_the_terminal_says_why_there_is_no_way_back():
-    motion = derive("z(phi) x(theta) z(psi) y(delta)")
+    motion = derive("z(phi) x(phi)")
     text = " ".join(show(motion, width=120, conversions=motion.conversions).split())
-    assert "do not follow from a rotation: more than three turns" in text
+    assert "do not follow from a rotation: a coordinate stands in several turns" in text
 
 
 def test_the_summary_counts_the_proofs_of_conversions(tmp_path):
