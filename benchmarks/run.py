@@ -22,7 +22,16 @@ if TYPE_CHECKING:
     from benchmarks.report import Report
 
 README = Path(__file__).resolve().parent.parent / "README.md"
-NAMES = ("derivation", "form", "catalogue", "cold_start", "kernels", "accuracy", "identify")
+NAMES = (
+    "derivation",
+    "form",
+    "catalogue",
+    "cold_start",
+    "kernels",
+    "accuracy",
+    "precision",
+    "identify",
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -16,6 +16,7 @@ from benchmarks import (
     kernel_parts,
     kernels,
     peers,
+    precision,
     run,
     sympy_forms,
 )
@@ -225,6 +226,47 @@ def test_errors_are_a_few_eps(sequence):
     found = accuracy.errors(sequence, 3)
     assert {way for way, _, _ in found} == {way.name for way in accuracy.WAYS}
     assert 0 <= max(found.values()) < 20
+
+
+# precision
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "ZXZ",
+        "zyx",
+        "rotation_vector",
+        "axis_angle",
+        "davenport",
+        "z(phi) x(theta/2) z(psi)",
+        "z(phi) x(theta) z(psi) y(delta)",
+    ],
+)
+def test_near_poles_and_beside_switches_the_errors_are_those_stated(text):
+    found = precision.errors(text, 1)
+    kinds = {"anywhere", "near poles"} | ({"at switches"} if text == "rotation_vector" else set())
+    assert {(where, dtype) for where, dtype, _ in found} == {
+        (where, dtype) for where in kinds for dtype in ("float64", "float32")
+    }
+    for where in kinds:
+        assert {name for place, _, name in found if place == where} == set(precision.SHORT)
+    assert 0 < max(found.values()) <= 6
+
+
+def test_the_precise_witness_knows_a_turn_about_a_slanted_axis():
+    truth = precision.Subject("[1,1,0](beta)")
+    state = [[np.pi], [2.0], [0.0]]
+    found = precision.Truth(truth.text, truth.turns, state, passive=False)
+    swapped = [[0, 1, 0], [1, 0, 0], [0, 0, -1]]
+    assert np.allclose(np.array(found.R.tolist(), float), swapped)
+    assert np.allclose(np.array(found.omega.tolist(), float).ravel(), [2**0.5, 2**0.5, 0])
+
+
+@pytest.mark.parametrize("name", sorted(precision.PARAMETRISATIONS))
+def test_kernels_of_every_parametrisation_are_precise_anywhere(name):
+    found = precision.errors_of(precision.Subject(name), np.float64, samples=1, poles=False)
+    assert 0 < max(found.values()) <= 6
 
 
 # identify
