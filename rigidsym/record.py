@@ -24,6 +24,7 @@ from rigidsym.mechanics.derivation import (
     Step,
     VectorForm,
 )
+from rigidsym.models.body import RigidBody
 
 SCHEMA = "rigidsym.derivation"
 SCHEMA_VERSION = 2
@@ -55,7 +56,26 @@ def record(
         "arguments": [_argument(argument) for argument in derivation.arguments],
         "quantities": [_step(step, names) for step in derivation.steps],
         "singularities": _singularities(derivation.singularities, names),
+        **({"body": _body(derivation.body, names)} if derivation.body else {}),
         **({"conversions": _conversions(conversions, names)} if conversions else {}),
+    }
+
+
+def _body(body: RigidBody, names: Names) -> dict[str, Any]:
+    """The body itself; its principal axes in numbers, where all its parameters have values."""
+    from rigidsym.mechanics.numbers import in_numbers
+
+    found = in_numbers(body)
+    return {
+        "title": body.title,
+        "mass": _plain(body.mass, names),
+        "centre": _vector(body.centre, names),
+        "inertia": _entries(body.inertia, names, is_vector=False),
+        "parameters": [
+            {"name": p.symbol.name, "about": p.about, "unit": p.unit, "value": p.value}
+            for p in body.parameters
+        ],
+        "in_numbers": None if found is None else found.record(),
     }
 
 

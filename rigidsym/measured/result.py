@@ -48,7 +48,7 @@ class Measured:
     def record(self) -> dict[str, Any]:
         """All of it as plain data."""
         return {
-            "count": self.count,
+            **({"count": self.count} if self.count else {}),
             "mass": self.mass,
             "centre_of_mass": self.centre.tolist(),
             "inertia_tensor": self.inertia.tolist(),

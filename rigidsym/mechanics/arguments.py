@@ -92,7 +92,7 @@ def _centre(order: int) -> Argument:
 
 def _of_lines() -> tuple[Argument, ...]:
     """A point and the direction of a line through it, in the axes of the body."""
-    about = "a point, in the axes of the body", "the direction of a line, of any length"
+    about = "a point, in the axes of the body", "the direction of a line, a unit vector"
     return tuple(
         Argument(
             name=name,

@@ -145,38 +145,59 @@ class _Inertia:
         return second.trace() * _ONE - second
 
     def moment_of_inertia(self) -> Found:
+        moment = self._line
+        rest = _scalar(self._from_moments - moment)
         return Found(
-            _scalar(self._line),
-            "The moment about a line is the quadratic form of the tensor about a point of it.",
-            (
-                _vanishes(
-                    _scalar(self._residual_of_line(self._line)), claims.OF_LINE, self.body.name
-                ),
-            ),
+            _scalar(moment),
+            "The moment about a line is the quadratic form of the tensor about a point of it: n is "
+            "a unit vector, and n × (x′ − p) as long as the distance from the line.",
+            (_vanishes(rest, claims.OF_LINE, self.body.name),),
         )
 
-    def radius_of_gyration(self) -> Found:
-        radius = sp.sqrt(self._line / self.body.mass)
-        rest = self.body.mass * radius**2 - self._line
-        return Found(
-            _scalar(radius),
-            "At this distance from the line the whole mass would have the same moment.",
-            (_vanishes(_scalar(rest), claims.OF_RADIUS, self.body.name),),
-        )
-
-    @cached_property
+    @property
     def _line(self) -> sp.Expr:
-        """nᵀ I_P n / n·n: the tensor about the centre, and the distance of the centre."""
+        """nᵀ I′ n, and the mass times the square of the distance of its centre."""
         n, body = self.direction, self.body
+        squares: dict[sp.Expr, sp.Expr] = {}
+        for k, entry in enumerate(body.inertia.diagonal()):
+            squares[entry] = squares.get(entry, sp.S.Zero) + n[k] ** 2
+        about_centre = sp.Add(*(entry * square for entry, square in squares.items()))
+        about_centre += sp.Add(
+            *(2 * body.inertia[i, j] * n[i] * n[j] for i in range(3) for j in range(i + 1, 3))
+        )
         crossed = n.cross(self.point - body.centre)
-        about_centre = (n.T * body.inertia * n)[0]
-        return (about_centre + body.mass * crossed.dot(crossed)) / n.dot(n)
+        return about_centre + body.mass * crossed.dot(crossed)
 
-    def _residual_of_line(self, moment: sp.Expr) -> sp.Expr:
-        """I_n n·n − ∫ |n × (x − p)|² dm, where |n × y|² = n·n y·y − (n·y)²."""
+    @property
+    def _from_moments(self) -> sp.Expr:
+        """∫ |n × (x − p)|² dm, where |n × y|² = n·n y·y − (n·y)²."""
         m, p, n = self.moments, self.point, self.direction
         second = m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
-        return moment * n.dot(n) - n.dot(n) * second.trace() + (n.T * second * n)[0]
+        return n.dot(n) * second.trace() - (n.T * second * n)[0]
+
+    def radii_of_gyration(self) -> Found:
+        body = self.body
+        moments = sp.Matrix(body.inertia.diagonal()).reshape(3, 1)
+        field = Rationals([*moments, body.mass])
+        inverse = field.read(body.mass).inverse()
+        squares = [field.write(field.read(moment) * inverse) for moment in moments]
+        radii = sp.ImmutableMatrix([self._root(square) for square in squares])
+        rest = sp.Matrix([body.mass * radius**2 for radius in radii]) - moments
+        return Found(
+            radii,
+            "At this distance from the axis the whole mass would have the same moment.",
+            (_vanishes(rest, claims.OF_RADII, body.name),),
+        )
+
+    def _root(self, square: sp.Expr) -> sp.Expr:
+        """The square root, in which √(a²) is a for a parameter that is positive."""
+        positive = {
+            p.symbol: sp.Symbol(p.symbol.name, positive=True)
+            for p in self.body.parameters
+            if p.positive
+        }
+        back = {new: old for old, new in positive.items()}
+        return sp.sqrt(square.xreplace(positive)).xreplace(back)
 
     def principal_moments(self) -> Found | None:
         found = self.principal
@@ -210,7 +231,7 @@ class _Inertia:
         found = self.principal
         if found is None or any(moment == 0 for moment in found.moments):
             return None
-        semi_axes = found.moments.applyfunc(lambda moment: 1 / sp.sqrt(moment))
+        semi_axes = found.moments.applyfunc(lambda moment: 1 / self._root(moment))
         rest = sp.Matrix(
             [a**2 * moment - 1 for a, moment in zip(semi_axes, found.moments, strict=True)]
         )

@@ -22,7 +22,7 @@ PLACE = Markup(r"\mathbf{x}'", "x′")
 ORIGIN_TENSOR = Markup(r"\mathbf{I}'_O", "I′_O")
 POINT_TENSOR = Markup(r"\mathbf{I}'_P", "I′_P")
 MOMENT = Markup("I_n", "I_n")
-RADIUS = Markup("k_n", "k_n")
+RADII = Markup(r"\left(k_x, k_y, k_z\right)", "(k_x, k_y, k_z)")
 AXES = Markup(r"\mathbf{E}", "E")
 MOMENTS = Markup(r"\left(I_1, I_2, I_3\right)", "(I₁, I₂, I₃)")
 SEMI_AXES = Markup(r"\left(a_1, a_2, a_3\right)", "(a₁, a₂, a₃)")
@@ -49,12 +49,7 @@ def moved(mass: Markup, by: str, text: str) -> Markup:
 FROM_CENTRE = moved(MASS, r"\mathbf{p}-\mathbf{c}", "p − c")
 
 
-def quotient(above: Markup, below: Markup) -> Markup:
-    return fill(r"\frac{{{0}}}{{{1}}}", "{0} / ({1})", above, below)
-
-
 def _table() -> tuple[Quantity, ...]:
-    length = fill(r"{0}\cdot{0}", "{0}·{0}", DIRECTION)
     form = fill(r"{1}\,{0}\,{2}", "{1} {0} {2}", POINT_TENSOR, transpose_of(DIRECTION), DIRECTION)
     return (
         Quantity(
@@ -98,21 +93,21 @@ def _table() -> tuple[Quantity, ...]:
         Quantity(
             name="moment_of_inertia",
             symbol=MOMENT,
-            definition=quotient(form, length),
-            about="moment of inertia about the line through p along n",
+            definition=form,
+            about="moment of inertia about the line through p along n, a unit vector",
             unit="kg m^2",
             inputs=("point", "direction"),
             is_scalar=True,
             source=lecture("", "section 2.2"),
         ),
         Quantity(
-            name="radius_of_gyration",
-            symbol=RADIUS,
-            definition=fill(r"\sqrt{{{0}/{1}}}", "√({0}/{1})", MOMENT, MASS),
-            about="radius of gyration about the line through p along n",
+            name="radii_of_gyration",
+            symbol=RADII,
+            definition=_NONE,
+            about="radii of gyration about the axes through the centre of mass",
             unit="m",
-            inputs=("point", "direction"),
-            is_scalar=True,
+            inputs=(),
+            is_vector=True,
         ),
         Quantity(
             name="principal_moments",
@@ -180,10 +175,10 @@ OF_POINT = Markup(
     "I′_P = ∫ (|x′ − p|² 1 − (x′ − p)(x′ − p)ᵀ) dm",
 )
 OF_LINE = Markup(
-    r"I_n\,\mathbf{n}\cdot\mathbf{n} = \int |\mathbf{n}\times(\mathbf{x}'-\mathbf{p})|^2\,dm",
-    "I_n n·n = ∫ |n × (x′ − p)|² dm",
+    r"I_n = \int |\mathbf{n}\times(\mathbf{x}'-\mathbf{p})|^2\,dm",
+    "I_n = ∫ |n × (x′ − p)|² dm",
 )
-OF_RADIUS = Markup(r"M k_n^2 = I_n", "M k_n² = I_n")
+OF_RADII = Markup(r"M k_j^2 = I'_{jj}", "M kⱼ² = I′ⱼⱼ")
 BACK = fill(
     r"{0} = {1}\,{2}\,{3}",
     "{0} = {1} {2} {3}",

@@ -29,7 +29,9 @@ def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
     for alone in (2, 1, 0):
         others = [k for k in range(3) if k != alone]
         if all(inertia[alone, k] == 0 for k in others):
-            return _one_axis_apart(inertia, alone)
+            root = _root_apart(inertia, alone)
+            if _has_root(root):
+                return _one_axis_apart(inertia, alone, root)
     return _factored(inertia)
 
 
@@ -49,13 +51,26 @@ def _diagonal(inertia: sp.ImmutableMatrix) -> Principal:
     )
 
 
-def _one_axis_apart(inertia: sp.ImmutableMatrix, alone: int) -> Principal:
+def _root_apart(inertia: sp.ImmutableMatrix, alone: int) -> sp.Expr:
+    """A root of (p − q)² + 4 r² for what is left across one axis; squares are taken out of it.
+
+    Its sign does not matter: the other one swaps the two moments with their axes.
+    """
+    i, j = (alone + 1) % 3, (alone + 2) % 3
+    p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
+    number, factors = sp.factor_list(sp.together((p - q) ** 2 + 4 * r**2))
+    inside, outside = sp.sympify(number), sp.S.One
+    for factor, times in factors:
+        outside *= factor ** (times // 2)
+        inside *= factor ** (times % 2)
+    return outside * sp.sqrt(inside)
+
+
+def _one_axis_apart(inertia: sp.ImmutableMatrix, alone: int, root: sp.Expr) -> Principal:
     """One coordinate axis is principal; the other two are turned about it."""
     i, j = (alone + 1) % 3, (alone + 2) % 3
     p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
-    field = Rationals([p, q, r])
-    spread = field.write(field.read((p - q) ** 2 + 4 * r**2))
-    root = sp.sqrt(spread)
+    field = Rationals([p, q])
     half = field.write(field.read((p + q) / 2))
     apart = field.write(field.read(p - q))
     cosine = sp.sqrt(sp.Rational(1, 2) + apart / (2 * root))
@@ -95,8 +110,10 @@ def _factored(inertia: sp.ImmutableMatrix) -> Principal | None:
     because = "The characteristic polynomial factors"
     if repeated:
         because += "; two moments are equal, so that every axis across the third is principal"
+    roots = sorted(roots, key=lambda root: (roots.count(root) == 1, str(root)))  # a single one last
     axes = _axes(inertia, roots) if is_rational else None
-    return Principal(moments=sp.ImmutableMatrix(roots), axes=axes, because=f"{because}.")
+    moments = sp.ImmutableMatrix([sp.factor(root) for root in roots])
+    return Principal(moments=moments, axes=axes, because=f"{because}.")
 
 
 def _has_root(expression: sp.Expr) -> bool:
@@ -104,8 +121,7 @@ def _has_root(expression: sp.Expr) -> bool:
 
 
 def _axes(inertia: sp.ImmutableMatrix, roots: list[sp.Expr]) -> sp.ImmutableMatrix | None:
-    """Unit vectors; the roots are put so that the last is single."""
-    roots.sort(key=lambda root: (roots.count(root) == 1, str(root)))
+    """Unit vectors; the last root is single."""
     last = _null_vector(inertia, roots[2])
     if last is None:
         return None
@@ -124,7 +140,9 @@ def _null_vector(inertia: sp.ImmutableMatrix, root: sp.Expr) -> sp.Matrix | None
         column = sp.Matrix(adjugate[:, k])
         if any(column):
             lead = next(entry for entry in column if entry != 0)
-            return sp.Matrix((column / lead).applyfunc(sp.cancel))
+            plain = (column / lead).applyfunc(sp.cancel)
+            divisor = sp.lcm_list([sp.fraction(entry)[1] for entry in plain])
+            return sp.Matrix((plain * divisor).applyfunc(sp.cancel))
     return None
 
 

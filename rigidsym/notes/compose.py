@@ -117,7 +117,7 @@ class Composer:
             "The rates of the coordinates": self._rates(),
             "Where the rates fail": self._singularities(),
             "The angular acceleration": self._steps(_ACCELERATION),
-            "The body": self._steps(tuple(INERTIA_QUANTITIES)),
+            "The body": self._body(),
             "The kinetic energy": self._steps(ENERGIES),
             "The angular momentum": self._steps(MOMENTA),
             "What was proved": self._proofs(),
@@ -128,6 +128,13 @@ class Composer:
         sections = [Section(title, blocks) for title, blocks in filled if blocks]
         yield from sections
         yield summary(self.derivation, sections, self.notation)
+
+    def _body(self) -> Iterator[Block]:
+        if self.derivation.body is not None:
+            from rigidsym.notes.bodies import blocks_of_body
+
+            yield from blocks_of_body(self.derivation, self.notation)
+            yield from self._steps(tuple(INERTIA_QUANTITIES))
 
     def _convention(self) -> Iterator[Block]:
         return (Paragraph(text) for text in convention(self.derivation, self.notation.manner))

@@ -205,6 +205,7 @@ class _Screen(_Steps):
             yield ""
             yield from self.step(step)
         yield from self._singularities()
+        yield from self._numbers()
         yield from self._conversions()
         yield from self._proofs()
 
@@ -229,6 +230,18 @@ class _Screen(_Steps):
         if turns:
             factors = [turn(t, self.notation) for t in turns]
             yield _INDENT + equal(ROTATION, product(factors)).text
+
+    def _numbers(self) -> Iterator[str]:
+        """The parameters of the body that have values, and its principal axes."""
+        if self.derivation.body is None:
+            return
+        from rigidsym.notes.bodies import lines_of_body
+
+        lines = list(lines_of_body(self.derivation, self.notation))
+        if lines:
+            yield ""
+            yield self.style("In numbers", "heading")
+        yield from (_INDENT + line for line in lines)
 
     def _singularities(self) -> Iterator[str]:
         found = self.derivation.singularities
