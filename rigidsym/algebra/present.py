@@ -19,7 +19,7 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.factor import Product, collect
 from rigidsym.algebra.fold import Rule, folded, rules
-from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.matrix import RingMatrix, Row
 from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.ring import Monomial
 from rigidsym.algebra.shorten import shortest
@@ -42,6 +42,7 @@ class Presenter:
         self._sums = rules(codec.angle_pairs, generators)
         self._expressions = _Expressions(generators, self._sums)
         self._weights = _Weights(self._expressions)
+        self._matrices: dict[tuple[tuple[Row, ...], PolyElement], sp.ImmutableMatrix] = {}
         self._products: dict[Product, sp.Expr] = {}
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
 
@@ -50,8 +51,13 @@ class Presenter:
     ) -> sp.ImmutableMatrix:
         """The matrix, or the matrix divided by `denominator`, entry by entry."""
         below = self.ring.one if denominator is None else denominator
-        entries = [self.quotient(Quotient(self.ring, entry, below)) for entry in matrix.entries]
-        return sp.ImmutableMatrix(*matrix.shape, entries, copy=False)  # the list is ours
+        key = matrix.rows, below
+        known = self._matrices.get(key)
+        if known is None:
+            entries = [self.quotient(Quotient(self.ring, entry, below)) for entry in matrix.entries]
+            known = sp.ImmutableMatrix(*matrix.shape, entries, copy=False)  # the list is ours
+            self._matrices[key] = known
+        return known
 
     def element(self, element: PolyElement) -> sp.Expr:
         """The textbook form of one element."""
