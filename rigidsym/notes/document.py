@@ -81,6 +81,7 @@ class Table:
     caption: str
     head: tuple[Text, ...]
     rows: tuple[tuple[Text, ...], ...]
+    of_words: int | None = None  # the column whose cells may take several lines
 
 
 @dataclass(frozen=True, slots=True)

@@ -139,7 +139,7 @@ class _Printer:
         )
         return "\n".join(
             [
-                rf"\begin{{ruled}}{{{'l' * len(table.head)}}}{{{escape(table.caption)}}}",
+                rf"\begin{{ruled}}{{{_columns(table)}}}{{{escape(table.caption)}}}",
                 head,
                 r"\midrule",
                 *rows,
@@ -187,6 +187,11 @@ class _Printer:
 
     def _label(self, label: str) -> str:
         return f"{self.document.name}:{label}"
+
+
+def _columns(table: Table) -> str:
+    """l for a column of one line a cell, T for the one of words."""
+    return "".join("T" if place == table.of_words else "l" for place in range(len(table.head)))
 
 
 def _display_style(formula: Markup) -> str:

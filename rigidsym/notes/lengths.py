@@ -86,7 +86,8 @@ def _shortened(node: sp.Expr, length: Length) -> sp.Expr:
 
 def _without(whole: sp.Expr, terms: Sequence[sp.Expr], short: sp.Expr) -> sp.Expr:
     """The sum with `short` in place of these terms, where all of them have one coefficient."""
-    held = {rest: number for number, rest in map(sp.Expr.as_coeff_Mul, sp.Add.make_args(whole))}
+    parts = (term.as_coeff_Mul() for term in sp.Add.make_args(whole))
+    held = {rest: number for number, rest in parts}
     numbers = {held.get(term) for term in terms}
     if len(numbers) != 1 or None in numbers:
         return whole

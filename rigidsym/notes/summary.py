@@ -23,7 +23,7 @@ from rigidsym.notes.words import convention, listed
 
 TITLE = "Summary"
 _SENTENCES = 2  # what the coordinates are, and which way the rotation goes
-_SHEET = 46.0  # lines of a page that displays may take, beside their headings
+_SHEET = 40.0  # lines of a page that displays may take, beside their headings
 
 _GROUPS: Sequence[tuple[str, tuple[str, ...]]] = (
     ("The rotation", ("rotation_matrix",)),

@@ -26,6 +26,7 @@ from rigidsym.notes.words import (
     words,
 )
 
+_MOST_SYMBOLS = 6  # in one cell
 _CODE_WIDTH = 76  # columns of typewriter type on a page
 
 
@@ -44,6 +45,7 @@ def symbols(derivation: Derivation, notation: Notation) -> Table:
         caption="The symbols and their SI units",
         head=(("Symbol",), ("Meaning",), ("Unit",), ("Equation",)),
         rows=tuple(known.values()),
+        of_words=1,
     )
 
 
@@ -58,7 +60,14 @@ def _arguments(derivation: Derivation) -> Iterator[tuple[Text, ...]]:
                     for name, own in zip(argument.notation, argument.units, strict=True)
                     if own == unit
                 ]
-                yield listed(chosen, ", "), (about,), (unit_in_words(unit),), ()
+                yield _in_a_row(chosen), (about,), (unit_in_words(unit),), ()
+
+
+def _in_a_row(symbols: Sequence[Text]) -> Text:
+    """All of them, or the first and the last where there are many."""
+    if len(symbols) > _MOST_SYMBOLS:
+        return (*symbols[0], ", …, ", *symbols[-1])
+    return listed(symbols, ", ")
 
 
 def _length(derivation: Derivation, notation: Notation) -> Iterator[tuple[Text, ...]]:
