@@ -30,7 +30,7 @@ from rigidsym.models.so3 import elementary, time_function
 from rigidsym.page.functions import SHOWN
 from rigidsym.page.page import MOST_BYTES
 from rigidsym.pipeline import page as printed
-from rigidsym.spec import read_file
+from rigidsym.spec import read_file, read_spec
 
 NAME = "euler_zxz_intrinsic"
 LONG = "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5) z(a_6)"  # more turns than a figure has arcs for
@@ -121,9 +121,30 @@ def test_a_page_loads_nothing_and_runs_its_own_script_alone():
 def test_what_is_too_long_is_left_to_the_note():
     page = page_of("davenport")
     left_out = page.count("Too long for this page; the note, <code>davenport.html</code>, has it.")
-    assert 0 < left_out < 5
-    assert 'data-of="angular_velocity_body"' in page
-    assert 'data-of="rotation_rate"' not in page
+    assert 0 < left_out < 10
+    assert all(set(copied(page, language)) >= set(SHOWN) for language in ("latex", "python", "c"))
+    assert "rotation_rate" in copied(page, "latex")
+    assert "rotation_rate" not in copied(page, "c")
+
+
+def test_a_page_of_a_body_moves_what_turns_it():
+    spec = read_spec(
+        """
+        [rotation]
+        sequence = "z(phi) x(theta) z(psi) y(alpha0)"
+        [parameters]
+        A = { positive = true, about = "a moment", unit = "kg m^2" }
+        [body]
+        principal_moments = ["A", "A", "2*A"]
+        """,
+        source="top.toml",
+        name="top",
+    )
+    _, page = printed(spec)
+    assert len(page.encode()) <= MOST_BYTES
+    assert 'id="parameters-0"' in page
+    assert 'id="parameters-1"' not in page  # the moment turns nothing
+    assert all(f'data-of="{name}"' in page for name in SHOWN)
 
 
 def test_markup_in_text_comes_out_as_text():
@@ -212,6 +233,7 @@ def copied(page: str, language: str) -> dict[str, str]:
             f"{known['shared'][language]}\n" if part is None else part for part in texts[language]
         )
         for name, texts in known["copies"].items()
+        if language in texts
     }
 
 

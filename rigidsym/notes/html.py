@@ -106,7 +106,7 @@ class Printer:
                 displays = (self.forms(equation) for equation in block.equations)
                 return f'<div class="row">{"".join(displays)}</div>'
             case Table():
-                return self._table(block)
+                return self.table(block)
             case Figure():
                 return self._figure(block)
             case Program():
@@ -170,7 +170,7 @@ class Printer:
     def _function(self, equation: Equation) -> str:
         return f" {self._span(Code(equation.function))}" if equation.function else ""
 
-    def _table(self, table: Table) -> str:
+    def table(self, table: Table) -> str:
         head = "".join(f'<th scope="col">{self._text(cell)}</th>' for cell in table.head)
         rows = "\n".join(
             f"<tr>{''.join(f'<td>{self._text(cell)}</td>' for cell in row)}</tr>"

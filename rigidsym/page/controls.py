@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import cycle
 from math import degrees, lcm, pi
 
@@ -11,6 +11,7 @@ import sympy as sp
 
 from rigidsym.mechanics.derivation import Argument, Derivation, Markup
 from rigidsym.models.rotation import RotationModel
+from rigidsym.notes.notation import Notation
 from rigidsym.notes.words import unit_in_words
 
 _DEGREE = pi / 180
@@ -53,7 +54,9 @@ class Group:
     controls: tuple[Control, ...]
 
 
-def groups_of(derivation: Derivation, shown: dict[sp.Expr, float]) -> tuple[Group, ...]:
+def groups_of(
+    derivation: Derivation, notation: Notation, shown: dict[sp.Expr, float]
+) -> tuple[Group, ...]:
     """The groups of sliders; `shown` are angles in radians that make a clear figure."""
     model = derivation.model
     made = {argument.name: argument for argument in derivation.arguments}
@@ -62,11 +65,19 @@ def groups_of(derivation: Derivation, shown: dict[sp.Expr, float]) -> tuple[Grou
         "q_dot": _rates(made["q_dot"]),
         "parameters": _constants(made.get("parameters"), model),
     }
+    groups = {
+        kind: tuple(_named(each, made[kind], notation) for each in found[kind]) for kind in found
+    }
     return tuple(
         Group(title=_SECTIONS[kind], controls=controls)
-        for kind, controls in ((kind, tuple(some)) for kind, some in found.items())
+        for kind, controls in groups.items()
         if controls
     )
+
+
+def _named(control: Control, argument: Argument, notation: Notation) -> Control:
+    """In the notation of the note."""
+    return replace(control, symbol=notation.name(argument.symbols[control.place]))
 
 
 def _coordinates(

@@ -14,7 +14,8 @@ from rigidsym.page.c import c_of
 from rigidsym.page.python import python_of
 from rigidsym.page.series import series_for
 
-LANGUAGES: Mapping[str, str] = {"latex": "LaTeX", "python": "Python", "c": "C"}  # as shown
+LATEX = "latex"
+LANGUAGES: Mapping[str, str] = {LATEX: "LaTeX", "python": "Python", "c": "C"}  # as shown
 
 _PAPER = 30.0  # ems of a display on paper
 
@@ -26,8 +27,12 @@ class Copies:
     texts: Mapping[str, Mapping[str, Sequence[str | None]]]
     shared: Mapping[str, str]
 
-    def without(self, labels: Collection[str]) -> Copies:
-        texts = {label: text for label, text in self.texts.items() if label not in labels}
+    def without_code(self, labels: Collection[str]) -> Copies:
+        """With LaTeX alone for some."""
+        texts = {
+            label: {LATEX: text[LATEX]} if label in labels else text
+            for label, text in self.texts.items()
+        }
         return replace(self, texts=texts)
 
 
@@ -36,7 +41,7 @@ def copies_of(derivation: Derivation, document: Document) -> Copies:
     program = lower(derivation, numpy.RESERVED | c.RESERVED)
     kernels = {kernel.name: kernel for kernel in program.kernels}
     texts: dict[str, dict[str, list[str | None]]] = {
-        label: {"latex": [text], "python": python_of(kernels[label]), "c": c_of(kernels[label])}
+        label: {LATEX: [text], "python": python_of(kernels[label]), "c": c_of(kernels[label])}
         for label, text in _latex(document)
         if label in kernels
     }

@@ -27,8 +27,13 @@ _NAMELESS = Markup("", "")
 class Functions:
     """The kernels of a page, and their text."""
 
-    steps: tuple[Step, ...]  # those that are shown
+    derivation: Derivation  # of what is shown
     kernels: tuple[Kernel, ...]
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """Those that are shown."""
+        return tuple(step for step in self.derivation.steps if step.quantity.name in SHOWN)
 
     @property
     def source(self) -> str:
@@ -46,7 +51,7 @@ def functions_of(model: RotationModel) -> Functions:
     steps = (replace(step, number=0) for step in (*derivation.steps, *_more(derivation)))
     program = lower(replace(derivation, steps=tuple(steps)), javascript.RESERVED)
     return Functions(
-        steps=tuple(step for step in derivation.steps if step.quantity.name in SHOWN),
+        derivation=derivation,
         kernels=tuple(k for k in program.kernels if k.name != _WITH_A_MARGIN),
     )
 

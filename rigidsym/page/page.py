@@ -9,18 +9,20 @@ import base64
 import hashlib
 import json
 from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from itertools import accumulate
 from typing import Any
 
 from rigidsym import resources
 from rigidsym.kernels.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Markup, Step
-from rigidsym.notes.document import Document, Equation
+from rigidsym.notes.document import Document, Equation, Table
 from rigidsym.notes.html import escape, rendered
 from rigidsym.notes.mathml import mathml
 from rigidsym.notes.singular_words import singular
 from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
-from rigidsym.page.copies import LANGUAGES, Copies, copies_of
+from rigidsym.page.copies import LANGUAGES, LATEX, Copies, copies_of
 from rigidsym.page.functions import SHOWN, functions_of
 from rigidsym.page.printer import PagePrinter
 from rigidsym.page.stage import shown_angles, stage_of
@@ -32,15 +34,33 @@ MOST_BYTES = 150_000
 _LEFT_OUT = 120  # bytes that say so
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Part:
+    """What a page can do without: a display, a table, or the code of an equation."""
+
+    block: Equation | Table
+    is_code: bool
+    size: int  # bytes that go with it
+
+    @property
+    def is_live(self) -> bool:
+        return isinstance(self.block, Equation) and self.block.label in SHOWN
+
+
 def print_page(derivation: Derivation, document: Document) -> str:
     """The page of a derivation, whose note is given; the same input gives the same bytes.
 
-    It has at most MOST_BYTES: where the note is longer, its largest equations are left out.
+    It has at most MOST_BYTES: where all would be longer, the largest parts are left to the note
+    and the module; those of what is shown live go last.
     """
     page = _Page(derivation, document)
     whole = page.text()
     over = len(whole.encode()) - MOST_BYTES
-    return page.text(frozenset(page.largest(over))) if over > 0 else whole
+    if over <= 0:
+        return whole
+    parts = sorted(page.parts(), key=lambda part: (part.is_live, -part.size))
+    saved = accumulate((part.size for part in parts), initial=0)
+    return page.text([part for part, before in zip(parts, saved, strict=False) if before < over])
 
 
 class _Page:
@@ -50,27 +70,30 @@ class _Page:
         self.derivation = derivation
         self.document = document.without_sheets  # a page has no room to say it twice
         self.functions = functions_of(derivation.model)
-        self.groups = groups_of(derivation, shown_angles(derivation.model))
+        self.groups = groups_of(
+            self.functions.derivation, self.document.notation, shown_angles(derivation.model)
+        )
         self.copies = copies_of(derivation, document)
 
-    def largest(self, over: int) -> Iterator[Equation]:
-        """Equations that take as many bytes together, the largest first; those shown live last."""
+    def parts(self) -> Iterator[Part]:
+        """All that can be left out, in the order of the note."""
         printer = PagePrinter(self.document, copied=self.copies.texts)
-        blocks = (block for section in self.document.sections for block in section.blocks)
-        sizes = {b: self._size(b, printer) for b in blocks if isinstance(b, Equation)}
-        for equation in sorted(sizes, key=lambda e: (e.label in SHOWN, -sizes[e])):
-            if over > 0:
-                over -= sizes[equation] - _LEFT_OUT
-                yield equation
+        for block in (block for section in self.document.sections for block in section.blocks):
+            if not isinstance(block, Equation | Table):
+                continue
+            shown = printer.forms(block) if isinstance(block, Equation) else printer.table(block)
+            yield Part(block=block, is_code=False, size=len(shown.encode()) - _LEFT_OUT)
+            text = self.copies.texts.get(block.label) if isinstance(block, Equation) else None
+            if text is not None:
+                size = len(_json(text).encode()) - len(_json({LATEX: text[LATEX]}).encode())
+                yield Part(block=block, is_code=True, size=size)
 
-    def _size(self, equation: Equation, printer: PagePrinter) -> int:
-        copied = json.dumps(self.copies.texts.get(equation.label, {}))
-        return len((printer.forms(equation) + printer.tools(equation) + copied).encode())
-
-    def text(self, left_out: Collection[Equation] = ()) -> str:
-        printer = PagePrinter(self.document, copied=self.copies.texts, left_out=left_out)
-        labels = {equation.label for equation in left_out}
-        script = self._script(self.copies.without(labels))
+    def text(self, left_out: Collection[Part] = ()) -> str:
+        blocks = [part.block for part in left_out if not part.is_code]
+        codes = [p.block.label for p in left_out if p.is_code and isinstance(p.block, Equation)]
+        copies = self.copies.without_code(codes)
+        printer = PagePrinter(self.document, copied=copies.texts, left_out=blocks)
+        script = self._script(copies)
         return rendered(
             TEMPLATE,
             printer,
@@ -97,7 +120,7 @@ class _Page:
             "shared": copies.shared,
             "languages": LANGUAGES,
         }
-        written = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
+        written = _json(data)
         text = (
             resources.environment()
             .get_template(SCRIPT)
@@ -154,6 +177,10 @@ class _Page:
         """How the margin is called, where there is one."""
         kernel = next((k for k in self.functions.kernels if k.name == MARGIN), None)
         return "" if kernel is None else escape(kernel.symbol)
+
+
+def _json(data: object) -> str:
+    return json.dumps(data, ensure_ascii=False, separators=(",", ":"))
 
 
 def _shown(control: Control) -> dict[str, str]:

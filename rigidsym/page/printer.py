@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 
 from rigidsym.mechanics.derivation import Markup
-from rigidsym.notes.document import Document, Equation, Paragraph, Text
+from rigidsym.notes.document import Document, Equation, Paragraph, Table, Text
 from rigidsym.notes.html import Printer, escape
 from rigidsym.notes.layout import display
 
@@ -13,29 +13,32 @@ _ROOM = 39.5  # ems of a display; what is wider scrolls in a box of its own
 
 
 class PagePrinter(Printer):
-    """Blocks of a note, but for the equations in `left_out`; `copied` have buttons."""
+    """Blocks of a note, but for those in `left_out`; `copied` have buttons."""
 
     def __init__(
         self,
         document: Document,
         *,
         copied: Collection[str],
-        left_out: Collection[Equation] = (),
+        left_out: Iterable[Equation | Table] = (),
     ) -> None:
         super().__init__(document)
         self.copied = copied
-        self.left_out = left_out
+        self.left_out = frozenset(left_out)
 
     def forms(self, equation: Equation) -> str:
         if equation in self.left_out:
-            note = f"<code>{escape(self.document.name)}.html</code>"
-            return f'<p class="left-out">Too long for this page; the note, {note}, has it.</p>'
+            return self._left_out()
         return self.display(equation, display(equation, self.document.notation, _ROOM), "display")
 
-    def tools(self, equation: Equation) -> str:
-        return "" if equation in self.left_out else self.buttons(equation)
+    def table(self, table: Table) -> str:
+        return self._left_out() if table in self.left_out else super().table(table)
 
-    def buttons(self, equation: Equation) -> str:
+    def _left_out(self) -> str:
+        note = f"<code>{escape(self.document.name)}.html</code>"
+        return f'<p class="left-out">Too long for this page; the note, {note}, has it.</p>'
+
+    def tools(self, equation: Equation) -> str:
         """Where the script puts a button a language, if there is something to copy."""
         if equation.label not in self.copied:
             return ""

@@ -58,4 +58,5 @@ def _names_of_turns(model: RotationModel, notation: Notation) -> list[Markup]:
 
 
 def _written(symbol: Markup) -> str:
-    return as_in_formulas(symbol.text)
+    """A label; an arrow above it would not stand where it should in every browser."""
+    return as_in_formulas(symbol.text.replace("\u20d7", ""))
