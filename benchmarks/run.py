@@ -25,6 +25,7 @@ README = Path(__file__).resolve().parent.parent / "README.md"
 NAMES = (
     "derivation",
     "form",
+    "energy",
     "catalogue",
     "cold_start",
     "kernels",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import tomllib
 
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.mechanics.energy_quantities import ENERGY_QUANTITIES
+from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.mechanics.quantities import quantities
 from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
@@ -52,7 +54,8 @@ def _presets() -> list[str]:
 def _quantities() -> list[str]:
     return [
         f"{quantity.name:<34} {_padded(quantity.symbol.text, 9)} {quantity.about}"
-        for quantity in quantities(passive=False).values()
+        for table in (quantities(passive=False), INERTIA_QUANTITIES, ENERGY_QUANTITIES)
+        for quantity in table.values()
     ]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -15,6 +16,7 @@ from sympy.physics.vector import dynamicsymbols
 from witness import Path, agree, derivative, evaluate, mp, paths, rotation, unhat, values_along
 
 import rigidsym as rs
+from benchmarks import energy as energy_benchmark
 from benchmarks import sympy_energy
 from rigidsym.errors import ModelError, QuantityError
 from rigidsym.expression import parse_expression
@@ -193,6 +195,16 @@ def test_never_longer_than_sympy_after_simplify(convention, body):
         expression = derived(convention, body).step(name).expression
         count = sum(int(sp.count_ops(entry)) for entry in expression)
         assert count <= min(survey.simplified, survey.best.operations), name
+
+
+def test_the_benchmark_says_what_is_longer():
+    surveys = sympy_energy.load()["ZXZ"]["symmetric"]
+    found = energy_benchmark.compare("ZXZ", "symmetric", surveys)
+    text = energy_benchmark.report(found).text()
+    assert "0 of 3 longer, 213 not surveyed" in text
+    assert "NOT MET" in text  # a part of the conventions is no answer
+    worse = [replace(found[0], ours=99), *found[1:]]
+    assert "1 of 3 longer" in energy_benchmark.report(worse).text()
 
 
 def test_kernels_against_fifty_digits():

@@ -8,6 +8,7 @@ from itertools import groupby
 
 from rigidsym.mechanics.derivation import Derivation, Markup, Statement, Step
 from rigidsym.mechanics.energy_quantities import ENERGIES, MOMENTA
+from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.notes.claims_table import claims_in_a_table
 from rigidsym.notes.compose import Composer
 from rigidsym.notes.document import (
@@ -73,6 +74,7 @@ class _Lecture(Composer):
             yield Section(title, tuple(blocks))
         parts = {
             self.model.title: self._of_the_rotation(),
+            "The body": self._steps(tuple(INERTIA_QUANTITIES)),
             "The kinetic energy of the body": self._steps(ENERGIES),
             "The angular momentum of the body": self._steps(MOMENTA),
             "What was proved": self._proofs(),
