@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import re
 import shutil
 import subprocess
@@ -91,6 +92,35 @@ def test_it_needs_nothing_and_keeps_nothing(sources):
     assert {kind for kind, _ in symbols} <= {"T", "t", "r"}  # no data, nothing undefined
     text = (sources / f"{NAME}.c").read_text(encoding="utf-8")
     assert not re.search(r"\b(malloc|calloc|alloca|goto|setjmp)\b", text)
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+@pytest.mark.parametrize("contract", ["off", "fast"])
+def test_sine_and_cosine_keep_two_eps_of_their_size_at_any_angle(sources, contract):
+    made = sources / f"{contract}.so"
+    flags = ("-std=c99", "-O2", "-fPIC", "-shared", f"-ffp-contract={contract}", "-march=native")
+    run("gcc", *flags, f"{NAME}.c", "-o", str(made), "-lm", cwd=sources)
+    library = ctypes.CDLL(str(made))
+    random = np.random.default_rng(2)
+    for dtype, suffix, most in ((np.float64, "", 300), (np.float32, "f", 37)):
+        angles = np.concatenate(
+            [
+                random.choice([-1.0, 1.0], 150) * 10.0 ** random.uniform(-6, most, 150),
+                np.arange(-40, 40) * np.pi / 2,
+                random.uniform(-1e4, 1e4, 80),
+                random.uniform(-4e6, 4e6, 80),
+            ]
+        ).astype(dtype)
+        q, matrix = np.zeros((len(angles), 3), dtype), np.zeros((len(angles), 9), dtype)
+        q[:, 1] = angles
+        function = getattr(library, f"{NAME}_rotation_matrix{suffix}")
+        for row, out in zip(q, matrix, strict=True):
+            function(ctypes.c_void_p(row.ctypes.data), ctypes.c_void_p(out.ctypes.data))
+        with mp.workdps(400):
+            for angle, row in zip(angles.tolist(), matrix.tolist(), strict=True):
+                for found, truth in ((row[7], mp.sin(angle)), (row[8], mp.cos(angle))):
+                    limit = 2 * float(np.finfo(dtype).eps) * abs(truth)
+                    assert abs(found - truth) <= limit, angle
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)

@@ -26,8 +26,14 @@ PRESENT = [
     )
     for name in ARRAYS
 ]
-ROTATIONS = {  # and the quantities of each; none: all
-    "ZXZ": (),  # angles, and divisors that vanish
+ROTATIONS = {  # and some quantities of each
+    "ZXZ": (  # angles, and divisors that vanish
+        "rotation_matrix",
+        "angular_velocity_space",
+        "angular_velocity_body",
+        "inverse_rate_matrix_space",
+        "rates_from_angular_velocity_body",
+    ),
     "rotation_vector": ("rotation_matrix", "angular_acceleration_body", "inverse_rate_matrix_body"),
     "quaternion": ("angular_velocity_space", "rates_from_angular_velocity_body"),
     "z(phi) [1,2,2](theta) x(psi0)": ("rotation_matrix", "angular_velocity_body"),

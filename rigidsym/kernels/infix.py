@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from rigidsym.kernels.ir import Call, Expression, Guarded, Name, Negative, Number, Product, Sum
@@ -27,14 +27,6 @@ def literal(value: Fraction | float, number: Literal = repr) -> str:
         return number(float(value))
     fraction = Fraction(value)
     return f"{number(float(fraction.numerator))} / {number(float(fraction.denominator))}"
-
-
-def horner(coefficients: Sequence[Fraction], name: str, number: Literal = repr) -> str:
-    """A polynomial in a name, the coefficients from the lowest power up."""
-    first = number(float(coefficients[0]))
-    if len(coefficients) == 1:
-        return first
-    return f"({first} + {name} * {horner(coefficients[1:], name, number)})"
 
 
 def _text(expression: Expression, functions: Mapping[str, str], number: Literal) -> tuple[str, int]:

@@ -107,7 +107,6 @@ def _template(name: str):  # type: ignore[no-untyped-def]  # Jinja's own type
 
 def _about(program: Program) -> list[str | Sequence[str]]:
     """The paragraphs at the head of the header."""
-    reach = ", ".join(f"{p.reach} in {p.real}" for p in PRECISIONS)
     return [
         f"{program.title}: functions in C99.",
         " ".join(program.convention),
@@ -119,12 +118,12 @@ def _about(program: Program) -> list[str | Sequence[str]]:
         "repeats one), from one component to the next by its `stride`, both in elements; rows "
         "without gaps, a step of the row's length and a stride of 1, are the fastest. `out` may "
         "not overlap an argument.",
-        "Sine and cosine are evaluated here, within 1 eps (2^-52 in double, 2^-23 in float) of "
-        f"their size up to {reach} radians and within 4 eps beyond, at any finite angle. An "
-        "infinite angle and NaN give NaN. The largest entry of a rotation matrix or an angular "
-        "velocity bounds its error: at most 4 eps of it for angles up to 10000.",
-        "No function allocates, recurses, keeps a state or sets errno; an array function needs "
-        "64 orientations' room on the stack.",
+        "Sine and cosine are evaluated here, within 2 eps of their size (eps is 2^-52 in double, "
+        "2^-23 in float) at any finite angle; an infinite angle and NaN give NaN. The error of a "
+        "rotation matrix or an angular velocity is at most 4 eps of its largest entry, measured "
+        "for angles up to 10000.",
+        "No function allocates, recurses, keeps a state or sets errno; an array function takes "
+        "room for 64 orientations on the stack.",
     ]
 
 
@@ -137,10 +136,10 @@ def _about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
         for a in kernel.arguments
     ]
     unit = f"  in {kernel.unit}" if kernel.unit else ""
-    shape = " by ".join(map(str, kernel.shape)) or "1"
+    shape = f"  {' by '.join(map(str, kernel.shape))}, row by row" if len(kernel.shape) > 1 else ""
     return [
         f"{kernel.symbol}{definition}: {kernel.about}.",
-        [*rows, f"  out[{len(kernel.outputs)}]  {shape}{unit}"],
+        [*rows, f"  out[{len(kernel.outputs)}]{shape}{unit}"],
         f"{place}{kernel.operations}.",
         *singular.poles(kernel),
     ]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from rigidsym.kernels.infix import infix, literal
-from rigidsym.kernels.ir import FUNCTIONS, Call, Expression, Guarded, Kernel, Name, Number
+from rigidsym.kernels.ir import FUNCTIONS, Call, Expression, Guarded, Kernel, Name, Number, names_in
 from rigidsym.kernels.layout import bracketed
 from rigidsym.kernels.targets import numpy_singular as singular
 from rigidsym.kernels.targets.c_precision import PRECISIONS, Precision
@@ -122,8 +122,12 @@ def _body(kernel: Kernel, precision: Precision) -> str:
 
 
 def _unused(kernel: Kernel) -> Iterator[str]:
-    for name in ("far", *kernel.components):
-        yield f"    (void){name};"
+    """What C is told of the parameters that this kernel has no use for."""
+    wholes = [*(assignment.value for assignment in kernel.assignments), *kernel.outputs]
+    used = {name for whole in wholes for name in names_in(whole)}
+    if all(call.function in ("sqrt", "abs") for call in singular.calls_of(kernel).values()):
+        yield "    (void)far;"
+    yield from (f"    (void){name};" for name in kernel.components if name not in used)
 
 
 def _lines(kernel: Kernel, precision: Precision) -> Iterator[str]:
@@ -141,7 +145,7 @@ def _lines(kernel: Kernel, precision: Precision) -> Iterator[str]:
                     continue
                 pair = [Call("sin", argument), Call("cos", argument)]
                 written.update(pair)
-                names = [calls.get(call, f"{call.function}_of_{name}") for call in pair]
+                names = [calls.get(call, f"_{call.function}_{argument.text}") for call in pair]
                 yield f"    {real} {names[0]}, {names[1]};"
                 angle = argument.text
                 yield (f"    beyond |= sin_cos{suffix}(far, {angle}, &{names[0]}, &{names[1]});")
@@ -155,7 +159,7 @@ def _lines(kernel: Kernel, precision: Precision) -> Iterator[str]:
 def _entire(group: dict[str, Call], precision: Precision) -> Iterator[str]:
     """All functions c_k of one square."""
     (square,) = {call.argument.text for call in group.values()}
-    held = f"entire_of_{square}"
+    held = f"_entire_{square}"
     yield f"    {precision.real} {held}[ORDERS];"
     yield f"    beyond |= entire{precision.suffix}(far, {square}, {held});"
     for name, call in group.items():

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from math import pi
 from typing import Any
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
-from rigidsym.kernels.infix import horner
 from rigidsym.kernels.sine import reduction
 
 
@@ -41,6 +42,7 @@ class Precision:
     def filled(self, last: int) -> dict[str, Any]:
         """What the template needs; `last` is the highest order of the functions c_k."""
         found = reduction(self.digits)
+        sine, cosine = self.falling(found.sine), self.falling(found.cosine)
         magic = 1.5 * 2.0 ** (self.digits - 1)  # a float of this size has no fraction
         letters, words = self.packed
         (word,) = struct.unpack(words, struct.pack(letters, magic))
@@ -56,20 +58,29 @@ class Precision:
             "least_word": f"{word - 2**found.turns:#x}u",
             "two_over_pi": self.literal(2 / pi),
             "parts": [float(part).hex() + self.suffix for part in found.parts],
-            "sine": horner(found.sine, "z", self.literal),
-            "cosine": horner(found.cosine, "z", self.literal),
+            "sine": self.falling(found.sine),
+            "cosine": self.falling(found.cosine),
+            "rest": list(
+                zip(self.falling(found.sine)[1:], self.falling(found.cosine)[1:], strict=True)
+            ),
             "nan": self.nan,
             "series": [self._series(order) for order in range(FIRST_SERIES, last + 1)],
         }
 
-    def _series(self, order: int) -> str:
-        """values[3] = square < switch ? polynomial : (start - values[1]) / square;"""
+    def falling(self, coefficients: Sequence[Fraction]) -> list[str]:
+        """The literals of a polynomial from the highest power down, as Horner's rule takes them."""
+        return [self.literal(float(coefficient)) for coefficient in reversed(coefficients)]
+
+    def _series(self, order: int) -> dict[str, Any]:
+        """c_k below its switch and above it."""
         series = series_of(order)
-        near = horner(series.coefficients, "square", self.literal)
-        start = self.literal(float(taylor(order - 2)[0]))
-        switch = self.literal(float(series.switch))
-        far = f"({start} - values[{order - 2}]) / square"
-        return f"values[{order}] = square < {switch} ? {near} : {far};"
+        return {
+            "order": order,
+            "before": order - 2,
+            "near": self.falling(series.coefficients),
+            "start": self.literal(float(taylor(order - 2)[0])),
+            "switch": self.literal(float(series.switch)),
+        }
 
 
 PRECISIONS = (

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
 from math import pi
 from types import ModuleType
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.errors import MissingExtra
 from rigidsym.kernels.conversions import ConversionProgram
-from rigidsym.kernels.infix import horner, infix, literal
+from rigidsym.kernels.infix import infix, literal
 from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Name, Number, Program
 from rigidsym.kernels.sine import reduction
 from rigidsym.kernels.targets import TARGETS, numpy
@@ -27,6 +28,7 @@ def render(program: Program, conversions: ConversionProgram | None = None) -> di
     calls = [call for kernel in kernels for call in singular.calls_of(kernel).values()]
     last = max((call.order for call in calls if call.order is not None), default=-1)
     found = reduction(53)
+    polynomials = list(zip(_falling(found.sine), _falling(found.cosine), strict=True))
     text = numpy.module_text(
         program,
         conversions,
@@ -36,8 +38,8 @@ def render(program: Program, conversions: ConversionProgram | None = None) -> di
         two_over_pi=repr(2 / pi),
         magic=repr(1.5 * 2.0**52),  # a float of this size has no fraction
         parts=[repr(float(part)) for part in found.parts],
-        sine=horner(found.sine, "z"),
-        cosine=horner(found.cosine, "z"),
+        first=polynomials[0],
+        rest=polynomials[1:],
         series=None if last < 0 else [_series(k) for k in range(FIRST_SERIES, last + 1)],
         orders=", ".join(f"c{k}" for k in range(max(last, 2) + 1)),
         kernels=[_compiled(kernel) for kernel in kernels],
@@ -53,13 +55,21 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
     return numpy.python_module(f"{name}_numba", source)
 
 
-def _series(order: int) -> str:
-    """c3 = polynomial if square < switch else (start - c1) / square"""
+def _falling(coefficients: Sequence[Fraction]) -> list[str]:
+    """From the highest power down, as Horner's rule takes them."""
+    return [repr(float(coefficient)) for coefficient in reversed(coefficients)]
+
+
+def _series(order: int) -> dict[str, Any]:
+    """c_k below its switch and above it."""
     series = series_of(order)
-    start = literal(taylor(order - 2)[0])
-    near = horner(series.coefficients, "square")
-    far = f"({start} - c{order - 2}) / square"
-    return f"c{order} = {near} if square < {literal(series.switch)} else {far}"
+    return {
+        "order": order,
+        "before": order - 2,
+        "near": _falling(series.coefficients),
+        "start": repr(float(taylor(order - 2)[0])),
+        "switch": repr(float(series.switch)),
+    }
 
 
 def _compiled(kernel: Kernel) -> dict[str, Any]:
