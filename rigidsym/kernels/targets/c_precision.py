@@ -58,11 +58,8 @@ class Precision:
             "least_word": f"{word - 2**found.turns:#x}u",
             "two_over_pi": self.literal(2 / pi),
             "parts": [float(part).hex() + self.suffix for part in found.parts],
-            "sine": self.falling(found.sine),
-            "cosine": self.falling(found.cosine),
-            "rest": list(
-                zip(self.falling(found.sine)[1:], self.falling(found.cosine)[1:], strict=True)
-            ),
+            "first": (sine[0], cosine[0]),
+            "rest": list(zip(sine[1:], cosine[1:], strict=True)),
             "nan": self.nan,
             "series": [self._series(order) for order in range(FIRST_SERIES, last + 1)],
         }
