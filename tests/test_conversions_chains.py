@@ -220,6 +220,14 @@ def test_davenports_angles_are_scipys(passive):
     assert_allclose(found[same], expected[same], atol=1e-12)
 
 
+def test_signatures_are_those_of_generalised_ufuncs():
+    functions = module("z(a1) x(alpha0) z(b1) x(c1) y(d1)")
+    assert functions.from_quaternion.signature == "(4),(1),(1)->(4)"
+    assert functions.from_rotation_matrix.signature == "(3,3),(1),(1)->(4)"
+    assert functions.quaternion.signature == "(4),(k)->(4)"
+    assert module("davenport").from_quaternion.signature == "(4),(2)->(3)"
+
+
 def test_what_is_not_determined_is_kept_at_what_is_given_and_at_zero():
     functions = module("z(phi) x(theta) z(psi) y(delta)")
     rotations = Rotation.random(50, rng=np.random.default_rng(2))

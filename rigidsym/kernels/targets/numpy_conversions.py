@@ -183,8 +183,10 @@ def _shape(formula: Formula, shape: str) -> str:
 def _ufunc(formula: Formula, shape: str) -> str:
     """The signature as a generalised ufunc; `shape` is that of the coordinates, "(3,)"."""
     sizes = {"p": "(4)", "matrix": "(3,3)", "q": shape.replace(",)", ")")}
-    parameters = f"({len(formula.inputs) - 1})"
-    inputs = ",".join(sizes.get(argument, parameters) for argument in formula.arguments)
+    beside = {"p": len(QUATERNION), "matrix": len(MATRIX)}.get(formula.arguments[0], 0)
+    constants = len(formula.inputs) - beside - len(formula.kept) if formula.inputs else "k"
+    sizes |= {"parameters": f"({constants})", "kept": f"({len(formula.kept)})"}
+    inputs = ",".join(sizes[argument] for argument in formula.arguments)
     return f"{inputs}->({len(formula.outputs)})"
 
 
