@@ -9,7 +9,7 @@ from rigidsym.errors import ExpressionError, ModelError
 from rigidsym.models.catalogue import DEFAULT_ANGLES, EULER_SEQUENCES
 from rigidsym.models.rotation import RotationModel
 from rigidsym.names import check_name
-from rigidsym.rotations import rotation_from, rotation_given
+from rigidsym.rotations import faults_in, rotation_from, rotation_given
 from rigidsym.tables import Table
 from rigidsym.toml_lines import Path as Place
 
@@ -82,12 +82,18 @@ def _read_matrix(table: Table, name: str) -> list[RotationModel]:
     constraints = table.texts("constraints", "a list of expressions that vanish") or []
     if rows is None or coordinates is None or None in constraints:
         return []
+    conditions = [text for text in constraints if text is not None]
+    unread = faults_in(rows, coordinates, conditions)
+    for at, message in unread.items():
+        table.fault(message, *at)
+    if unread:
+        return []
     try:
         model = rotation_given(
             rows,
             name=name,
             coordinates=coordinates,
-            constraints=[text for text in constraints if text is not None],
+            constraints=conditions,
             passive=bool(table.flag("passive")),
         )
     except (ModelError, ExpressionError) as error:

@@ -94,6 +94,25 @@ def rotation_given(
     return replace(model, request={key: value for key, value in asked.items() if value})
 
 
+def faults_in(
+    rows: Sequence[Sequence[str]], coordinates: Sequence[str], constraints: Sequence[str] = ()
+) -> dict[tuple[str | int, ...], str]:
+    """{place: fault} of the texts that `rotation_given` cannot read."""
+    texts: dict[tuple[str | int, ...], str] = {
+        ("matrix", i, j): text for i, row in enumerate(rows) for j, text in enumerate(row)
+    }
+    texts |= {("constraints", k): text for k, text in enumerate(constraints)}
+    moving = {q: time_function(q) for q in coordinates}
+    faults: dict[tuple[str | int, ...], str] = {}
+    for place, text in texts.items():
+        try:
+            names = {n: moving.get(n) or sp.Symbol(check_name(n)) for n in names_in(text)}
+            parse_expression(text, names)
+        except ExpressionError as error:
+            faults[place] = f"column {error.column}: {error.message}"
+    return faults
+
+
 def request_of(model: RotationModel) -> Mapping[str, Any]:
     """What asks for the model again; raises ModelError for one that no text asks for."""
     if model.request:

@@ -80,6 +80,16 @@ def test_a_matrix_of_ones_own_is_derived_and_proved(tmp_path, text):
     call("check", "out", cwd=tmp_path)
 
 
+def test_a_fault_stands_at_its_own_place(tmp_path):
+    text = BOUND.replace("c**2 + s**2 - 1", "c**2 + ").replace('"-s"', '"-s)"')
+    (tmp_path / "own.toml").write_text(text)
+    done = call("run", "own.toml", cwd=tmp_path, status=3)
+    lines = text.splitlines()
+    for word, path in (('"-s)"', "rotation.matrix[0][1]"), ("c**2 + ", "rotation.constraints[0]")):
+        line = next(k for k, words in enumerate(lines, start=1) if word in words)
+        assert f"line {line}: {path}: column " in done.stderr
+
+
 def test_a_matrix_that_is_no_rotation_is_refused_with_what_is_left(tmp_path):
     text = BOUND.replace('"-s"', '"s"')
     (tmp_path / "own.toml").write_text(text)

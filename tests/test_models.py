@@ -13,6 +13,9 @@ from witness import CONVENTIONS, agree, evaluate, mp, paths, rotation, turn
 
 from rigidsym.errors import ModelError
 from rigidsym.models.catalogue import AXIS_SEQUENCES, EULER_SEQUENCES, EulerAngles
+from rigidsym.models.chain import axis_turn
+from rigidsym.models.chain import chain as chain_of
+from rigidsym.models.rotation import Turn
 from rigidsym.models.so3 import AXES, elementary, hat, time_function
 
 
@@ -114,6 +117,11 @@ class TestChecks:
             ({"coordinates": (sp.Symbol("phi"),)}, "phi is not a function of t"),
             ({"coordinates": (phi.diff(TIME),)}, "is not a function of t"),
             ({"units": ("rad", "m")}, "1 coordinates, but 2 units"),
+            ({"turns": (Turn(axis="x", angle=phi),)}, "not the product of its turns, Rx(φ)"),
+            (
+                {"matrix": sp.ImmutableMatrix(sp.GoldenRatio * ONE)},
+                "the number GoldenRatio, of which",
+            ),
         ],
         ids=str,
     )
@@ -121,6 +129,22 @@ class TestChecks:
         with pytest.raises(ModelError) as caught:
             dataclasses.replace(model(chain(("z", phi)), phi), **change)
         assert message in str(caught.value)
+
+    def test_a_matrix_may_be_the_product_of_its_turns_in_another_form(self):
+        given = chain(("z", phi)).subs(sp.sin(phi), 2 * sp.sin(phi / 2) * sp.cos(phi / 2))
+        turns = (Turn(axis="z", angle=phi),)
+        assert dataclasses.replace(model(given, phi), turns=turns).product == "Rz(φ)"
+
+    def test_roots_of_roots_are_a_unit_axis_where_they_are_one(self):
+        root = sp.sqrt(2 + sp.sqrt(2)) / 2  # cos π/8
+        other = sp.sqrt(2 - sp.sqrt(2)) / 2
+        nested = sp.sqrt(5 + 2 * sp.sqrt(6)) - sp.sqrt(2) - sp.sqrt(3)  # zero, not when expanded
+        turns = [axis_turn((root, other, nested), phi)]
+        assert chain_of(turns).constraints == ()
+        with pytest.raises(ModelError, match="expected a unit vector"):
+            axis_turn((root, root, 0), phi)
+        with pytest.raises(ModelError, match="expected a unit vector"):
+            axis_turn((root, other + sp.Rational(1, 10**40), 0), phi)
 
     def test_a_model_does_not_change(self):
         with pytest.raises(dataclasses.FrozenInstanceError):

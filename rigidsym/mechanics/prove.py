@@ -37,7 +37,9 @@ class Prover:
         if self.model.pullback is not None and self._pulled_back(left).is_zero():
             return self._unless_zero(divided_by, claim)
         if self._is_refuted(left):
-            raise DerivationError(f"{self.model.name}: {claim.text} is false; left over: {left}")
+            raise DerivationError(
+                f"{self.model.name}: {claim.text} is false; left over: {self._plain(left)}"
+            )
         return Proof(claim=claim, status="unproved", residual=left)
 
     def _pulled_back(self, left: sp.ImmutableMatrix) -> RingMatrix:
@@ -74,12 +76,27 @@ class Prover:
         except DerivationError as error:
             raise NotARotation(
                 f"{self.model.name}: not a rotation, since {claim.text} fails; "
-                f"left over: {self._decoded(residual)}"
+                f"left over: {self._plain(self._decoded(residual))}"
             ) from error
 
     def _decoded(self, residual: RingMatrix) -> sp.ImmutableMatrix:
         decode = self.codec.decode
         return sp.ImmutableMatrix([[decode(entry) for entry in row] for row in residual.rows])
+
+    def _plain(self, left: sp.ImmutableMatrix) -> str:
+        """The entries that are not zero, in the plain names of the coordinates."""
+        names = {
+            sp.diff(q, TIME, order): sp.Symbol(q.func.__name__ + suffix)
+            for order, suffix in ((2, "_ddot"), (1, "_dot"), (0, ""))
+            for q in self.model.coordinates
+        }
+        entries = [
+            (f"{left[i, j].xreplace(names)}", f" in row {i + 1}, column {j + 1}")
+            for i in range(left.rows)
+            for j in range(left.cols)
+            if left[i, j] != 0
+        ]
+        return "; ".join(text + (place if len(left) > 1 else "") for text, place in entries)
 
     @property
     def _is_decided(self) -> bool:

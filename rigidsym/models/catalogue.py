@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache, reduce
 
-import sympy as sp
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.errors import ExpressionError, ModelError
-from rigidsym.models.rotation import Citation, RotationModel, Turn, lecture
-from rigidsym.models.so3 import AXES, elementary, time_function
+from rigidsym.models.rotation import Citation, RotationModel, Turn, lecture, product_of
+from rigidsym.models.so3 import AXES, time_function
 from rigidsym.names import check_name
 
 AXIS_SEQUENCES = tuple(
@@ -56,7 +54,7 @@ def EulerAngles(
         title=f"Euler angles {letters}, {manner}" + (", passive" if passive else ""),
         convention=(_order_in_words(manner, in_order),),
         coordinates=coordinates,
-        matrix=_product(turns),
+        matrix=product_of(turns),
         turns=turns,
         source=_ZXZ_SOURCE if letters == "ZXZ" else _SOURCE,
         passive=passive,
@@ -93,16 +91,6 @@ def _three_names(angles: Sequence[str]) -> Sequence[str]:
     if len(plain) != 3 or len(set(plain)) != 3:
         raise ModelError(f"Euler angles need three different names, got {', '.join(angles)}")
     return plain
-
-
-def _product(turns: Sequence[Turn]) -> sp.ImmutableMatrix:
-    return reduce(_times, (elementary(turn.axis, turn.angle) for turn in turns))
-
-
-@lru_cache(maxsize=128)
-def _times(first: sp.ImmutableMatrix, second: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """The product, remembered, since several sequences begin with the same two turns."""
-    return first * second
 
 
 def _order_in_words(manner: str, turns: Sequence[Turn]) -> str:

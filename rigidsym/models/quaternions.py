@@ -6,6 +6,7 @@ A quaternion is w + v with v = (x, y, z); scalar first unless the last is asked 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import sympy as sp
 
@@ -32,20 +33,18 @@ def Quaternion(
     `names` are (w, x, y, z) in this order; `scalar_last` makes the coordinates (x, y, z, w).
     Raises ModelError for bad names.
     """
-    w, vector, coordinates = _parts(names, scalar_last=scalar_last)
-    return RotationModel(
-        name=_name("quaternion", scalar_last=scalar_last, passive=passive),
-        title=_title("Quaternion", scalar_last=scalar_last, passive=passive),
+    model = UnitQuaternion(names, scalar_last=scalar_last, passive=passive)
+    (condition,) = model.constraints
+    return replace(
+        model,
+        name=model.name.removeprefix("unit_"),
+        title=model.title.removeprefix("Unit ").capitalize(),
         convention=(
             f"The quaternion is w + (x, y, z), {_SCALAR[scalar_last]}, of any length but zero; "
             "every multiple of it is the same rotation.",
         ),
-        coordinates=coordinates,
-        matrix=sp.ImmutableMatrix(_homogeneous(w, vector) / (w**2 + vector.dot(vector))),
-        source=_SHUSTER,
-        units=("",) * 4,
-        vector=tuple(vector),
-        passive=passive,
+        matrix=model.matrix / (condition + 1),
+        constraints=(),
     )
 
 
@@ -60,15 +59,16 @@ def UnitQuaternion(
     `names` are (w, x, y, z) in this order; `scalar_last` makes the coordinates (x, y, z, w).
     Raises ModelError for bad names.
     """
-    w, vector, coordinates = _parts(names, scalar_last=scalar_last)
+    w, *parts = (time_function(name) for name in distinct_names(names, 4))
+    vector = sp.Matrix(parts)
     return RotationModel(
-        name=_name("unit_quaternion", scalar_last=scalar_last, passive=passive),
-        title=_title("Unit quaternion", scalar_last=scalar_last, passive=passive),
+        name="unit_quaternion" + ("_xyzw" if scalar_last else "") + ("_passive" if passive else ""),
+        title=f"Unit quaternion, {_SCALAR[scalar_last]}" + (", passive" if passive else ""),
         convention=(
             f"The quaternion is w + (x, y, z), {_SCALAR[scalar_last]}, of length one: the cosine "
             "of half the angle and the axis times the sine of half the angle.",
         ),
-        coordinates=coordinates,
+        coordinates=(*parts, w) if scalar_last else (w, *parts),
         matrix=sp.ImmutableMatrix(_homogeneous(w, vector)),
         constraints=(w**2 + vector.dot(vector) - 1,),
         source=_SHUSTER,
@@ -126,22 +126,7 @@ def AxisAngle(
     )
 
 
-def _parts(
-    names: Sequence[str], *, scalar_last: bool
-) -> tuple[sp.Expr, sp.Matrix, tuple[sp.Expr, ...]]:
-    w, *vector = (time_function(name) for name in distinct_names(names, 4))
-    return w, sp.Matrix(vector), (*vector, w) if scalar_last else (w, *vector)
-
-
 def _homogeneous(w: sp.Expr, vector: sp.Matrix) -> sp.Matrix:
     """(w² − v·v) 1 + 2 v vᵀ + 2 w C(v): the rotation times the square of the length."""
     square = vector.dot(vector)
     return (w**2 - square) * sp.eye(3) + 2 * vector * vector.T + 2 * w * hat(vector)
-
-
-def _name(base: str, *, scalar_last: bool, passive: bool) -> str:
-    return base + ("_xyzw" if scalar_last else "") + ("_passive" if passive else "")
-
-
-def _title(base: str, *, scalar_last: bool, passive: bool) -> str:
-    return f"{base}, {_SCALAR[scalar_last]}" + (", passive" if passive else "")

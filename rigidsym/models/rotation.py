@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import lru_cache, reduce
 from typing import Any
 
 import sympy as sp
@@ -77,6 +77,17 @@ class Turn:
         return f"R{self.axis}({self.angle_text})"
 
 
+def product_of(turns: tuple[Turn, ...]) -> sp.ImmutableMatrix:
+    """R as the product of turns, left to right as given."""
+    return reduce(_times, (turn.matrix for turn in turns))
+
+
+@lru_cache(maxsize=128)
+def _times(first: sp.ImmutableMatrix, second: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """The product, remembered, since several sequences begin with the same two turns."""
+    return first * second
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Pullback:
     """Bound coordinates as functions of others that reach every allowed value of them.
@@ -125,6 +136,7 @@ class RotationModel:
             raise ModelError(f"{self.name}: a model needs at least one coordinate")
         self._check_coordinates()
         self._check_constants()
+        self._check_turns()
 
     def _check_constants(self) -> None:
         moving = {coordinate.func.__name__ for coordinate in self.coordinates}
@@ -133,6 +145,25 @@ class RotationModel:
                 raise ModelError(f"{self.name}: {constant} is both a coordinate and a constant")
         if self.matrix.has(sp.I) or any(c.has(sp.I) for c in self.constraints):
             raise ModelError(f"{self.name}: a rotation is real; its matrix holds the number i")
+
+        for number in self.matrix.atoms(sp.NumberSymbol) - {sp.pi, sp.E}:
+            raise ModelError(
+                f"{self.name}: the matrix holds the number {number}, of which the ring knows "
+                f"nothing; expected roots, as in {sp.expand_func(sp.GoldenRatio)}, or a symbol"
+            )
+
+    def _check_turns(self) -> None:
+        """The matrix is the product of the turns, as it stands or in the ring."""
+        if not self.turns or product_of(self.turns) == self.matrix:
+            return
+        from rigidsym.algebra.codec import codec_for
+
+        left = product_of(self.turns) - self.matrix
+        codec = codec_for(left, constraints=self.constraints, order=0)
+        if any(codec.encode(entry) for entry in left):
+            raise ModelError(
+                f"{self.name}: the matrix is not the product of its turns, {self.product}"
+            )
 
     def _check_coordinates(self) -> None:
         for place, coordinate in enumerate(self.coordinates):

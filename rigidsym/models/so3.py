@@ -7,7 +7,10 @@ from functools import lru_cache
 
 import sympy as sp
 
-TIME = sp.Symbol("t")  # the time symbol of sympy.physics.vector.dynamicsymbols
+from rigidsym.algebra.adjoin import TIME
+
+__all__ = ["AXES", "TIME", "elementary", "hat", "rodrigues", "time_function"]
+
 AXES = ("x", "y", "z")
 
 
