@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import json
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
 from textwrap import dedent
+from types import ModuleType
 
+import numpy as np
 import pytest
 import sympy as sp
+import trimesh
+from click.testing import CliRunner
 
+import rigidsym as rs
+from rigidsym.cli import commands
 from rigidsym.errors import BodyError, SpecError
-from rigidsym.models.body import general_inertia, principal_moments
-from rigidsym.spec import DerivationSpec, read_spec
+from rigidsym.models.body import RigidBody, general_inertia, principal_moments
+from rigidsym.spec import DerivationSpec, read_file, read_spec
 
 A, B, C, M = sp.symbols("A B C M")
 
@@ -103,3 +112,191 @@ def test_bodies_made_in_python():
     assert len(general_inertia().parameters) == 7
     with pytest.raises(BodyError, match=r"exceeds the sum of the others by 1 kg m²"):
         principal_moments(sp.Integer(1), sp.Integer(2), sp.Integer(4))
+
+
+# shapes, particles, parts, files
+
+BOX = trimesh.creation.box(extents=(1.0, 2.0, 3.0))
+BRACKET = """
+[[body.parts]]
+shape = "box"
+sides = [0.2, 0.1, 0.05]
+mass = 3.0
+[[body.parts]]
+shape = "cylinder"
+radius = 0.02
+height = 0.05
+mass = 0.4
+at = [0.05, 0.0, 0]
+turned = "z(pi/4)"
+hole = true
+"""
+
+
+def body_in(text: str) -> RigidBody:
+    found = read(text).body
+    assert found is not None
+    return found
+
+
+def test_a_shape_with_its_default_symbols():
+    body = body_in('[body]\nshape = "cylinder"')
+    a, h = sp.symbols("a h")
+    assert body.inertia[2, 2] == M * a**2 / 2
+    assert {str(p.symbol): p.about for p in body.parameters} == {
+        "M": "mass",
+        "a": "radius",
+        "h": "height",
+    }
+    assert body.inertia.free_symbols == {M, a, h}
+
+
+def test_lengths_in_numbers_are_parameters_with_a_value():
+    body = body_in('[body]\nshape = "sphere"\nradius = 0.5\ndensity = "rho"')
+    assert {str(p.symbol): p.value for p in body.parameters} == {"a": 0.5, "rho": None}
+
+
+def test_a_solid_by_its_bounds():
+    text = """
+        [body]
+        shape = "given"
+        coordinates = ["u", "v", "w"]
+        place = ["u*cos(v)", "u*sin(v)", "w"]
+        bounds = [["0", "a"], ["0", "2*pi"], ["0", "h"]]
+        density = "rho*(1 + w/h)"
+        """
+    a, h, rho = sp.symbols("a h rho")
+    assert sp.expand(body_in(text).mass - sp.Rational(3, 2) * sp.pi * a**2 * h * rho) == 0
+
+
+def test_a_polyhedron_and_a_tetrahedron():
+    corners = "[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]"
+    solid = body_in(f'[body]\nshape = "tetrahedron"\ncorners = {corners}')
+    faces = "[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]"
+    faced = body_in(f'[body]\nshape = "polyhedron"\nvertices = {corners}\nfaces = {faces}')
+    assert solid.inertia == faced.inertia
+    assert solid.centre == faced.centre == sp.ImmutableMatrix([sp.Rational(1, 4)] * 3)
+
+
+def test_particles_in_symbols():
+    body = body_in(
+        '[body]\nparticles = [{ mass = "m", at = ["a", 0, 0] }, { mass = "m", at = ["-a", 0, 0] }]'
+    )
+    assert body.inertia == sp.diag(0, *[2 * sp.Symbol("m") * sp.Symbol("a") ** 2] * 2)
+
+
+def test_parts_in_numbers_become_numbers():
+    body = body_in(BRACKET)
+    assert body.title == "Composite body"
+    assert {str(symbol) for symbol in body.inertia.free_symbols} == {"I_11", "I_22", "I_33"}
+    values = {str(p.symbol): p.value for p in body.parameters}
+    assert values["M"] == 2.6
+    assert values["x_C"] == pytest.approx(-0.4 * 0.05 / 2.6, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "turned",
+    ['"z(pi/2)"', '{ rotation = "ZXZ", values = ["pi/2", 0, 0] }', '"[0,0,1](pi/2)"'],
+)
+def test_a_part_is_turned_by_any_rotation(turned):
+    part = f'{{ shape = "box", sides = [1, 2, 3], mass = 12, turned = {turned} }}'
+    assert body_in(f"[body]\nparts = [{part}]").inertia == sp.diag(10, 13, 5)
+
+
+def test_a_condition_of_a_turn_is_kept():
+    turned = '{ rotation = "unit_quaternion", values = ["3/5", 0, 0, "4/5"] }'
+    part = f'{{ shape = "box", sides = [1, 2, 3], mass = 12, turned = {turned} }}'
+    body = body_in(f"[body]\nparts = [{part}]")
+    assert body.inertia.trace() == 28
+    assert "breaks" not in "".join(map(str, body.inertia))
+    wrong = part.replace("4/5", "3/5")
+    assert "the values break its condition" in "".join(faults_of(f"[body]\nparts = [{wrong}]"))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a mesh and a cloud of particles."""
+    BOX.export(tmp_path / "box.stl")
+    random = np.random.default_rng(3)
+    np.save(tmp_path / "cloud.npy", random.uniform(0.5, 2, size=(50, 4)))
+    (tmp_path / "mesh.toml").write_text('[body]\nmesh = "box.stl"\ndensity = 2.0\n')
+    (tmp_path / "particles.toml").write_text('[body]\nparticles = "cloud.npy"\n')
+    parts = '[body]\nparts = [{ mesh = "box.stl", mass = 6.0 }, { particles = "cloud.npy" }]\n'
+    (tmp_path / "both.toml").write_text(parts)
+    (tmp_path / "composite.toml").write_text(BRACKET)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["mesh", "particles", "both", "composite"])
+def test_one_command_from_a_file_to_energies_kernels_and_note(folder, name):
+    """I, principal axes, energies, kernels and note; and the record asks for the same again."""
+    run = ["run", str(folder / f"{name}.toml"), "--out", str(folder / "out")]
+    result = CliRunner().invoke(commands, run)
+    assert result.exit_code == 0, result.output
+    assert "I₁ = " in result.output
+    assert "unproved" not in result.output
+    made = folder / "out" / name
+    record = json.loads((made / f"{name}.json").read_text(encoding="utf-8"))
+    assert record["is_proved"]
+    assert str(folder) not in json.dumps(record)
+    names = {quantity["name"] for quantity in record["quantities"]}
+    assert {"inertia_tensor", "kinetic_energy", "angular_momentum"} <= names
+    assert "Principal moments" in (made / f"{name}.html").read_text(encoding="utf-8")
+    values = [p["value"] for p in record["body"]["parameters"]]
+    module = load(made / f"{name}.py")
+    tensor = module.inertia_tensor(values)
+    assert np.allclose(tensor, record["body"]["in_numbers"]["inertia_tensor"], rtol=1e-13)
+    again = DerivationSpec.from_data(record["request"]).body
+    assert again is not None
+    assert [p.value for p in again.parameters] == pytest.approx(values, rel=1e-15)
+
+
+def load(path: Path) -> ModuleType:
+    spec = spec_from_file_location(path.stem, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_a_mesh_from_a_file_is_that_of_trimesh(folder):
+    body = read_file(str(folder / "mesh.toml")).body
+    assert body is not None
+    inertia = np.array(body.in_numbers(body.inertia).tolist(), dtype=float)
+    assert np.allclose(inertia, 2 * BOX.moment_inertia, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ('shape = "spere"', "body.shape: no shape 'spere'; did you mean sphere"),
+        ('shape = "sphere"\nradius = -1.0', "expected a positive number"),
+        ('shape = "sphere"\nradius = 0', "body.radius: expected a positive number, got 0"),
+        ('shape = "sphere"\nheight = 1', "body.height: unknown key"),
+        ('shape = "box"\nsides = [1, 2]', "body.sides: expected 3 lengths, got a list"),
+        (
+            'shape = "hollow_cylinder"\ninner_radius = 2.0\nouter_radius = 1.0',
+            "outer_radius is 1 m, less than inner_radius with 2 m",
+        ),
+        ('shape = "sphere"\nmass = 1\ndensity = 1', "expected either the mass or the density"),
+        ("particles = [{ at = [0, 0, 0] }]", "expected the mass of the particle"),
+        ("particles = [{ mass = 1, at = [0, 0] }]", "three coordinates"),
+        ("particles = [{ mass = 1, at = [0, 0, nan] }]", "expected a finite number, got nan"),
+        ("parts = [{ at = [0, 0, 0] }]", "body.parts[0]: expected one of shape, particles"),
+        ('parts = [{ shape = "sphere", turned = "z(" }]', "body.parts[0].turned"),
+        ('parts = [{ shape = "sphere", hole = true, mass = 2.0 }]', "the mass is -2 kg"),
+        ('mesh = "none.stl"\ndensity = 1.0', "no such mesh"),
+        ('particles = "none.npy"', "no such file of particles"),
+    ],
+)
+def test_a_wrong_body_is_refused_with_its_place(text, fault):
+    assert fault in "\n".join(faults_of(f"[body]\n{text}"))
+
+
+@pytest.mark.parametrize("name", ["solid_cone", "composite_body"])
+def test_the_shipped_bodies_are_proved(name):
+    spec = read_file(name)
+    steps = ("mass", "centre_of_mass", "inertia_tensor", "principal_moments", "rotational_energy")
+    assert rs.derive(spec.models[0], steps, body=spec.body).is_proved
+    assert DerivationSpec.from_data(spec.to_data()) == spec

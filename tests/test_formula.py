@@ -294,3 +294,12 @@ def test_braces_are_never_broken():
 @pytest.mark.parametrize(("word", "width"), [("φ̇", 1), ("abc", 3), ("Ω̇′₁", 3), ("中", 2)])
 def test_columns_of_a_terminal(word, width):
     assert columns(word) == width
+
+
+def test_no_line_ends_between_left_and_right():
+    """Also behind a bracket that a line before has opened."""
+    formula = r"a\,(b + c)^{2}\,\left(d + e + \frac{f}{g}\right)"
+    for width in range(4, 40, 4):
+        lines = break_lines(formula, float(width), len, 2.0)
+        for line in lines:
+            assert line.text.count(r"\left") == line.text.count(r"\right")

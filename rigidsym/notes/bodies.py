@@ -43,9 +43,9 @@ def blocks_of_body(derivation: Derivation, notation: Notation) -> Iterator[Block
         case Composite():
             yield Paragraph((f"{body.title}: it is put together from parts.",))
             yield _parts(body.distribution.parts, notation)
-            for part in body.distribution.parts:
-                if isinstance(part.what, Solid):
-                    yield from _solid(part.what, notation)
+            solids = (part.what for part in body.distribution.parts)
+            for solid in dict.fromkeys(what for what in solids if isinstance(what, Solid)):
+                yield from _solid(solid, notation)
         case Particles():
             yield _particles(body.distribution, notation)
         case Polyhedron():
@@ -70,7 +70,7 @@ def _solid(solid: Solid, notation: Notation) -> Iterator[Block]:
     assert element is not None
     yield Paragraph(_element(solid, element, notation))
     density = sp.S.One if solid.density is None else solid.density
-    integrand = markup(density * element, notation)
+    integrand = _bracketed(markup(density * element, notation))
     total = markup(_total(solid), notation)
     yield Equation(sides=(_integral(solid, integrand, notation), total))
 
@@ -120,9 +120,16 @@ def _integral(solid: Solid, integrand: Markup, notation: Notation) -> Markup:
         texts += "∫"
     ends = [markup(u, notation) for u in reversed(solid.coordinates)]
     return Markup(
-        signs + rf"\left({integrand.latex}\right)" + "".join(rf"\,d{u.latex}" for u in ends),
-        f"{texts} ({integrand.text})" + "".join(f" d{u.text}" for u in ends),
+        signs + integrand.latex + "".join(rf"\,d{u.latex}" for u in ends),
+        f"{texts} {integrand.text}" + "".join(f" d{u.text}" for u in ends),
     )
+
+
+def _bracketed(formula: Markup) -> Markup:
+    """A sum in brackets; a product without."""
+    if " + " not in formula.text and " − " not in formula.text:
+        return formula
+    return Markup(rf"\left({formula.latex}\right)", f"({formula.text})")
 
 
 def _parts(parts: Sequence[Part], notation: Notation) -> Table:
@@ -149,7 +156,7 @@ def _named(part: Part) -> str:
         Known: "measured",
     }
     kind = part.what.title if isinstance(part.what, Solid) else kinds[type(part.what)]
-    return f"{part.label or kind}{' (hole)' if part.hole else ''}"
+    return part.label or f"{kind}{' (hole)' if part.hole else ''}"
 
 
 def _particles(given: Particles, notation: Notation) -> Table:

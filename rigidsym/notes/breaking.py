@@ -37,7 +37,7 @@ def break_lines(formula: str, width: float, measure: Measure, indent: float) -> 
 
 def _lines(formula: str, width: float, measure: Measure, indent: float) -> list[str]:
     level = min((level for _, level in _signs(formula)), default=_NEVER)
-    if measure(formula) <= width or level >= _NEVER:
+    if measure(formula) <= width or level >= _NEVER // 2:  # a part may close more than it opens
         return [formula]
     lines = [""]
     for chunk in _chunks(formula, level):
