@@ -6,9 +6,14 @@ import json
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 from test_cli import call
 
+import rigidsym as rs
+from rigidsym.cli import commands
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.record import record
+from rigidsym.rotations import rotation_from
 
 GIBBS = """\
 title = "Gibbs vector by hand"
@@ -51,6 +56,19 @@ def test_every_named_rotation_runs_from_a_file(tmp_path):
         done, of = line.split()[1], line.split()[3]
         assert done == of, line
     call("check", "out", cwd=tmp_path)
+
+
+@pytest.mark.parametrize("name", [*PARAMETRISATIONS, *PRESETS])
+def test_every_named_rotation_runs_from_derive(name, tmp_path):
+    """The same record as from Python, all proved, with a word on where the rates fail."""
+    done = CliRunner().invoke(commands, ["derive", name, "--json", "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    shown = json.loads(done.stdout)
+    assert shown["is_proved"] is True
+    assert shown["singularities"]["is_solved"] is True
+    motion = rs.derive(rotation_from(name))
+    mine = json.loads(json.dumps(record(motion, shown["request"])))
+    assert mine == shown
 
 
 @pytest.mark.parametrize(

@@ -27,13 +27,11 @@ from rigidsym.rotations import rotation_from
 Array = np.ndarray[Any, Any]
 
 MORE_CHAINS = (
-    "z(phi) x(theta/2) z(psi)",
     "z(phi) y(2*theta/3) x(psi)",
     "z(phi) x(theta + alpha0) z(psi)",
     "z(phi) x(theta) [1,2,2](psi)",
     "z(phi) x(theta) z(theta)",
     "x(a) z(b + pi/4) x(c) y(d)",
-    "z(a) x(b) x(c)",
     "z(a) z(b)",
 )
 TURNS = (*PRESETS, *CHAINS, *MORE_CHAINS)
