@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.measure import Settings, progress
-from benchmarks.report import Cell, Column, Report, Table
+from benchmarks.report import Cell, Column, Figure, Report, Table
 from rigidsym.api import derive
 from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
 
 DIGITS = 50
+MOST = 4.0  # eps of the largest entry
 SYMBOLS = {"rotation_matrix": "R", "angular_velocity_space": "Ω", "angular_velocity_body": "Ω′"}
 
 Array = NDArray[Any]
@@ -56,6 +57,7 @@ def angle_groups(dtype: type[np.floating[Any]], size: int) -> dict[str, Array]:
         "tiny": random.choice(tiny, (size, 3)).astype(dtype),
         "random in ±1e4": random.uniform(-1e4, 1e4, (size, 3)).astype(dtype),
         "random in ±1e6": random.uniform(-1e6, 1e6, (size, 3)).astype(dtype),
+        "random in ±1e15": random.uniform(-1e15, 1e15, (size, 3)).astype(dtype),
     }
 
 
@@ -172,5 +174,26 @@ def report(found: Mapping[str, Errors]) -> Report:
     return Report(
         title=f"Accuracy: largest error against {DIGITS} digits, {len(found)} conventions",
         tables=(Table("In eps of the type, relative to the largest entry", columns, tuple(rows)),),
-        figures=(),
+        figures=_figures(found),
     )
+
+
+def _figures(found: Mapping[str, Errors]) -> tuple[Figure, ...]:
+    """The largest error of each quantity over conventions, ways and angles."""
+    figures = []
+    for name, symbol in SYMBOLS.items():
+        error, sequence, way, group = max(
+            (error, sequence, way, group)
+            for sequence, errors in found.items()
+            for (way, group, quantity), error in errors.items()
+            if quantity == name
+        )
+        figures.append(
+            Figure(
+                f"error of {symbol} against {DIGITS} digits, the worst case",
+                f"at most {MOST:g} eps of the largest entry",
+                f"{error:.2f} eps, {sequence}, {way}, {group}",
+                error <= MOST,
+            )
+        )
+    return tuple(figures)
