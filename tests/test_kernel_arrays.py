@@ -305,3 +305,8 @@ def test_axes_of_any_lengths_over_many_blocks(shape):
     q = inputs("rotation_matrix", shape)[0]
     found = module().rotation_matrix(np.asfortranarray(q))
     assert_array_equal(found, module().rotation_matrix(q.reshape(-1, 3)).reshape(*shape, 3, 3))
+
+
+def test_threads_need_little_more():
+    q, q_dot = (np.zeros((500_000, 3)) for _ in range(2))
+    assert peak(lambda: module().rotation_rate(q, q_dot, threads=2)) <= 36e6 + 2 * 12e6
