@@ -269,7 +269,8 @@ def _about(program: Program) -> list[str | Sequence[str]]:
         "result is float32 where every argument is, else float64. A given `out` of the "
         "result's shape and dtype is filled and returned; it may overlap the arguments. "
         "`threads` share the work, each with some 8 MB of its own. Each function has a twin, "
-        "`..._scalar`, for one orientation in plain floats, and its `signature` as a generalised ufunc.",
+        "`..._scalar`, for one orientation in plain floats, and its `signature` as a "
+        "generalised ufunc.",
         "NaN stays NaN, and the sine of infinity is NaN; nothing warns. Angles of any size are "
         "right. Bounds on rounding are in eps of the result's type, follow from the operations, "
         "and hold where a sine or cosine is within 1.1 eps and inputs are exact as given; "
