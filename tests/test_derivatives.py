@@ -19,6 +19,7 @@ import rigidsym as rs
 from rigidsym.cli import commands
 from rigidsym.errors import KernelError, QuantityError, SpecError
 from rigidsym.kernels.derivatives import read_request, read_requests
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.pipeline import product
 from rigidsym.spec import DerivationSpec, read_spec
 
@@ -156,6 +157,29 @@ def test_they_agree_with_jax(name):
         assert_allclose(jacobian, plain[1], atol=1e-14)
     finally:
         jax.config.update("jax_enable_x64", before)
+
+
+@pytest.mark.parametrize("target", ["c", "numba"])
+def test_compiled_targets_give_both(target):
+    if TARGETS[target].missing:
+        pytest.skip(TARGETS[target].missing)
+    alone = motion("ZXZ").select(["angular_velocity_body"])
+    asked = ["angular_velocity_body by q", "angular_velocity_body by q_dot vjp"]
+    compiled = alone.kernels(target, derivatives=asked).load()
+    plain = of("ZXZ", "angular_velocity_body", "q", "q_dot vjp")
+    q, q_dot = arrays_for("ZXZ", "angular_velocity_body", (70,)).values()
+    for found, expected in zip(
+        (
+            *compiled.angular_velocity_body_jacobian_q(q, q_dot),
+            *compiled.angular_velocity_body_vjp_q_dot(q, q_dot, q),
+        ),
+        (
+            *plain.angular_velocity_body_jacobian_q(q, q_dot),
+            *plain.angular_velocity_body_vjp_q_dot(q, q_dot, q),
+        ),
+        strict=True,
+    ):
+        assert_allclose(found, expected, rtol=0, atol=4e-15)
 
 
 def test_value_and_derivative_share_their_subexpressions():
