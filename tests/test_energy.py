@@ -23,7 +23,10 @@ from rigidsym.expression import parse_expression
 from rigidsym.mechanics.energy_quantities import ENERGY_QUANTITIES
 from rigidsym.models.body import general_inertia, principal_moments
 from rigidsym.models.library import PARAMETRISATIONS
+from rigidsym.notes.document import Table
+from rigidsym.notes.paging import paged
 from rigidsym.record import record
+from rigidsym.typeset import missing_programs, typeset
 
 A, B, C, M = sp.symbols("A B C M")
 BODIES = {
@@ -271,3 +274,21 @@ def test_names_that_stand_for_two_things_are_refused():
 def test_an_unknown_quantity_is_named_with_those_there_are():
     with pytest.raises(QuantityError, match=r"no quantity enrgy.*kinetic_energy"):
         rs.derive("ZXZ", ["enrgy"], body=BODIES["general"])
+
+
+def test_a_note_of_every_quantity_through_tex_without_a_warning():
+    """Its tables are longer than a page, and its longest entries than a line."""
+    if missing_programs():
+        pytest.skip(f"not installed: {missing_programs()}")
+    motion = rs.derive("ZXZ", body=BODIES["six entries"])
+    assert typeset(motion.note().latex()).warnings == ()
+
+
+def test_a_long_table_goes_on_with_every_row_once():
+    rows = tuple(((f"row {k}",), ("a word " * (1 + 12 * (k % 2)),)) for k in range(60))
+    parts = list(paged(Table(caption="Rows", head=(("A",), ("B",)), rows=rows)))
+    assert tuple(row for part in parts for row in part.rows) == rows
+    assert [part.caption for part in parts] == ["Rows"] + ["Rows, continued"] * (len(parts) - 1)
+    assert len(parts) > 2
+    short = Table(caption="Rows", head=(("A",), ("B",)), rows=rows[:9])
+    assert list(paged(short)) == [short]

@@ -35,6 +35,7 @@ from rigidsym.notes.fitting import Fitter
 from rigidsym.notes.formula import markup
 from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.notation import notation_of
+from rigidsym.notes.paging import paged
 from rigidsym.notes.prose import motion, product, turn
 from rigidsym.notes.rewriting import in_manner
 from rigidsym.notes.singular_words import failures, meaning, measured
@@ -121,7 +122,7 @@ class Composer:
             "The kinetic energy": self._steps(ENERGIES),
             "The angular momentum": self._steps(MOMENTA),
             "What was proved": self._proofs(),
-            "Symbols": iter([symbols(self.derivation, self.notation)]),
+            "Symbols": paged(symbols(self.derivation, self.notation)),
             "Functions": self._functions(),
         }
         filled = ((title, tuple(blocks)) for title, blocks in parts.items())

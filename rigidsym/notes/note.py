@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from rigidsym.mechanics.conversions import Conversions
@@ -11,7 +11,6 @@ from rigidsym.notes.compose import compose
 from rigidsym.notes.conversions import with_conversions
 from rigidsym.notes.document import Document
 from rigidsym.notes.latex import print_latex
-from rigidsym.notes.lecture import compose_lecture
 from rigidsym.notes.manner import DEFAULT, Manner
 
 
@@ -59,8 +58,9 @@ def note(
     """
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
-    composed = compose_lecture if derivation.theory else compose
-    document = composed(derivation, module=module, functions=names if module else (), manner=manner)
+    document = _composed(derivation)(
+        derivation, module=module, functions=names if module else (), manner=manner
+    )
     if conversions is None:
         return Note(document)
     return Note(
@@ -68,3 +68,12 @@ def note(
             document, derivation, conversions, has_functions=bool(module), manner=manner
         )
     )
+
+
+def _composed(derivation: Derivation) -> Callable[..., Document]:
+    """How a derivation is composed, with its theory or without."""
+    if not derivation.theory:
+        return compose
+    from rigidsym.notes.lecture import compose_lecture
+
+    return compose_lecture

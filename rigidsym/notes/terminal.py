@@ -23,7 +23,6 @@ from rigidsym.notes.measure import columns
 from rigidsym.notes.notation import Notation, notation_of
 from rigidsym.notes.prose import product, turn
 from rigidsym.notes.singular_words import failures, measured
-from rigidsym.notes.summands import sums
 from rigidsym.notes.vector_words import sum_of_vectors
 from rigidsym.notes.words import (
     convention,
@@ -211,6 +210,10 @@ class _Screen(_Steps):
 
     def _theory(self) -> Iterator[str]:
         """The equations for every body and rotation, under their headings."""
+        if not self.derivation.theory:
+            return
+        from rigidsym.notes.summands import sums
+
         section = ""
         for statement in self.derivation.theory:
             if statement.section != section:

@@ -1,0 +1,38 @@
+"""Tables in parts that a page has room for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import ceil
+
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.notes.document import Table, Text
+from rigidsym.notes.words import plain
+
+_ROWS = 34  # on a page, beside a heading
+_WORDS = 44  # letters of a column of words
+
+Row = tuple[Text, ...]
+
+
+def paged(table: Table) -> Iterator[Table]:
+    """The table, or its parts; those after the first say in the caption that they go on."""
+    part: list[Row] = []
+    room, caption = _ROWS, table.caption
+    for row in table.rows:
+        height = max(map(_lines, row))
+        if part and height > room:
+            yield replace(table, caption=caption, rows=tuple(part))
+            part, room, caption = [], _ROWS, f"{table.caption}, continued"
+        part.append(row)
+        room -= height
+    yield replace(table, caption=caption, rows=tuple(part))
+
+
+def _lines(cell: Text) -> int:
+    """How high a cell stands: a fraction is as high as two lines."""
+    if any(isinstance(span, Markup) and r"\frac" in span.latex for span in cell):
+        return 2
+    words = any(isinstance(span, str) and " " in span for span in cell)
+    return ceil(len(plain(cell)) / _WORDS) or 1 if words else 1
