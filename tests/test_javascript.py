@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from conftest import derived
 from kernel_modules import EPS, turned_by
+from test_targets import FOUR, KINEMATICS, error
+from test_targets import given as given_at
 from witness import evaluate, mp
 
 import rigidsym as rs
@@ -63,6 +65,19 @@ def test_every_quantity_agrees_with_fifty_digits_and_with_numpy(rotation):
             size = max(1.0, np.abs(exact).max())
             error = np.abs(found[place] - exact.reshape(step.shape)).max()
             assert error <= 200 * EPS * size, quantity.name
+
+
+@pytest.mark.parametrize("name", KINEMATICS)
+def test_kinematics_keep_four_eps_up_to_ten_thousand_radians(name):
+    arrays = given_at("ZXZ", name, (40,), size=1e4)
+    assert error("ZXZ", "javascript", name, arrays) <= FOUR
+
+
+@pytest.mark.parametrize("size", [1e6, 1e15, 1e22, 1e300])
+def test_large_angles_are_right(size):
+    arrays = given_at("ZXZ", "rotation_matrix", (20,), size=size)
+    with mp.workdps(400):
+        assert error("ZXZ", "javascript", "rotation_matrix", arrays) <= FOUR
 
 
 def test_where_rates_fail_they_are_nan_and_nothing_else_is():

@@ -17,6 +17,9 @@ _CLASSES = {  # for the style sheet
     '<mo stretchy="false">\u20d7</mo>': '<mo class="arrow" stretchy="false">→</mo>',
     # attributes of MathML Core, which not every validator knows
     '<mfrac displaystyle="true">': '<mfrac class="tall">',
+    '<mfrac displaystyle="false">': '<mfrac class="flat">',
+    '<mrow displaystyle="true">': '<mrow class="tall">',
+    '<mrow displaystyle="false">': '<mrow class="flat">',
     ' scriptlevel="0"': "",
 }
 _ROW_SPACE = re.compile(r"\\\\\[\d+pt\]")  # the style sheet sets the distance of rows
