@@ -1,4 +1,4 @@
-"""The commands. The only place that writes files.
+"""The commands. What they write is written here or in `production`, and nowhere else.
 
 Results go to standard output, progress and messages to standard error. Heavy imports stand in
 the functions that need them, so that `rigidsym --help` imports neither SymPy nor NumPy.
@@ -9,16 +9,14 @@ from __future__ import annotations
 import io
 import json
 import os
-import shutil
 import sys
-from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from rigidsym import __version__
-from rigidsym.errors import RigidsymError, SpecError
+from rigidsym.errors import RigidsymError
 from rigidsym.options import (
     FOR_TARGETS,
     JSON,
@@ -31,10 +29,6 @@ from rigidsym.options import (
     in_notation,
     names_of,
 )
-
-if TYPE_CHECKING:
-    from rigidsym.pipeline import Product
-    from rigidsym.spec import DerivationSpec
 
 _INTERRUPTED = 130
 
@@ -105,6 +99,7 @@ def derive(
     ROTATION is ZXZ or 313 (intrinsic: about the turning axes), zxz (extrinsic: about the fixed
     axes), turns such as "z(phi) x(theta) [1,1,0](psi)", or a name: `rigidsym list` has them all.
     """
+    from rigidsym.production import produce
     from rigidsym.spec import spec_for
 
     spec = spec_for(
@@ -114,7 +109,7 @@ def derive(
         scalar_last=scalar_last,
         passive=passive,
     )
-    _produce([spec], out, pdf=pdf, as_json=as_json)
+    produce([spec], out, pdf=pdf, as_json=as_json)
 
 
 @commands.command()
@@ -132,7 +127,9 @@ def run(files: tuple[str, ...], out: Path, pdf: bool, as_json: bool) -> None:
 
     All files are checked before any is run; a fault in one writes nothing.
     """
-    _produce(_read_all(files), out, pdf=pdf, as_json=as_json)
+    from rigidsym.production import produce, read_all
+
+    produce(read_all(files), out, pdf=pdf, as_json=as_json)
 
 
 @commands.command()
@@ -324,91 +321,3 @@ def evaluate(rotation: str, file: Path, out: Path, **options: Any) -> None:
     made = evaluated(rotation, file, out, **options)
     resumed = f", {made.resumed} of them by an earlier run" if made.resumed else ""
     click.echo(f"{made.path}: {made.rows} rows{resumed}; {', '.join(made.columns)}")
-
-
-def _read_all(files: Iterable[str]) -> list[DerivationSpec]:
-    """Read every file; faults of all files are raised together."""
-    from rigidsym.spec import read_file
-
-    specs: list[DerivationSpec] = []
-    wrong: list[SpecError] = []
-    for file in files:
-        try:
-            specs.append(read_file(file))
-        except SpecError as error:
-            wrong.append(error)
-    if wrong:
-        *others, last = wrong
-        for other in others:
-            click.echo(f"rigidsym: {other}", err=True)
-        raise last
-    return specs
-
-
-def _produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool) -> None:
-    """Derive, write, and show what was asked for."""
-    singles = [single for spec in map(as_chosen, specs) for single in spec.singles()]
-    shown_in_full = len(singles) == 1
-    missing: RigidsymError | None = None
-    for product in _with_progress(singles):
-        written, problem = _write(product, out, pdf=pdf or product.wants_pdf)
-        missing = missing or problem
-        if as_json:
-            click.echo(product.record_text, nl=False)
-        elif shown_in_full:
-            _show(product, written)
-        else:
-            click.echo(_summary(product, written))
-    if missing:
-        raise missing
-
-
-def _with_progress(singles: list[DerivationSpec]) -> Iterator[Product]:
-    """The products, with a bar on standard error where there are several and it is a terminal."""
-    from rigidsym.pipeline import product
-
-    if len(singles) == 1 or not sys.stderr.isatty():
-        yield from map(product, singles)
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
-    columns = (TextColumn("{task.description:<28}"), BarColumn(), MofNCompleteColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=len(singles))
-        for single in singles:
-            progress.update(task, description=single.name)
-            yield product(single)
-            progress.advance(task)
-
-
-def _write(product: Product, out: Path, *, pdf: bool) -> tuple[list[Path], RigidsymError | None]:
-    """Write the files of one product; a missing TeX is reported after all else is written."""
-    from rigidsym.writing import write_bytes, write_text
-
-    folder = out / product.name
-    written = [write_text(folder / name, text) for name, text in product.files.items()]
-    if not pdf:
-        return written, None
-    from rigidsym.typeset import typeset
-
-    try:
-        tex = product.files.get(f"{product.name}.tex") or product.motion.note().latex()
-        made = typeset(tex)
-    except RigidsymError as error:
-        return written, error
-    return [*written, write_bytes(folder / f"{product.name}.pdf", made.pdf)], None
-
-
-def _show(product: Product, written: list[Path]) -> None:
-    from rigidsym.notes.terminal import show
-
-    width = shutil.get_terminal_size((88, 24)).columns
-    motion, conversions = product.motion, product.conversions
-    click.echo(show(motion, width=min(width, 120), manner=motion.manner, conversions=conversions))
-    click.echo("\nWritten: " + "\n         ".join(str(path) for path in written))
-
-
-def _summary(product: Product, written: list[Path]) -> str:
-    exact = sum(proof.is_exact for proof in product.proofs)
-    return f"{product.name:<28} {exact} of {len(product.proofs)} claims proved  {written[0].parent}"

@@ -73,6 +73,7 @@ ORDER = (
     "checking",
     "typeset",
     "options",
+    "production",
     "cli",
 )
 SIBLINGS = (("kernels", "notes"),)  # neither has to know of the other
