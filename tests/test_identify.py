@@ -53,27 +53,54 @@ def test_scipy_in_all_24_conventions(sequence, passive, degrees):
     assert found.answers[0].residual < 1e-14
 
 
+@UNITS
 @BOTH
 @pytest.mark.parametrize("scalar_last", [False, True], ids=["scalar_first", "scalar_last"])
-def test_quaternions_of_scipy(sequence, passive, scalar_last):
-    reading = Reading(sequence=sequence, passive=passive, degrees=True, scalar_last=scalar_last)
-    given = sample(reading, GENERIC[True])
+def test_quaternions_of_scipy(sequence, passive, scalar_last, degrees):
+    reading = Reading(sequence=sequence, passive=passive, degrees=degrees, scalar_last=scalar_last)
+    given = sample(reading, GENERIC[degrees])
     found_alone(reading, **given)
     found_alone(reading, **{**given, "quaternion": -given["quaternion"]})
 
 
+@UNITS
 @BOTH
 @pytest.mark.parametrize("manner", ["Body", "Space"])
 @pytest.mark.parametrize("axes", SEQUENCES)
-def test_frames_of_sympy(axes, manner, passive):
+def test_frames_of_sympy(axes, manner, passive, degrees):
     turns = symbols("a b c")
     space = ReferenceFrame("N")
     body = space.orientnew("B", manner, turns, axes)
     cosines = body.dcm(space) if passive else space.dcm(body)
-    matrix = cosines.subs(dict(zip(turns, GENERIC[False], strict=True)))
+    angles = np.array(GENERIC[degrees])
+    radians = np.radians(angles) if degrees else angles
+    matrix = cosines.subs(dict(zip(turns, radians.tolist(), strict=True)))
     sequence = axes if manner == "Body" else axes.lower()
-    reading = Reading(sequence=sequence, passive=passive)
-    found_alone(reading, angles=GENERIC[False], matrix=np.array(matrix, float))
+    reading = Reading(sequence=sequence, passive=passive, degrees=degrees)
+    found_alone(reading, angles=angles, matrix=np.array(matrix, float))
+
+
+def lecture_turn(axis, angle):
+    """R_z(β) and R_x(β) as the lecture prints them, and the same about y."""
+    c, s = cos(angle), sin(angle)
+    return {
+        "x": np.array([[1, 0, 0], [0, c, -s], [0, s, c]]),
+        "y": np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]),
+        "z": np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]),
+    }[axis]
+
+
+@UNITS
+@BOTH
+def test_products_of_the_lectures_turns_in_all_24_conventions(sequence, passive, degrees):
+    """R is the product of the turns in their order, or in the opposite one about fixed axes."""
+    angles = np.array(GENERIC[degrees])
+    radians = np.radians(angles) if degrees else angles
+    turns = [lecture_turn(a, b) for a, b in zip(sequence.lower(), radians, strict=True)]
+    matrix = np.linalg.multi_dot(turns if sequence.isupper() else turns[::-1])
+    reading = Reading(sequence=sequence, passive=passive, degrees=degrees)
+    found = found_alone(reading, angles=angles, matrix=matrix.T if passive else matrix)
+    assert found.answers[0].residual < 1e-14
 
 
 def lecture_matrix(phi, theta, psi):

@@ -93,8 +93,13 @@ def test_the_names_of_a_quaternion_tell_which_is_the_scalar(tmp_path):
     angles = np.random.default_rng(1).uniform(-1, 1, (10, 3))
     table = np.hstack([angles, rotation(reading, angles).as_quat()])
     named = identify_file(written(tmp_path / "named.csv", table, "phi,theta,psi,qx,qy,qz,qw"))
-    assert [answer.reading.scalar_last for answer in named.answers] == [False]
+    assert [answer.reading.scalar_last for answer in named.answers] == [True]
     assert named.tried == 1152
+    first = np.roll(table[:, 3:], 1, axis=1)
+    for header, quaternion in (("qw,qx,qy,qz", first), ("qy,qx,qz,qw", table[:, [4, 3, 5, 6]])):
+        rows = np.hstack([angles, quaternion])
+        found = identify_file(written(tmp_path / "named.csv", rows, f"phi,theta,psi,{header}"))
+        assert [answer.reading.scalar_last for answer in found.answers] == [False]
     numbered = identify_file(written(tmp_path / "numbered.csv", table, "phi,theta,psi,q1,q2,q3,q4"))
     assert [answer.reading.scalar_last for answer in numbered.answers] == [True]
     assert numbered.tried == 2304
@@ -250,6 +255,7 @@ def test_missing_columns_are_named_with_the_nearest_that_are_there():
         by_name(["time", "rol", "pitch", "yaw", *MATRIX[:8], "r3"])
     assert "no column roll: did you mean rol" in str(error.value)
     assert "no column r33: did you mean r3" in str(error.value)
+    assert "--columns names the columns in their order" in str(error.value)
     with pytest.raises(SampleError, match="no column omega1"):
         by_name(["a1", "a2", "a3", *MATRIX, "rate1", "rate2", "rate3"])
     with pytest.raises(SampleError, match="both a matrix and a quaternion"):
@@ -272,6 +278,8 @@ def test_missing_columns_are_named_with_the_nearest_that_are_there():
         ),
         ("HEADER\n0,0,0,1,0,0,0,1,0,0,0,nan\n", ["line 2: matrix: a number that is not finite"]),
         ("HEADER\n0,0,1_0,1,0,0,0,1,0,0,0,1\n", ["line 2: field 3: '1_0' is not a number"]),
+        ("HEADER\n0,0,1°,1,0,0,0,1,0,0,0,1\n", ["'1°' is not a number; degrees are written"]),
+        ("a1;a2;a3;w;x;y;z\n0;0,5;0;1;0;0;0\n", ["'0,5' is not a number; a decimal takes a p"]),
     ],
 )
 def test_texts_that_do_not_read(tmp_path, text, messages):

@@ -61,7 +61,7 @@ class Columns:
     rates: tuple[int, ...] = ()
     omega: tuple[int, ...] = ()
     names: Names = ANGLE_NAMES  # of the angles
-    scalar_first: bool = False  # the header tells which number of the quaternion is the scalar
+    scalar_last: bool | None = None  # of a quaternion whose names tell which is the scalar
 
     @property
     def used(self) -> list[int]:
@@ -98,6 +98,8 @@ def by_name(header: Sequence[str]) -> Columns:
     has_velocity = bool({*rates, *omega} & set(names))
     wanted = (*angles, *attitude, *((*rates, *omega) if has_velocity else ()))
     faults = _missing([name for name in wanted if name not in names], header)
+    if faults:
+        faults.append("--columns names the columns in their order, for a file with other names")
     if {_share(_nearest(groups, names), names) for groups in (MATRICES, QUATERNIONS)} == {1.0}:
         faults.append("both a matrix and a quaternion are named; leave one out")
     if faults:
@@ -108,7 +110,7 @@ def by_name(header: Sequence[str]) -> Columns:
         rates=tuple(map(names.index, rates)) if has_velocity else (),
         omega=tuple(map(names.index, omega)) if has_velocity else (),
         names=angles,
-        scalar_first=attitude in NAMED_QUATERNIONS,
+        scalar_last=_scalar_last(attitude),
     )
 
 
@@ -117,9 +119,18 @@ def _attitude(names: Sequence[str]) -> Names:
     matrix, quaternion = _nearest(MATRICES, names), _nearest(QUATERNIONS, names)
     if _share(matrix, names) >= _share(quaternion, names):
         return matrix
-    if quaternion in NAMED_QUATERNIONS:
+    in_file = tuple(sorted(quaternion, key=_order(names)))
+    if quaternion in NAMED_QUATERNIONS and _scalar_last(in_file) is None:
         return quaternion
-    return tuple(sorted(quaternion, key=_order(names)))
+    return in_file
+
+
+def _scalar_last(names: Names) -> bool | None:
+    """Whether w stands behind x, y, z; None where names or order tell nothing."""
+    for scalar, *vector in NAMED_QUATERNIONS:
+        if names in ((scalar, *vector), (*vector, scalar)):
+            return names[-1] == scalar
+    return None
 
 
 def _order(names: Sequence[str]) -> Callable[[str], int]:

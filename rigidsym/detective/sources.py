@@ -45,10 +45,10 @@ class Source(Protocol):
         """What a row is called in messages."""
 
 
-def layouts_of(*, is_matrix: bool, scalar_first: bool = False) -> tuple[bool | None, ...]:
+def layouts_of(*, is_matrix: bool, scalar_last: bool | None = None) -> tuple[bool | None, ...]:
     if is_matrix:
         return (None,)
-    return (False,) if scalar_first else (False, True)
+    return (False, True) if scalar_last is None else (scalar_last,)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,10 +72,10 @@ class ArraySource:
         parts: dict[str, _Part],
         *,
         names: tuple[str, ...] = ANGLE_NAMES,
-        scalar_first: bool = False,
+        scalar_last: bool | None = None,
     ) -> None:
         self.names = names
-        self.layouts = layouts_of(is_matrix="matrix" in parts, scalar_first=scalar_first)
+        self.layouts = layouts_of(is_matrix="matrix" in parts, scalar_last=scalar_last)
         self.coarseness = max(_coarseness(part.array.dtype) for part in parts.values())
         self._attitude = parts["matrix"] if "matrix" in parts else parts["quaternion"]
         self._parts = parts
@@ -193,7 +193,7 @@ def _from_npy(path: Path, array: NDArray[Any], names: Sequence[str] | None) -> S
     parts = {"angles": _Part(array, found.angles), attitude: _Part(array, found.attitude)}
     if found.rates:
         parts |= {"rates": _Part(array, found.rates), "omega": _Part(array, found.omega)}
-    return ArraySource(parts, names=found.names, scalar_first=found.scalar_first)
+    return ArraySource(parts, names=found.names, scalar_last=found.scalar_last)
 
 
 class TextSource:
@@ -222,7 +222,7 @@ class TextSource:
             self._columns = by_width(len(fields))
         self.names = self._columns.names
         is_matrix = len(self._columns.attitude) == 9
-        self.layouts = layouts_of(is_matrix=is_matrix, scalar_first=self._columns.scalar_first)
+        self.layouts = layouts_of(is_matrix=is_matrix, scalar_last=self._columns.scalar_last)
 
     def place(self, row: int) -> str:
         return f"line {row}"
@@ -288,7 +288,7 @@ class TextSource:
         if len(fields) <= max(self._columns.used):
             return [f"{len(fields)} fields, expected {max(self._columns.used) + 1} or more"]
         return [
-            f"field {index + 1}: {fields[index].strip()!r} is not a number"
+            f"field {index + 1}: {fields[index].strip()!r} is not a number{_hint(fields[index])}"
             for index in self._columns.used
             if not _is_number(fields[index])
         ]
@@ -321,3 +321,9 @@ def _is_number(field: str) -> bool:
     except ValueError:
         return False
     return field.isascii() and "_" not in field
+
+
+def _hint(field: str) -> str:
+    if "," in field:
+        return "; a decimal takes a point"
+    return "; degrees are written without a sign" if "°" in field else ""
