@@ -14,7 +14,7 @@ from rigidsym.notes.measure import columns
 from rigidsym.resources import names, text
 from rigidsym.rotations import rotation_from
 
-_TURNS = 'such as "z(phi) x(theta) [1,1,0](psi) y(pi/4)"; a name that ends in 0 is a constant'
+_TURNS = 'such as "z(phi) x(theta) [1,1,0](psi) y(pi/4)"; a name such as alpha0 is a constant'
 
 
 def inventory() -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -20,6 +21,7 @@ from rigidsym.models.so3 import AXES, time_function
 from rigidsym.names import check_name, offer
 
 LONGEST = 200  # characters of a sequence or of turns
+_AT_REST = re.compile(r".*\D0")  # a name that ends in nought: alpha0, b_0; not a_10
 _A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name from the list'
 
 
@@ -34,7 +36,7 @@ def rotation_from(
     """The model that a text asks for: an Euler sequence, turns, a parametrisation, a preset.
 
     `names` are those of the coordinates; turns name theirs themselves. In turns a name is a
-    coordinate, unless it is among `constants` or ends in 0, and the components of an axis are
+    coordinate, unless it is among `constants` or ends in 0 (`alpha0`, but not `a_10`), and the components of an axis are
     constants. Raises ModelError or ExpressionError, which say what was expected.
     """
     if len(text) > LONGEST:
@@ -193,4 +195,5 @@ def _turn(axis: str, angle: str, constants: Sequence[str]) -> Turn:
 
 def _symbol(name: str, constants: Sequence[str]) -> sp.Expr:
     plain = check_name(name)
-    return sp.Symbol(plain) if plain in constants or plain.endswith("0") else time_function(plain)
+    is_fixed = plain in constants or _AT_REST.fullmatch(plain)
+    return sp.Symbol(plain) if is_fixed else time_function(plain)

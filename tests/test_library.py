@@ -363,6 +363,12 @@ def test_derive_reads_text_as_the_command_line_does():
     assert derive("ZXZ").angular_velocity_body == motion_of("ZXZ").angular_velocity_body
 
 
+def test_zero_names_a_constant_and_ten_does_not():
+    model = rotation_from("z(a_9) x(alpha0) y(a_10) x(b_0)")
+    assert [symbol.name for symbol in model.constants] == ["alpha0", "b_0"]
+    assert [q.func.__name__ for q in model.coordinates] == ["a_9", "a_10"]
+
+
 def test_a_name_is_a_coordinate_or_a_constant():
     with pytest.raises(ModelError, match="a is both a coordinate and a constant"):
         rotation_from("z(a) [a,b,c](beta)")
