@@ -36,8 +36,9 @@ def rotation_from(
     """The model that a text asks for: an Euler sequence, turns, a parametrisation, a preset.
 
     `names` are those of the coordinates; turns name theirs themselves. In turns a name is a
-    coordinate, unless it is among `constants` or ends in 0 (`alpha0`, but not `a_10`), and the components of an axis are
-    constants. Raises ModelError or ExpressionError, which say what was expected.
+    coordinate, unless it is among `constants` or ends in nought (`alpha0`, but not `a_10`), and
+    the components of an axis are constants. Raises ModelError or ExpressionError, which say what
+    was expected.
     """
     if len(text) > LONGEST:
         raise ModelError(f"expected {_A_ROTATION}, got {len(text)} characters")
