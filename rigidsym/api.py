@@ -74,8 +74,8 @@ class Motion(Derivation):
 
         return print_page(self, self.note(with_kernels=with_kernels).document)
 
-    def written(self, **choices: str) -> Motion:
-        """The same in another notation: `rates`, `vectors`, `body`, `angular_velocity`.
+    def written(self, **choices: Any) -> Motion:
+        """The same in another notation: `rates`, `vectors`, `body`, `angular_velocity`, `frames`.
 
         Raises ModelError for a choice that is not one of those in `rigidsym.notes.manner`.
         """

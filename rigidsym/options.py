@@ -65,7 +65,18 @@ def in_notation(command: Callable[..., None]) -> Callable[..., None]:
             callback=_keep_choice,
             help=f"Notation: {known[0]}, where nothing is said.",
         )(command)
-    return command
+    return click.option(
+        "--frames",
+        metavar="SPACE,BODY",
+        expose_value=False,
+        callback=_keep_frames,
+        help="Notation: names of the two frames, such as inertial,spacecraft.",
+    )(command)
+
+
+def _keep_frames(context: click.Context, _: click.Parameter, names: str | None) -> None:
+    if names is not None:
+        context.meta.setdefault(__name__, {})["frames"] = tuple(names_of(names))
 
 
 def _keep_conversions(context: click.Context, _: click.Parameter, is_wanted: bool) -> None:

@@ -35,13 +35,14 @@ _OUTPUT = {"quantities": QUANTITIES, "kernels": tuple(TARGETS), "note": NOTE_FOR
 _MORE_OUTPUT = ("conversions", "derivatives")
 _FILE = ("title", "theory", "rotation", "parameters", "body", "notation", "output")
 _HINTS = {
-    **dict.fromkeys(CHOICES, "it belongs in [notation]"),
+    **dict.fromkeys((*CHOICES, "frames"), "it belongs in [notation]"),
     "potential": f"not read yet (known: {', '.join(_FILE)})",
     **dict.fromkeys(_FILE, "it belongs at the top of the file, outside the tables"),
     **dict.fromkeys(KEYS, "it belongs in [rotation]"),
     **dict.fromkeys((*_OUTPUT, *_MORE_OUTPUT), "it belongs in [output]"),
 }
 
+A_PAIR_OF_FRAMES = 'two names such as ["inertial", "spacecraft"]'
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _DEVICES = re.compile(r"con|prn|aux|nul|com[1-9]|lpt[1-9]")  # no files on Windows
 _LONGEST_TITLE = 200
@@ -256,8 +257,8 @@ def _read_notation(table: Table) -> Manner:
     notation = table.table("notation")
     if notation is None:
         return DEFAULT
-    notation.refuse_others(tuple(CHOICES))
-    chosen: dict[str, str] = {}
+    notation.refuse_others((*CHOICES, "frames"))
+    chosen: dict[str, Any] = {}
     for key, known in CHOICES.items():
         choice = notation.text(key)
         if choice in known:
@@ -265,6 +266,12 @@ def _read_notation(table: Table) -> Manner:
         elif choice is not None:
             message = f"unknown choice {shortened(choice)}; {offer(choice, known)}"
             notation.fault(message, key)
+    frames = notation.texts("frames", A_PAIR_OF_FRAMES)
+    if frames and None not in frames:
+        try:
+            return Manner(**chosen, frames=tuple(filter(None, frames)))
+        except ModelError as error:
+            notation.fault(str(error).removeprefix("notation: "), "frames")
     return Manner(**chosen)
 
 

@@ -184,3 +184,16 @@ def test_a_step_shows_itself_in_jupyter():
 def test_selected_steps_keep_showing_themselves():
     motion = derived("ZXZ").select(["angular_velocity_body"])
     assert motion.steps[0]._repr_latex_().endswith("\\tag{1}\n$$")
+
+
+def test_a_model_shows_its_matrix_and_its_convention():
+    bundle = rs.EulerAngles("ZXZ")._repr_mimebundle_()
+    assert bundle["text/latex"].startswith(r"$$\mathbf{R} = \left[\begin{matrix}")
+    assert r"\sin{\left(\phi \right)} \sin{\left(\theta \right)}" in bundle["text/latex"]
+    assert bundle["text/plain"].splitlines() == [
+        "Euler angles ZXZ, intrinsic",
+        "Intrinsic turns: first φ about z, then θ about the turned x, then ψ about the turned z.",
+        "Active: x = R x′ takes body components to space components.",
+        "R = Rz(φ) Rx(θ) Rz(ψ)",
+    ]
+    assert "R = " not in rs.RotationVector()._repr_mimebundle_()["text/plain"]

@@ -185,3 +185,63 @@ def test_the_command_line_offers_every_choice():
         assert re.search(
             rf"--{name.replace('_', '-')} \[{'|'.join(known)}\]".replace("|", r"\|"), shown
         )
+
+
+# --- the names of the frames
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("the axes of space", "the axes of the A frame"),
+        ("the axes of the body", "the axes of the B frame"),
+        ("rotation matrix, body to space components", "rotation matrix, B to A components"),
+        ("angular velocity, body components", "angular velocity, B components"),
+        ("in space, that is", "in the A frame, that is"),
+        ("turn the body about", "turn the body about"),
+    ],
+)
+def test_frames_have_the_names_of_the_user(text, expected):
+    manner = Manner(frames=("A", "B"))
+    assert manner.words(text) == expected
+    assert manner.words(expected) == expected
+    assert DEFAULT.words(text) == text
+
+
+def test_frames_are_called_the_same_in_every_format():
+    motion = derived("ZXZ").written(frames=["ECI", "craft"])
+    note = motion.note()
+    shown = (note.latex(), note.html(), note.markdown(), show(motion, manner=motion.manner))
+    for text in shown:
+        words = " ".join(text.split())
+        assert "the axes of the craft frame to components along the axes of the ECI frame" in words
+        assert "space components" not in words
+
+
+@pytest.mark.parametrize(
+    ("frames", "said"),
+    [
+        (["one"], "two different names"),
+        (["a", "a"], "two different names"),
+        ("ab", "two different names"),
+        (["a", "<b>"], "'<b>' cannot name a frame"),
+        (["a", ""], "'' cannot name a frame"),
+    ],
+)
+def test_names_of_frames_are_checked(frames, said):
+    with pytest.raises(ModelError, match=said):
+        Manner(frames=frames)
+
+
+def test_a_file_and_the_command_line_name_the_frames(tmp_path: Path):
+    text = FILE + '[notation]\nframes = ["inertial", "spacecraft"]\n'
+    spec = read_spec(text, source="top.toml", name="top")
+    assert spec.manner.frames == ("inertial", "spacecraft")
+    assert DerivationSpec.from_data(json.loads(json.dumps(spec.to_data()))) == spec
+    with pytest.raises(SpecError, match=r"line 4: notation\.frames: frames are two"):
+        read_spec(FILE + '[notation]\nframes = ["a"]\n', source="top.toml", name="top")
+    run = CliRunner().invoke(
+        cli.commands, ["derive", "ZXZ", "--frames", "ECI,craft", "--out", str(tmp_path)]
+    )
+    assert run.exit_code == 0, run.output
+    assert "angular velocity, craft components" in run.output

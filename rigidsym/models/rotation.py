@@ -210,6 +210,18 @@ class RotationModel:
     def coordinate_units(self) -> tuple[str, ...]:
         return self.units or ("rad",) * len(self.coordinates)
 
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        """What Jupyter shows: R in the coordinates, and the convention in words."""
+        return {"text/latex": self._repr_latex_(), "text/plain": self._in_words()}
+
+    def _repr_latex_(self) -> str:
+        plain = {q: sp.Symbol(q.func.__name__) for q in self.coordinates}
+        return rf"$$\mathbf{{R}} = {sp.latex(self.matrix.xreplace(plain))}$$"
+
+    def _in_words(self) -> str:
+        product = f"R = {self.product}" if self.turns else ""
+        return "\n".join(filter(None, (self.title, *self.convention, self.presentation, product)))
+
     def __str__(self) -> str:
         return self.name
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -26,6 +26,14 @@ CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     }
 )
 
+FRAMES = ("space", "body")
+
+_A_FRAME_NAME = re.compile(r"\w(?:[\w .-]{0,28}\w)?")
+# the name before what it qualifies, or after a preposition, where it becomes "the ... frame"
+_FRAME_WORDS = (
+    re.compile(r"\b(?:(?P<before>of|in|from) space|space(?P<after> components| to\b))"),
+    re.compile(r"\b(?:(?P<before>of|in|from) the body|body(?P<after> components| to\b))"),
+)
 _BODY = r"^{\mathrm{B}}"
 _POWER_OF_BODY = re.compile(r"((?:\\[A-Za-z]+\{[^{}]*\}|\\[A-Za-z]+|\w))'\^\{(-?\d+)\}")
 _BOLD = re.compile(r"\\(?:mathbf\{([ux])\}|boldsymbol\{(\\[Oo]mega)\})")
@@ -48,12 +56,22 @@ class Manner:
     vectors: str = "bold"
     body: str = "prime"
     angular_velocity: str = "Omega"
+    frames: tuple[str, str] = FRAMES  # what the frames are called in words
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "frames", _checked(self.frames))
         for name, known in CHOICES.items():
             chosen = getattr(self, name)
             if chosen not in known:
                 raise ModelError(f"notation: {name} is {' or '.join(known)}, and not {chosen!r}")
+
+    def words(self, text: str) -> str:
+        """A sentence in which the frames have the user's names; twice is the same as once."""
+        if self.frames == FRAMES:
+            return text
+        for pattern, own in zip(_FRAME_WORDS, self.frames, strict=True):
+            text = pattern.sub(lambda m, own=own: _named(m, own), text)
+        return text
 
     def symbol(self, markup: Markup) -> Markup:
         """A formula of this package in this notation; twice is the same as once."""
@@ -69,6 +87,7 @@ class Manner:
 
     def text(self, text: str) -> str:
         """Words and formulas in Unicode."""
+        text = self.words(text)
         if self.angular_velocity == "omega":
             text = text.replace("Ω", "ω")
         if self.body == "superscript":
@@ -101,6 +120,26 @@ class Manner:
         if self.vectors == "arrow":
             latex = _BOLD.sub(lambda m: rf"\vec{{{m[1] or m[2]}}}", latex)
         return latex
+
+
+def _checked(frames: Sequence[str]) -> tuple[str, str]:
+    """Two different names of letters, digits, blanks, points and hyphens."""
+    names = [frames] if isinstance(frames, str) else list(frames)
+    if len(names) != 2 or names[0] == names[1]:
+        raise ModelError(f"notation: frames are two different names, got {', '.join(names)}")
+    for name in names:
+        if not _A_FRAME_NAME.fullmatch(name):
+            raise ModelError(
+                f"notation: {name!r} cannot name a frame: expected at most 30 letters, digits, "
+                "blanks, points and hyphens"
+            )
+    return names[0], names[1]
+
+
+def _named(found: re.Match[str], own: str) -> str:
+    if found["before"]:
+        return f"{found['before']} the {own} frame"
+    return own + found["after"]
 
 
 _BODY_PATTERN = _BODY.replace("\\", r"\\")

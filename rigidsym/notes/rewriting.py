@@ -15,6 +15,7 @@ from rigidsym.notes.document import (
     Paragraph,
     Program,
     Section,
+    Span,
     Table,
     Text,
 )
@@ -77,4 +78,12 @@ class _Rewriter:
         return equation_in_manner(equation, self.manner)
 
     def _text(self, text: Text) -> Text:
-        return tuple(self.manner.symbol(s) if isinstance(s, Markup) else s for s in text)
+        return tuple(map(self._span, text))
+
+    def _span(self, span: Span) -> Span:
+        match span:
+            case Markup():
+                return self.manner.symbol(span)
+            case str():
+                return self.manner.words(span)
+        return span
