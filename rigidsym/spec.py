@@ -269,9 +269,11 @@ def _read_notation(table: Table) -> Manner:
     frames = notation.texts("frames", A_PAIR_OF_FRAMES)
     if frames and None not in frames:
         try:
-            return Manner(**chosen, frames=tuple(filter(None, frames)))
+            chosen["frames"] = tuple(frames)
+            return Manner(**chosen)
         except ModelError as error:
             notation.fault(str(error).removeprefix("notation: "), "frames")
+            del chosen["frames"]
     return Manner(**chosen)
 
 

@@ -15,10 +15,10 @@ from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.chain import axis_turn, chain
-from rigidsym.models.quaternions import UnitQuaternion
+from rigidsym.models.quaternions import AxisAngle, UnitQuaternion
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import time_function
-from rigidsym.models.vectors import RotationVector
+from rigidsym.models.vectors import GibbsVector, RotationVector
 from rigidsym.notes.drawing import Box, Drawing, Label, Stroke
 from rigidsym.notes.figure import MOST_TURNS, figure_of
 from rigidsym.notes.notation import notation_of
@@ -147,11 +147,24 @@ def test_the_axes_between_are_numbered():
     assert Markup("N_2", "N₂") in labels
 
 
-@pytest.mark.parametrize("name", ["rotation vector", "quaternion"])
-def test_a_vector_is_the_axis_of_one_turn(name):
-    figure = drawn(CHAINS[name])
-    assert plain(figure.caption).endswith("z′ of the body and the axis e of the turn.")
-    assert plain(figure.description) == "The turn by n about e takes x to x′."
+@pytest.mark.parametrize(
+    ("model", "named", "angle"),
+    [
+        (RotationVector(), "the vector v along the axis", "n"),
+        (UnitQuaternion(), "the vector v along the axis", "α"),
+        (GibbsVector(), "the vector v along the axis", "α"),
+        (AxisAngle(), "the axis e", "φ"),
+        (AxisAngle(("a", "b", "c", "alpha")), "the axis e", "α"),
+    ],
+)
+def test_a_vector_is_the_axis_of_one_turn(model, named, angle):
+    figure = drawn(model)
+    letter = named.split()[2]
+    assert plain(figure.caption).endswith(f"z′ of the body and {named} of the turn.")
+    assert plain(figure.description) == f"The turn by {angle} about {letter} takes x to x′."
+    (vector,) = (stroke for stroke in figure.drawing.strokes if stroke.kind == "vector")
+    assert vector.has_arrow
+    assert vector.points[0] == (0.0, 0.0)
 
 
 def test_the_axis_of_an_oblique_turn_is_no_line_of_nodes():

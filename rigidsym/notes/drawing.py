@@ -15,7 +15,7 @@ from rigidsym.mechanics.derivation import Markup
 from rigidsym.notes.measure import columns, ems
 from rigidsym.notes.space import Point
 
-Kind = Literal["space", "body", "node", "turn", "guide"]
+Kind = Literal["space", "body", "node", "vector", "turn", "guide"]
 Segment = tuple[Point, Point]
 
 TYPE_SIZE = 0.15  # one em, in units of the drawing

@@ -12,15 +12,16 @@ from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.notes.document import Figure, Span, Text
 from rigidsym.notes.drawing import Kind
 from rigidsym.notes.formula import markup
+from rigidsym.notes.lengths import length_of
 from rigidsym.notes.notation import Notation
 from rigidsym.notes.scene import BODY, Arc, Names, Scene, scene_of
 from rigidsym.notes.sketch import best_view, drawn
 from rigidsym.notes.space import Camera, Vector, unit
-from rigidsym.notes.words import listed, words
+from rigidsym.notes.words import VECTOR, listed, words
 
 MOST_TURNS = 5  # more would be a tangle
 
-_AXIS_OF_THE_VECTOR = Markup(r"\mathbf{e}", "e")
+_UNIT = Markup(r"\mathbf{e}", "e")
 
 
 def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
@@ -33,11 +34,11 @@ def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
         return None
     axes = tuple(map(_components, turns))
     angles, view = _view(turns)
-    between = _AXIS_OF_THE_VECTOR if not model.turns else None
     names = Names(
         angles=tuple(markup(turn.angle, notation) for turn in turns),
         body=tuple(map(notation.manner.symbol, BODY)),
-        between=between,
+        between=None if model.turns else _name_of_the_vector(model),
+        is_vector=not model.turns,
     )
     scene = scene_of(axes, angles, names)
     return Figure(
@@ -66,13 +67,35 @@ def _about_the_vector(model: RotationModel) -> tuple[Turn, ...]:
     if not model.vector:
         return ()
     axis = tuple(sp.Rational(part, 3) for part in (1, 2, 2))
-    return (Turn(axis=_AXIS_OF_THE_VECTOR.text, angle=sp.Symbol("n"), components=axis),)
+    name = _name_of_the_vector(model).text
+    return (Turn(axis=name, angle=_angle_about(model), components=axis),)
+
+
+def _angle_about(model: RotationModel) -> sp.Expr:
+    """The angle of the turn: a coordinate, the length of the vector, or a letter for it."""
+    units = dict(zip(model.coordinates, model.coordinate_units, strict=True))
+    angles = [q for q, unit in units.items() if unit == "rad" and q not in model.vector]
+    length = length_of(model)
+    if not angles and length is not None and units[model.vector[0]] == "rad":
+        return length.symbol
+    taken = {q.func.__name__ for q in model.coordinates}
+    letters = (letter for letter in ("alpha", "beta", "gamma") if letter not in taken)
+    return angles[0] if angles else sp.Symbol(next(letters))
+
+
+def _name_of_the_vector(model: RotationModel) -> Markup:
+    """e where it is bound to be a unit vector, v where it is not."""
+    square = sp.Add(*(part**2 for part in model.vector))
+    return _UNIT if any(c - square == -1 for c in model.constraints) else VECTOR
 
 
 def _between_in_words(turns: Sequence[Turn]) -> str:
     """What the only axis that is neither of space nor of the body is called."""
     if len(turns) == 1:
-        return "the axis {} of the turn"
+        is_vector = turns[0].axis == VECTOR.text
+        return (
+            "the vector {} along the axis of the turn" if is_vector else "the axis {} of the turn"
+        )
     are_coordinate_axes = not any(turn.components for turn in turns)
     return "the line of nodes {}" if are_coordinate_axes else "the axis {} of a turn"
 
@@ -88,7 +111,7 @@ def _fixed_angle(turn: Turn) -> float | None:
 
 def _caption(scene: Scene, between: str) -> Text:
     """Which axes are which."""
-    nodes = _names(scene, "node")
+    nodes = _names(scene, "node") or _names(scene, "vector")
     parts = [
         _filled("the axes {} of space", _names(scene, "space")),
         _filled("the axes {} of the body", _names(scene, "body")),

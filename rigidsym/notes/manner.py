@@ -11,6 +11,7 @@ import re
 import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 
 from rigidsym.errors import ModelError
@@ -70,7 +71,7 @@ class Manner:
         if self.frames == FRAMES:
             return text
         for pattern, own in zip(_FRAME_WORDS, self.frames, strict=True):
-            text = pattern.sub(lambda m, own=own: _named(m, own), text)
+            text = pattern.sub(partial(_named, own), text)
         return text
 
     def symbol(self, markup: Markup) -> Markup:
@@ -136,7 +137,7 @@ def _checked(frames: Sequence[str]) -> tuple[str, str]:
     return names[0], names[1]
 
 
-def _named(found: re.Match[str], own: str) -> str:
+def _named(own: str, found: re.Match[str]) -> str:
     if found["before"]:
         return f"{found['before']} the {own} frame"
     return own + found["after"]

@@ -67,6 +67,7 @@ class Names:
     angles: tuple[Markup, ...]
     body: tuple[Markup, ...] = BODY  # its axes
     between: Markup | None = None  # the only axis that is neither of space nor of the body
+    is_vector: bool = False  # whether that axis is a vector, with a point
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -145,4 +146,5 @@ def _rays(body: Frame, names: Names, arcs: Sequence[Arc]) -> Iterator[Ray]:
             nodes.append(arc.axis)
     for place, direction in enumerate(nodes):
         name = _NODE_NAMES[place] if len(nodes) > 1 else names.between or Markup("N", "N")
-        yield Ray(kind="node", name=name, direction=direction)
+        kind = "vector" if names.is_vector else "node"
+        yield Ray(kind=kind, name=name, direction=direction)

@@ -116,7 +116,7 @@ def _axis(ray: Ray, view: Camera) -> Stroke:
     if ray.kind == "node":
         ends = (scaled(-_NODE, ray.direction), scaled(_NODE, ray.direction))
         return Stroke(kind="node", points=tuple(map(view.project, ends)))
-    ends = (_ORIGIN, scaled(_AXIS, ray.direction))
+    ends = (_ORIGIN, scaled(_NODE if ray.kind == "vector" else _AXIS, ray.direction))
     return Stroke(kind=ray.kind, points=tuple(map(view.project, ends)), has_arrow=True)
 
 

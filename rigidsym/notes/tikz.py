@@ -11,6 +11,7 @@ _EM = 0.3865  # cm, at 11 points
 _STYLES = (
     "space/.style={black!80}, body/.style={blue!65!black, line width=1pt}, "
     "node/.style={red!70!black, line width=.8pt, dash pattern=on 6pt off 2pt on 1pt off 2pt}, "
+    "vector/.style={red!70!black, line width=1pt}, "
     "turn/.style={teal!75!black, line width=.9pt}, guide/.style={black!45}"
 )
 
