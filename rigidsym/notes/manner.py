@@ -36,8 +36,8 @@ _FRAME_WORDS = (
     re.compile(r"\b(?:(?P<before>of|in|from) the body|body(?P<after> components| to\b))"),
 )
 _BODY = r"^{\mathrm{B}}"
-_POWER_OF_BODY = re.compile(r"((?:\\[A-Za-z]+\{[^{}]*\}|\\[A-Za-z]+|\w))'\^\{(-?\d+)\}")
-_BOLD = re.compile(r"\\(?:mathbf\{([ux])\}|boldsymbol\{(\\[Oo]mega)\})")
+_POWER_OF_BODY = re.compile(r"((?:\\[A-Za-z]+\{[^{}]*\}|\\[A-Za-z]+|\w))'\^\{(-?\d+|\\mathsf T)\}")
+_BOLD = re.compile(r"\\(?:mathbf\{([uxrLe])\}|boldsymbol\{(\\[Oo]mega)\})")
 _VECTORS = re.compile(r"([Ωω])(?![₀-₉]|[′ᴮ][₀-₉])")
 _DOT = re.compile(
     r"\\(d?dot)"
