@@ -32,6 +32,7 @@ NAMES = (
     "accuracy",
     "precision",
     "identify",
+    "bodies",
 )
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from benchmarks import (
     accuracy,
+    bodies,
     cold_start,
     derivation,
     form,
@@ -299,3 +300,22 @@ def test_wrong_arguments_are_usage_errors(wrong, capsys):
         run.main(wrong)
     assert exit_.value.code == 2
     assert "error: argument" in capsys.readouterr().err
+
+
+# bodies
+
+
+def test_the_benchmark_of_bodies_measures_in_processes_of_their_own(tmp_path, monkeypatch):
+    monkeypatch.setattr(bodies, "FORMULAS", {"NumPy, matrix products": bodies.products})
+    bodies._write(tmp_path / "few.npy", 20_000)
+    found = bodies._measured(tmp_path / "few.npy", 1)
+    rows, least, memory = bodies._particles(found)
+    assert [row[0] for row in rows] == [bodies.OURS, *bodies.FORMULAS]
+    assert least > 0
+    assert memory < bodies.MOST_MEGABYTES
+
+
+def test_formulas_of_the_benchmark_agree_on_an_easy_cloud():
+    table = np.random.default_rng(1).uniform(1, 2, (50, 4))
+    found = [way(table) for way in bodies.FORMULAS.values()]
+    assert np.allclose(found, bodies.inertia_of(table).inertia)
