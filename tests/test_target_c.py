@@ -85,6 +85,14 @@ def test_compilers_have_nothing_to_say(sources, compiler):
         run(compiler, *STRICT, "-O1", "-c", f"{name}.c", "-o", f"{compiler}.o", cwd=sources)
 
 
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_names_of_angles_may_be_words_of_c(tmp_path, compiler):
+    names = ("φ", "double", "NAN")
+    motion = rs.derive(rs.EulerAngles("ZXZ", angles=names), only=["rotation_matrix"])
+    source = motion.kernels("c").write(tmp_path)
+    run(compiler, *STRICT, "-fsyntax-only", source.name, cwd=tmp_path)
+
+
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
 def test_it_needs_nothing_and_keeps_nothing(sources):
     run("gcc", "-std=c99", "-O2", "-fno-math-errno", "-c", f"{NAME}.c", "-o", "n.o", cwd=sources)

@@ -26,6 +26,7 @@ _WORDS = (
     "inline int long register restrict return short signed sizeof static struct switch typedef "
     "union unsigned void volatile while asm typeof "
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf nan "
+    "NULL NAN INFINITY HUGE_VAL HUGE_VALF HUGE_VALL SIZE_MAX PTRDIFF_MAX math_errhandling "
     "size_t ptrdiff_t uint32_t uint64_t TILE tile found rows count at i j "
 )
 RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})

@@ -93,7 +93,7 @@ def _array_signature(name: str, kernel: Kernel, precision: Precision) -> str:
 def _call(
     kernel: Kernel, suffix: str, far: str, places: list[str], result: str, indent: int
 ) -> str:
-    return _listed(indent, f"{kernel.name}_of{suffix}(", [far, *places, result]).lstrip()
+    return _listed(indent, f"evaluate_{kernel.name}{suffix}(", [far, *places, result]).lstrip()
 
 
 def _listed(indent: int, head: str, items: Sequence[str]) -> str:
@@ -105,7 +105,7 @@ def _listed(indent: int, head: str, items: Sequence[str]) -> str:
 def _body(kernel: Kernel, precision: Precision) -> str:
     real, suffix = precision.real, precision.suffix
     given = [f"const {real} {name}" for name in kernel.components]
-    head = f"static inline {precision.word} {kernel.name}_of{suffix}("
+    head = f"static inline {precision.word} evaluate_{kernel.name}{suffix}("
     items = ["const int far", *given, f"{real} *out"]
     return "\n".join(
         [
