@@ -16,11 +16,11 @@ _CLASSES = {  # for the style sheet
     # a combining arrow stands beside its letter in some browsers
     '<mo stretchy="false">\u20d7</mo>': '<mo class="arrow" stretchy="false">→</mo>',
     # attributes of MathML Core, which not every validator knows
+    ' scriptlevel="0"': "",
     '<mfrac displaystyle="true">': '<mfrac class="tall">',
     '<mfrac displaystyle="false">': '<mfrac class="flat">',
     '<mrow displaystyle="true">': '<mrow class="tall">',
     '<mrow displaystyle="false">': '<mrow class="flat">',
-    ' scriptlevel="0"': "",
 }
 _ROW_SPACE = re.compile(r"\\\\\[\d+pt\]")  # the style sheet sets the distance of rows
 

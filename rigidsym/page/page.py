@@ -8,6 +8,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import re
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from itertools import accumulate
@@ -31,6 +32,7 @@ TEMPLATE = "page.html.jinja"
 SCRIPT = "page.mjs.jinja"
 MOST_BYTES = 150_000
 
+_PLAIN = re.compile(r' alttext="[^"]*"')
 _LEFT_OUT = 120  # bytes that say so
 
 
@@ -43,6 +45,11 @@ class Part:
     size: int  # bytes that go with it
 
     @property
+    def weight(self) -> int:
+        """What it costs, as far as its use goes: a display is worth three times as many bytes."""
+        return self.size if isinstance(self.block, Equation) and not self.is_code else 3 * self.size
+
+    @property
     def is_live(self) -> bool:
         return isinstance(self.block, Equation) and self.block.label in SHOWN
 
@@ -50,17 +57,23 @@ class Part:
 def print_page(derivation: Derivation, document: Document) -> str:
     """The page of a derivation, whose note is given; the same input gives the same bytes.
 
-    It has at most MOST_BYTES: where all would be longer, the largest parts are left to the note
-    and the module; those of what is shown live go last.
+    It has at most MOST_BYTES. Where all would be longer, formulas come without their plain text,
+    which browsers that know no MathML would read; then the largest parts are left to the note and
+    the module, code and tables before displays, and those of what is shown live last.
     """
     page = _Page(derivation, document)
     whole = page.text()
-    over = len(whole.encode()) - MOST_BYTES
-    if over <= 0:
+    if len(whole.encode()) <= MOST_BYTES:
         return whole
-    parts = sorted(page.parts(), key=lambda part: (part.is_live, -part.size))
+    over = len(_terse(whole).encode()) - MOST_BYTES
+    parts = sorted(page.parts(), key=lambda part: (part.is_live, -part.weight))
     saved = accumulate((part.size for part in parts), initial=0)
-    return page.text([part for part, before in zip(parts, saved, strict=False) if before < over])
+    left_out = [part for part, before in zip(parts, saved, strict=False) if before < over]
+    return _terse(page.text(left_out))
+
+
+def _terse(html: str) -> str:
+    return _PLAIN.sub("", html)
 
 
 class _Page:
@@ -81,7 +94,8 @@ class _Page:
         for block in (block for section in self.document.sections for block in section.blocks):
             if not isinstance(block, Equation | Table):
                 continue
-            shown = printer.forms(block) if isinstance(block, Equation) else printer.table(block)
+            whole = printer.forms(block) if isinstance(block, Equation) else printer.table(block)
+            shown = _terse(whole)
             yield Part(block=block, is_code=False, size=len(shown.encode()) - _LEFT_OUT)
             text = self.copies.texts.get(block.label) if isinstance(block, Equation) else None
             if text is not None:
