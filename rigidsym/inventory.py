@@ -10,6 +10,7 @@ from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.mechanics.quantities import quantities
 from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.models.solids import SHAPES
 from rigidsym.notes.measure import columns
 from rigidsym.resources import names, text
 from rigidsym.rotations import rotation_from
@@ -24,6 +25,7 @@ def inventory() -> str:
         ("Other parametrisations", _parametrisations()),
         ("Presets", _presets()),
         ("Turns of any number, about any axes", [_TURNS]),
+        ("Solids (shape in [body])", _solids()),
         ("Quantities", _quantities()),
         ("Targets of the kernels (--target NAME,...)", _targets()),
         ("Shipped derivations (rigidsym run NAME)", _shipped()),
@@ -49,6 +51,13 @@ def _presets() -> list[str]:
         lines.append(f"{name:<16} {shown}R = {model.product}: {preset.about}")
         lines.append(f"{'':<16} {preset.source}")
     return lines
+
+
+def _solids() -> list[str]:
+    return [
+        f"{name:<16} {', '.join(length.key for length in shape.lengths)}: {shape.about}"
+        for name, shape in SHAPES.items()
+    ]
 
 
 def _quantities() -> list[str]:

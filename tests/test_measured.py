@@ -244,6 +244,12 @@ def test_principal_axes_are_right_handed_and_diagonalise(inertia, sentence):
     assert bool(found.repeated) == bool(sentence)
 
 
+def test_principal_axes_are_right_handed_for_any_tensor():
+    for seed in range(20):
+        found = principal_axes_of(inertia_of(rows(9, seed=seed)).inertia)
+        assert np.linalg.det(found.axes) == pytest.approx(1)
+
+
 @pytest.mark.parametrize(
     ("inertia", "fault"),
     [

@@ -285,6 +285,14 @@ def test_parts_add_up_and_a_hole_takes_away():
     assert (whole.inertia - body_of(outer.what).inertia).applyfunc(sp.cancel) == sp.zeros(3)
 
 
+def test_a_part_moves_as_it_is():
+    """A cone, whose centre is not its origin: its tensor stays, and its centre goes along."""
+    at = column(1, h, -2)
+    moved = body_of(Composite(parts=(Part(what=shaped("cone", [a, h], mass=M), at=at),)))
+    assert moved.inertia == body("cone").inertia
+    assert (moved.centre - body("cone").centre - at).applyfunc(sp.expand) == sp.zeros(3, 1)
+
+
 def test_a_turn_keeps_the_principal_moments():
     turn = sp.ImmutableMatrix(sp.Matrix([[3, -4, 0], [4, 3, 0], [0, 0, 5]]) / 5)
     box = shaped("box", [sp.Integer(1), sp.Integer(2), sp.Integer(3)], mass=sp.Integer(6))
