@@ -8,13 +8,16 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING
 
 from rigidsym.api import Motion, derive
-from rigidsym.mechanics.conversions import Conversions
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.notes.note import Note
 from rigidsym.record import record
 from rigidsym.spec import DerivationSpec
+
+if TYPE_CHECKING:
+    from rigidsym.mechanics.conversions import Conversions
 
 PDF = "pdf"  # made from the LaTeX, which is written beside it
 PAGE = "page"  # NAME_page.html: the note with a figure that moves

@@ -7,12 +7,11 @@ Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
 from rigidsym import __version__
-from rigidsym.mechanics.conversions import Conversions
 from rigidsym.mechanics.derivation import (
     Argument,
     Derivation,
@@ -24,7 +23,10 @@ from rigidsym.mechanics.derivation import (
     Step,
     VectorForm,
 )
-from rigidsym.models.body import RigidBody
+
+if TYPE_CHECKING:
+    from rigidsym.mechanics.conversions import Conversions
+    from rigidsym.models.body import RigidBody
 
 SCHEMA = "rigidsym.derivation"
 SCHEMA_VERSION = 2

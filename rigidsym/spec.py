@@ -9,17 +9,15 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rigidsym import resources
-from rigidsym.body_table import read_body
 from rigidsym.errors import Fault, KernelError, ModelError, SpecError
 from rigidsym.kernels.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.energy_quantities import ENERGY_QUANTITIES
 from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.mechanics.quantities import QUANTITY_NAMES
-from rigidsym.models.body import RigidBody
 from rigidsym.models.catalogue import EulerAngles
 from rigidsym.models.rotation import RotationModel
 from rigidsym.names import offer
@@ -27,6 +25,9 @@ from rigidsym.notes.manner import CHOICES, DEFAULT, Manner
 from rigidsym.rotation_table import KEYS, read_rotation, repeated
 from rigidsym.rotations import request_of, rotation_from
 from rigidsym.tables import MOST_CHARACTERS, Faults, Table, read_toml, shortened
+
+if TYPE_CHECKING:
+    from rigidsym.models.body import RigidBody
 
 NOTE_FORMATS = ("tex", "html", "md", "ipynb", "page", "pdf")
 
@@ -227,6 +228,8 @@ def _read_body(table: Table, name: str, folder: Path) -> RigidBody | None:
         if table.value("parameters") is not None:
             table.fault("parameters go with a [body]", "parameters")
         return None
+    from rigidsym.body_table import read_body  # which few files need
+
     return read_body(body, parameters, name, folder)
 
 

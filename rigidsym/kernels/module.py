@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
-from rigidsym.kernels.conversions import lower_conversions
 from rigidsym.kernels.derivatives import Asked, derivatives_of, read_requests
 from rigidsym.kernels.lower import lower
 from rigidsym.kernels.targets import printer
-from rigidsym.mechanics.conversions import conversions_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.writing import write_text
 
@@ -73,6 +71,9 @@ def generate(
     program = lower(derivation, chosen.RESERVED, wanted)
     converting = None
     if conversions:
+        from rigidsym.kernels.conversions import lower_conversions
+        from rigidsym.mechanics.conversions import conversions_of
+
         converting = lower_conversions(
             derivation, conversions_of(derivation.model), chosen.RESERVED
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from functools import cache, lru_cache
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy.printing.conventions import split_super_sub
@@ -13,9 +14,11 @@ from sympy.printing.pretty.pretty_symbology import pretty_symbol
 from rigidsym.algebra.adjoin import rate_of
 from rigidsym.errors import ModelError
 from rigidsym.mechanics.derivation import Argument, Markup
-from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import time_function
+
+if TYPE_CHECKING:
+    from rigidsym.models.body import RigidBody
 
 _DOTS = (  # order of the derivative: suffix of the name, LaTeX accent, combining character
     ("", "{}", ""),

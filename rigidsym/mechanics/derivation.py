@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import sympy as sp
 
 from rigidsym.errors import QuantityError
-from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import Citation, RotationModel
+
+if TYPE_CHECKING:
+    from rigidsym.models.body import RigidBody
 
 Status = Literal["exact", "unproved"]
 

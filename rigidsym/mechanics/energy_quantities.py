@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from rigidsym.mechanics.claims import fill, transpose_of
 from rigidsym.mechanics.derivation import Markup, Quantity
 from rigidsym.mechanics.quantities import BODY, SPACE
-from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import lecture
+
+if TYPE_CHECKING:
+    from rigidsym.models.body import RigidBody
 
 INERTIA = Markup(r"\mathbf{I}'", "I′")
 INERTIA_SPACE = Markup(r"\mathbf{I}", "I")

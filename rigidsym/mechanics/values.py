@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -14,9 +15,11 @@ from rigidsym.mechanics import composition, particles
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.composition import Factor, hat, unhat
 from rigidsym.mechanics.rates import Inverse, bound_on_rates, right_inverse
-from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.models.so3 import TIME
+
+if TYPE_CHECKING:
+    from rigidsym.models.body import RigidBody
 
 _FEW_TURNS = 4  # up to here the product is multiplied out; the proof by turns is as exact
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from rigidsym.mechanics.conversions import Conversions
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.compose import compose
-from rigidsym.notes.conversions import with_conversions
 from rigidsym.notes.document import Document
 from rigidsym.notes.latex import print_latex
 from rigidsym.notes.manner import DEFAULT, Manner
+
+if TYPE_CHECKING:
+    from rigidsym.mechanics.conversions import Conversions
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +65,8 @@ def note(
     )
     if conversions is None:
         return Note(document)
+    from rigidsym.notes.conversions import with_conversions
+
     return Note(
         with_conversions(
             document, derivation, conversions, has_functions=bool(module), manner=manner

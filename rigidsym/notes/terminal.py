@@ -5,11 +5,10 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import sympy as sp
 
-from rigidsym.mechanics.conversions import Conversions
 from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Proof, Step
 from rigidsym.mechanics.quantities import ROTATION
 from rigidsym.models.rotation import RotationModel
@@ -32,6 +31,9 @@ from rigidsym.notes.words import (
     unit_in_words,
     with_symbols,
 )
+
+if TYPE_CHECKING:
+    from rigidsym.mechanics.conversions import Conversions
 
 Style = Callable[[str, Literal["heading", "dim"]], str]
 

@@ -13,11 +13,13 @@ from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from types import MappingProxyType, ModuleType
-from typing import Protocol, cast
+from typing import TYPE_CHECKING, Protocol, cast
 
 from rigidsym.errors import KernelError
-from rigidsym.kernels.conversions import ConversionProgram
 from rigidsym.kernels.ir import Program
+
+if TYPE_CHECKING:
+    from rigidsym.kernels.conversions import ConversionProgram
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

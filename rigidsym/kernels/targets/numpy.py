@@ -6,17 +6,19 @@ import keyword
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 from rigidsym import __version__, resources
-from rigidsym.kernels.conversions import ConversionProgram
 from rigidsym.kernels.infix import infix
 from rigidsym.kernels.ir import FUNCTIONS, Argument, Call, Guarded, Kernel, Program
 from rigidsym.kernels.layout import WIDTH, assignment_lines, bracketed, docstring, exploded
 from rigidsym.kernels.narrow import narrowed
 from rigidsym.kernels.rounding import rounding
 from rigidsym.kernels.targets import numpy_singular as singular
-from rigidsym.kernels.targets.numpy_conversions import Additions, additions
-from rigidsym.kernels.targets.numpy_function import OPTIONS, Function
+from rigidsym.kernels.targets.numpy_function import OPTIONS, Additions, Function
+
+if TYPE_CHECKING:
+    from rigidsym.kernels.conversions import ConversionProgram
 
 TEMPLATE = "kernels_numpy.py.jinja"
 RESERVED = frozenset(
@@ -78,6 +80,8 @@ def _additions(program: Program, conversions: ConversionProgram | None) -> Addit
     coordinates = [argument for argument in program.arguments if argument.name == "q"]
     if conversions is None or not coordinates:
         return Additions()
+    from rigidsym.kernels.targets.numpy_conversions import additions
+
     return additions(conversions, f"({len(coordinates[0].components)},)")
 
 

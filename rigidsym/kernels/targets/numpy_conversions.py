@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from string import Template
 
 from rigidsym import resources
@@ -12,7 +11,7 @@ from rigidsym.kernels.conversion_unwrap import ChainUnwrapping, Unwrapping
 from rigidsym.kernels.conversions import ConversionProgram, Formula
 from rigidsym.kernels.formulas import MATRIX, QUATERNION
 from rigidsym.kernels.layout import WIDTH, bracketed, docstring, exploded
-from rigidsym.kernels.targets.numpy_function import OPTIONS, Function
+from rigidsym.kernels.targets.numpy_function import OPTIONS, Additions, Function
 
 _HELPERS = "kernels_numpy_conversions.jinja"
 _UNWRAP = "kernels_numpy_unwrap_{}.jinja"
@@ -50,18 +49,6 @@ _SHAPES = {
     "kept": "(..., {})",
 }
 _CALLED = re.compile(r"\$(\w+)")
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Additions:
-    """What conversions add to a module."""
-
-    functions: tuple[Function, ...] = ()
-    exports: tuple[str, ...] = ()
-    components: tuple[str, ...] = ()  # lines of the table of arguments
-    imports: frozenset[str] = frozenset()  # from math
-    helpers: str = ""  # text for the end of the module
-    remarks: tuple[str, ...] = ()
 
 
 def additions(program: ConversionProgram, shape: str) -> Additions:

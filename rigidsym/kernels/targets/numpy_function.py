@@ -21,3 +21,15 @@ class Function:
     block_signature: str
     block_body: str
     ufunc: str  # the line that states its signature as a generalised ufunc
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Additions:
+    """What conversions add to a module."""
+
+    functions: tuple[Function, ...] = ()
+    exports: tuple[str, ...] = ()
+    components: tuple[str, ...] = ()  # lines of the table of arguments
+    imports: frozenset[str] = frozenset()  # from math
+    helpers: str = ""  # text for the end of the module
+    remarks: tuple[str, ...] = ()
