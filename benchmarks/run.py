@@ -33,6 +33,7 @@ NAMES = (
     "precision",
     "identify",
     "bodies",
+    "notes",
 )
 
 

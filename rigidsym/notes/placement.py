@@ -58,27 +58,71 @@ def placed(
     labels: list[Label] = []
     total = 0
     for wish in wishes:
-        taken = [label.box for label in labels]
-        place, met = _best(wish, segments, taken, reach)
+        room = _Room(wish, segments, labels, reach)
+        place = room.free()
+        if place is None:
+            place, met = room.least_bad()
+            total += met
         labels.append(Label(kind=wish.kind, symbol=wish.symbol, place=place))
-        total += met
     return tuple(labels), total
 
 
-def _best(
-    wish: Wish, segments: Sequence[Segment], taken: Sequence[Box], reach: float
-) -> tuple[Point, int]:
-    """The first place that is free, or the least bad, and how many things are in its way."""
-    boxes = {place: box_of(wish.symbol, place).grown(_MARGIN) for place in wish.places(reach)}
-    for place, box in boxes.items():
-        if not any(map(box.is_crossed_by, segments)) and not any(map(box.meets, taken)):
-            return place, 0
-    met = {
-        place: sum(map(box.is_crossed_by, segments)) + sum(map(box.meets, taken))
-        for place, box in boxes.items()
-    }
-    best = min(met, key=met.__getitem__)
-    return best, met[best]
+def placed_freely(
+    wishes: Sequence[Wish], strokes: Iterable[Stroke], reach: float
+) -> tuple[Label, ...] | None:
+    """The same where all places are free; None where one label would have to touch something."""
+    segments = [segment for stroke in strokes for segment in stroke.segments]
+    labels: list[Label] = []
+    for wish in wishes:
+        place = _Room(wish, segments, labels, reach).free()
+        if place is None:
+            return None
+        labels.append(Label(kind=wish.kind, symbol=wish.symbol, place=place))
+    return tuple(labels)
+
+
+class _Room:
+    """The places for one label, and what is near enough to be in its way."""
+
+    def __init__(
+        self, wish: Wish, segments: Sequence[Segment], labels: Sequence[Label], reach: float
+    ) -> None:
+        self.boxes = {
+            place: box_of(wish.symbol, place).grown(_MARGIN) for place in wish.places(reach)
+        }
+        around = _around(self.boxes.values())
+        self.segments = [segment for segment in segments if around.is_crossed_by(segment)]
+        self.taken = [label.box for label in labels if around.meets(label.box)]
+
+    def free(self) -> Point | None:
+        """The first place where nothing is in the way."""
+        for place, box in self.boxes.items():
+            if not any(map(box.is_crossed_by, self.segments)) and not any(
+                map(box.meets, self.taken)
+            ):
+                return place
+        return None
+
+    def least_bad(self) -> tuple[Point, int]:
+        """The place where the fewest things are in the way, and how many."""
+        met = {place: self._met(box) for place, box in self.boxes.items()}
+        best = min(met, key=met.__getitem__)
+        return best, met[best]
+
+    def _met(self, box: Box) -> int:
+        return sum(map(box.is_crossed_by, self.segments)) + sum(map(box.meets, self.taken))
+
+
+def _around(boxes: Iterable[Box]) -> Box:
+    """One box that holds them all."""
+    sides = [
+        (x - box.half_width, y - box.half_height, x + box.half_width, y + box.half_height)
+        for box in boxes
+        for x, y in (box.centre,)
+    ]
+    left, low, right, high = zip(*sides, strict=True)
+    x0, y0, x1, y1 = min(left), min(low), max(right), max(high)
+    return Box(((x0 + x1) / 2, (y0 + y1) / 2), (x1 - x0) / 2 + 1e-9, (y1 - y0) / 2 + 1e-9)
 
 
 def _beside(symbol: Markup, start: Point, direction: float, gap: float) -> Point:

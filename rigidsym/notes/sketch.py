@@ -9,7 +9,7 @@ from math import hypot, radians, tau
 
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.notes.drawing import Area, Drawing, Kind, Stroke
-from rigidsym.notes.placement import Wish, placed
+from rigidsym.notes.placement import Wish, placed, placed_freely
 from rigidsym.notes.scene import Arc, Names, Ray, Scene, scene_of
 from rigidsym.notes.space import Camera, Point, Vector, camera, is_same, scaled, sweep
 
@@ -74,26 +74,36 @@ def _between(a: Point, b: Point) -> float:
 
 def drawn(scene: Scene, view: Camera) -> Drawing:
     """The drawing whose labels touch nothing; the arcs give way, by their radii."""
-    tried: list[tuple[Drawing, int]] = []
-    for reach, scale in product(_REACHES, _SCALES):
-        drawing, met = _with_arcs(scene, view, scale, reach)
-        if not met:
-            return drawing
-        tried.append((drawing, met))
-    return min(tried, key=lambda choice: choice[1])[0]
+    tries = list(product(_REACHES, _SCALES))
+    for reach, scale in tries:
+        strokes, wishes, areas = _with_arcs(scene, view, scale)
+        labels = placed_freely(wishes, strokes, reach)
+        if labels is not None:
+            return Drawing(areas=areas, strokes=strokes, labels=labels)
+    crowded = [_crowded(scene, view, scale, reach) for reach, scale in tries]
+    return min(crowded, key=lambda choice: choice[1])[0]
 
 
-def _with_arcs(scene: Scene, view: Camera, scale: float, reach: float) -> tuple[Drawing, int]:
-    """The drawing with arcs of larger or smaller radius, and how much its labels touch."""
+def _crowded(scene: Scene, view: Camera, scale: float, reach: float) -> tuple[Drawing, int]:
+    """The drawing where no choice leaves all labels free, and how much they touch."""
+    strokes, wishes, areas = _with_arcs(scene, view, scale)
+    labels, met = placed(wishes, strokes, reach)
+    return Drawing(areas=areas, strokes=strokes, labels=labels), met
+
+
+def _with_arcs(
+    scene: Scene, view: Camera, scale: float
+) -> tuple[tuple[Stroke, ...], tuple[Wish, ...], tuple[Area, ...]]:
+    """All but the labels, with arcs of larger or smaller radius; and the labels wished for."""
     axes = [_axis(ray, view) for ray in scene.rays]
     arcs = [_projected(arc.path(scale), view) for arc in scene.arcs]
-    strokes = [
+    strokes = (
         *_circles(scene, view),
         *_guides(scene, view),
         *axes,
         *(Stroke(kind="turn", points=points, has_arrow=True) for points in arcs),
-    ]
-    wishes = [
+    )
+    wishes = (
         *(
             Wish(kind="turn", symbol=arc.name, line=points, is_at_end=False)
             for arc, points in zip(scene.arcs, arcs, strict=True)
@@ -102,10 +112,9 @@ def _with_arcs(scene: Scene, view: Camera, scale: float, reach: float) -> tuple[
             Wish(kind=ray.kind, symbol=ray.name, line=stroke.points, is_at_end=True)
             for ray, stroke in zip(scene.rays, axes, strict=True)
         ),
-    ]
-    labels, met = placed(wishes, strokes, reach)
+    )
     areas = (Area(kind="turn", points=(view.project(_ORIGIN), *points)) for points in arcs)
-    return Drawing(areas=tuple(areas), strokes=tuple(strokes), labels=labels), met
+    return strokes, wishes, tuple(areas)
 
 
 def _projected(path: Iterator[Vector], view: Camera) -> tuple[Point, ...]:
