@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import sys
 from collections.abc import Iterable, Iterator
@@ -39,6 +40,7 @@ def produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool)
     """Derive, write, and show what was asked for; `pdf` asks for it where a file does not."""
     chosen = [_with_pdf(spec) if pdf else spec for spec in map(as_chosen, specs)]
     singles = [single for spec in chosen for single in spec.singles()]
+    _check_folders(singles)
     shown_in_full = len(singles) == 1
     missing: RigidsymError | None = None
     for made in _with_progress(singles):
@@ -52,6 +54,17 @@ def produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool)
             click.echo(_summary(made, written))
     if missing:
         raise missing
+
+
+def _check_folders(singles: Iterable[DerivationSpec]) -> None:
+    """Two derivations of one run do not write one folder."""
+    first: dict[str, DerivationSpec] = {}
+    for single in singles:
+        if first.setdefault(single.name, single) != single:
+            raise click.UsageError(
+                f"two different derivations are named {single.name} and would write one folder; "
+                "run them apart, with an --out of their own, or rename a file"
+            )
 
 
 def _with_pdf(spec: DerivationSpec) -> DerivationSpec:
@@ -78,6 +91,11 @@ def _with_progress(singles: list[DerivationSpec]) -> Iterator[Product]:
 def _write(made: Product, out: Path) -> tuple[list[Path], RigidsymError | None]:
     """Write the files of one product; a missing TeX is reported after all else is written."""
     folder = out / made.name
+    if _holds_another(folder / f"{made.name}.json", made):
+        click.echo(
+            f"rigidsym: {folder} held another rotation and is written over; --out keeps both",
+            err=True,
+        )
     written = [write_text(folder / name, text) for name, text in made.files.items()]
     if not made.wants_pdf:
         return written, None
@@ -88,6 +106,15 @@ def _write(made: Product, out: Path) -> tuple[list[Path], RigidsymError | None]:
     except RigidsymError as error:
         return written, error
     return [*written, write_bytes(folder / f"{made.name}.pdf", paper.pdf)], None
+
+
+def _holds_another(record: Path, made: Product) -> bool:
+    """Whether a record stands for other rotations: other angles, say, under the same name."""
+    try:
+        before = json.loads(record.read_text(encoding="utf-8"))["request"]["rotations"]
+    except (OSError, ValueError, KeyError, TypeError):  # none, or no record
+        return False
+    return bool(before != json.loads(made.record_text)["request"]["rotations"])
 
 
 def _show(made: Product, written: list[Path]) -> None:

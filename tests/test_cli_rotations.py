@@ -142,3 +142,20 @@ def test_a_wrong_rotation_in_a_file_is_a_fault(tmp_path, text, messages):
     done = call("run", "own.toml", cwd=tmp_path, status=3)
     for message in messages:
         assert message in done.stderr
+
+
+def test_one_folder_is_not_written_over_in_silence(tmp_path):
+    call("derive", "ZXZ", cwd=tmp_path)
+    assert call("derive", "ZXZ", "--conversions", cwd=tmp_path).stderr == ""
+    done = call("derive", "ZXZ", "--angles", "a,b,c", cwd=tmp_path)
+    assert "held another rotation and is written over; --out keeps both" in done.stderr
+
+
+def test_two_derivations_of_one_run_do_not_write_one_folder(tmp_path):
+    for folder, text in (("one", BOUND), ("two", GIBBS)):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "own.toml").write_text(text)
+    done = call("run", "one/own.toml", "two/own.toml", cwd=tmp_path, status=2)
+    assert "two different derivations are named own" in done.stderr
+    assert not Path(tmp_path, "out").exists()
+    call("run", "one/own.toml", "one/own.toml", cwd=tmp_path)
