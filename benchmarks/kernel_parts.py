@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
+from hashlib import sha256
 from pathlib import Path
 from time import perf_counter
 from types import ModuleType
@@ -87,7 +89,7 @@ def _plain(motion: Motion) -> tuple[list[sp.Symbol], list[sp.Expr]]:
 
 
 def threads(modules: Mapping[str, ModuleType], size: int, repeats: int) -> Part:
-    """Two threads beside one."""
+    """Two threads beside one, and what two processors gain here for work without memory."""
     random = np.random.default_rng(0)
     q, q_dot = random.uniform(-3.0, 3.0, (2, size, 3))
     rows: list[tuple[Cell, ...]] = []
@@ -109,8 +111,21 @@ def threads(modules: Mapping[str, ModuleType], size: int, repeats: int) -> Part:
                 figures.append(
                     _least(f"two threads over one, {name}, {quantity}", gain.middle, 1.7, "times")
                 )
+    rows.append(("none", "hashing: the most there is to gain", *_hashing(repeats).in_order()))
     columns = (Column("target"), Column("quantity"), *spread_columns("gain", 2))
     return [Table(f"Two threads, {size:,} orientations", columns, tuple(rows))], figures
+
+
+def _hashing(repeats: int) -> Spread:
+    """The gain of two threads at work that holds no lock and hardly reads memory."""
+    content = bytes(5_000_000)
+
+    def hashed(count: int) -> None:
+        with ThreadPoolExecutor(count) as pool:
+            list(pool.map(sha256, [content, content]))
+
+    times = interleaved({str(n): partial(timed, partial(hashed, n)) for n in (1, 2)}, repeats)
+    return ratios(times["1"], times["2"])
 
 
 def memory(modules: Mapping[str, ModuleType], size: int) -> Part:
