@@ -166,7 +166,7 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
          "of the file, outside the tables"),
         (
             f'{ZXZ}[output]\nnote = ["tex", "docx"]',
-            'line 4: output.note[1]: unknown name "docx"; known: tex, html, md, ipynb, pdf',
+            'line 4: output.note[1]: unknown name "docx"; known: tex, html, md, ipynb, page, pdf',
         ),
         (
             f'{ZXZ}[output]\nkernels = ["nunpy"]',
@@ -184,7 +184,7 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
         (
             f"{ZXZ}[potential]",
             "line 3: potential: unknown key; not read yet "
-            "(known: title, rotation, parameters, body, notation, output)",
+            "(known: title, theory, rotation, parameters, body, notation, output)",
         ),
         (
             "a = 1\nb = \nc = 2",
@@ -222,7 +222,7 @@ def test_a_wrong_text_does_not_turn_the_message_around():
     (fault,) = faults(f'{ZXZ}[output]\nnote = ["\u202efdp"]')
     assert (
         fault
-        == 'line 4: output.note[0]: unknown name "\\u202efdp"; known: tex, html, md, ipynb, pdf'
+        == 'line 4: output.note[0]: unknown name "\\u202efdp"; known: tex, html, md, ipynb, page, pdf'
     )
 
 
@@ -230,7 +230,7 @@ def test_a_long_wrong_text_is_cut():
     (fault,) = faults(f'{ZXZ}[output]\nnote = ["{"x" * 900}"]')
     assert (
         fault
-        == f'line 4: output.note[0]: unknown name "{"x" * 40}…"; known: tex, html, md, ipynb, pdf'
+        == f'line 4: output.note[0]: unknown name "{"x" * 40}…"; known: tex, html, md, ipynb, page, pdf'
     )
 
 
