@@ -220,18 +220,14 @@ def test_the_name_of_the_file_names_folder_and_module(name, fault):
 
 def test_a_wrong_text_does_not_turn_the_message_around():
     (fault,) = faults(f'{ZXZ}[output]\nnote = ["\u202efdp"]')
-    assert (
-        fault
-        == 'line 4: output.note[0]: unknown name "\\u202efdp"; known: tex, html, md, ipynb, page, pdf'
-    )
+    known = "tex, html, md, ipynb, page, pdf"
+    assert fault == f'line 4: output.note[0]: unknown name "\\u202efdp"; known: {known}'
 
 
 def test_a_long_wrong_text_is_cut():
     (fault,) = faults(f'{ZXZ}[output]\nnote = ["{"x" * 900}"]')
-    assert (
-        fault
-        == f'line 4: output.note[0]: unknown name "{"x" * 40}…"; known: tex, html, md, ipynb, page, pdf'
-    )
+    known = "tex, html, md, ipynb, page, pdf"
+    assert fault == f'line 4: output.note[0]: unknown name "{"x" * 40}…"; known: {known}'
 
 
 @pytest.mark.parametrize(
