@@ -272,7 +272,7 @@ def _about(program: Program) -> list[str | Sequence[str]]:
         "All other axes broadcast, and any strides will do. Integers count as float64; the "
         "result is float32 where every argument is, else float64. A given `out` of the "
         "result's shape and dtype is filled and returned; it may overlap the arguments. "
-        "`threads` share the work, each with some 8 MB of its own. Each function has a twin, "
+        "`threads` share the work, each with some 4 MB of its own. Each function has a twin, "
         "`..._scalar`, for one orientation in plain floats, and its `signature` as a "
         "generalised ufunc.",
         "NaN stays NaN, and the sine of infinity is NaN; nothing warns. Angles of any size are "
