@@ -303,3 +303,10 @@ def test_no_line_ends_between_left_and_right():
         lines = break_lines(formula, float(width), len, 2.0)
         for line in lines:
             assert line.text.count(r"\left") == line.text.count(r"\right")
+
+
+def test_the_root_of_a_number_stands_above_the_line():
+    half = sp.sqrt(2) / 2
+    assert text(half, NOTATION) == "√2/2"
+    assert latex(half, NOTATION) == r"\frac{\sqrt{2}}{2}"
+    assert text(-half, NOTATION) == "−√2/2"

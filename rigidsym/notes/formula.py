@@ -104,7 +104,7 @@ class _Walk:
         factors = ordered_factors(sp.Mul.make_args(rest), self.notation)
         below = [_inverted(factor) for factor in factors if _is_reciprocal(factor)]
         above = [factor for factor in factors if not _is_reciprocal(factor)]
-        if below or (len(above) == 1 and _is_name(above[0])):
+        if below or (len(above) == 1 and (_is_name(above[0]) or _is_root(above[0]))):
             return self._quotient(_scaled(coefficient.p, above), _scaled(coefficient.q, below))
         return self._many(_scaled(coefficient, above))
 
@@ -166,6 +166,11 @@ def _inverted(node: sp.Pow) -> sp.Expr:
 
 def _is_name(node: sp.Expr) -> bool:
     return not (node.is_Add or node.is_Mul or node.is_Pow or is_application(node))
+
+
+def _is_root(node: sp.Expr) -> bool:
+    """Whether a node is the root of a number, which stands above the line: √2/2."""
+    return bool(node.is_Pow and node.base.is_Number and node.exp == sp.Rational(1, 2))
 
 
 def _is_multiple(angle: sp.Expr) -> bool:
