@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
 from rigidsym.detective.readings import ANGLE_NAMES
 from rigidsym.detective.samples import SampleError
+from rigidsym.rows.names import plain
 
 Names = tuple[str, ...]
 
@@ -40,10 +40,6 @@ OMEGAS: tuple[Names, ...] = (
 )
 _RATES = ("{}dot", "{}rate", "d{}")
 _NUMBERED_RATES: Names = ("rate1", "rate2", "rate3")
-_UNIT = re.compile(r"[\[(].*?[\])]")
-_GREEK = str.maketrans(
-    {"φ": "phi", "θ": "theta", "ψ": "psi", "α": "alpha", "β": "beta", "γ": "gamma", "ω": "omega"}
-)
 _WITHOUT_HEADER = {
     7: "angles and a quaternion",
     12: "angles and a matrix",
@@ -91,7 +87,7 @@ def by_name(header: Sequence[str]) -> Columns:
     Angles, and quaternions whose names do not tell which is the scalar, keep the order of the
     file. Raises SampleError for what is missing, with the nearest names that are there.
     """
-    names = [_plain(name) for name in header]
+    names = [plain(name) for name in header]
     angles = tuple(sorted(_nearest(ANGLES, names), key=_order(names)))
     attitude = _attitude(names)
     rates, omega = _rates_of(angles, names), _nearest(OMEGAS, names)
@@ -136,12 +132,6 @@ def _scalar_last(names: Names) -> bool | None:
 def _order(names: Sequence[str]) -> Callable[[str], int]:
     """Sorts by the place in the file; what is not there comes last."""
     return lambda name: names.index(name) if name in names else len(names)
-
-
-def _plain(name: str) -> str:
-    """A name of a header without its unit, case, spaces and underscores: `Roll [deg]` is roll."""
-    plain = _UNIT.sub("", name).strip().strip("\"'").translate(_GREEK).lower()
-    return plain.replace("_", "").replace(" ", "").replace("-", "")
 
 
 def _nearest(trios: Iterable[Names], names: Sequence[str]) -> Names:

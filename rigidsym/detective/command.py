@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rigidsym.detective.fit import Progress
 from rigidsym.detective.identify import Identification, identify_file, identify_source
 from rigidsym.detective.readings import ANGLE_NAMES
 from rigidsym.detective.samples import SampleError
 from rigidsym.detective.sources import from_arrays, parts_missing
+from rigidsym.progress import bar
 
 _COUNTS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
 _BRACKETS = str.maketrans("[](){};", "      ,")
@@ -72,19 +70,5 @@ def _numbers(name: str, text: str, faults: list[str]) -> tuple[list[str], list[f
 def _from_path(path: Path, columns: str | None, tolerance: float | None) -> Identification:
     """Samples from a file, with a bar on standard error where that is a terminal."""
     names = None if columns is None else [name.strip() for name in columns.split(",")]
-    with _bar(path.name) as progress:
+    with bar(path.name) as progress:
         return identify_file(path, columns=names, tolerance=tolerance, progress=progress)
-
-
-@contextmanager
-def _bar(label: str) -> Iterator[Progress | None]:
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
-
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(label, total=1.0)
-        yield lambda share: bar.update(task, completed=share)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -15,6 +14,8 @@ from rigidsym.detective.columns import by_name, by_width
 from rigidsym.detective.readings import ANGLE_NAMES
 from rigidsym.detective.samples import Block, SampleError
 from rigidsym.detective.turns import Array
+from rigidsym.errors import DataError
+from rigidsym.rows.text import TextRows, text_of
 
 BLOCK = 16384  # rows that are in memory at once
 SPREAD = 64  # rows that are looked at first
@@ -25,7 +26,6 @@ _SHAPES = {
     "rates": ((3,),),
     "omega": ((3,),),
 }
-_SEPARATORS = (",", ";", "\t", None)  # None: blanks
 
 
 class Source(Protocol):
@@ -197,29 +197,19 @@ def _from_npy(path: Path, array: NDArray[Any], names: Sequence[str] | None) -> S
 
 
 class TextSource:
-    """A text file with one sample a line, between commas, semicolons, tabs or blanks.
-
-    The first line names the columns, unless the user does or it holds numbers. Empty lines are
-    left out.
-    """
+    """A text file with one sample a line; the user may name its columns where it does not."""
 
     def __init__(self, path: Path, names: Sequence[str] | None = None) -> None:
-        self.path = path
+        try:
+            self._text = TextRows(path)
+        except DataError:
+            raise SampleError([f"{path}: no samples"]) from None
         self.coarseness = 0.0
-        self._size = path.stat().st_size
-        with path.open("rb") as file:
-            first = next((line for line in map(_text, file) if line), "")
-        if not first:
-            raise SampleError([f"{path}: no samples"])
-        self._separator = next(s for s in _SEPARATORS if s is None or s in first)
-        fields = first.removeprefix("#").split(self._separator)
-        self._has_header = not all(_is_number(field) for field in fields)
-        if names and len(names) != len(fields):
-            raise SampleError([f"{path}: {len(fields)} columns, but {len(names)} names"])
-        if names or self._has_header:
-            self._columns = by_name(names or fields)
-        else:
-            self._columns = by_width(len(fields))
+        width, header = self._text.width, self._text.names
+        if names and len(names) != width:
+            raise SampleError([f"{path}: {width} columns, but {len(names)} names"])
+        named = names or header
+        self._columns = by_name(named) if named else by_width(width)
         self.names = self._columns.names
         is_matrix = len(self._columns.attitude) == 9
         self.layouts = layouts_of(is_matrix=is_matrix, scalar_last=self._columns.scalar_last)
@@ -228,39 +218,19 @@ class TextSource:
         return f"line {row}"
 
     def blocks(self) -> Iterator[Block]:
-        read, row, found = 0, 0, False
-        with self.path.open("rb") as file:
-            while lines := list(islice(file, BLOCK)):
-                read += sum(map(len, lines))
-                numbered = self._without_header(lines, row)
-                row += len(lines)
-                if numbered:
-                    found = True
-                    yield self._block(numbered, read / self._size)
+        found = False
+        for lines in self._text.lines(rows=BLOCK):
+            found = True
+            yield self._block(lines.numbers, lines.texts, lines.end / self._text.size)
         if not found:
-            raise SampleError([f"{self.path}: no samples"])
+            raise SampleError([f"{self._text.path}: no samples"])
 
-    def _without_header(self, lines: Sequence[bytes], before: int) -> list[tuple[int, str]]:
-        numbered = [(before + k, text) for k, text in enumerate(map(_text, lines), 1) if text]
-        is_start = before == 0 and self._has_header
-        return numbered[1:] if is_start else numbered
-
-    def _block(self, numbered: Sequence[tuple[int, str]], done: float) -> Block:
-        rows, lines = zip(*numbered, strict=True)
+    def _block(self, rows: Sequence[int], lines: Sequence[str], done: float) -> Block:
         try:
-            table = self._numbers(lines)
+            table = self._text.table(lines, self._columns.used)
         except ValueError:
-            raise SampleError(self._faults(numbered)) from None
+            raise SampleError(self._faults(rows, lines)) from None
         return self._as_block(np.array(rows), table, done)
-
-    def _numbers(self, lines: Sequence[str]) -> Array:
-        return np.loadtxt(
-            lines,
-            delimiter=self._separator,
-            comments=None,
-            ndmin=2,
-            usecols=self._columns.used,
-        )
 
     def _as_block(self, rows: NDArray[np.intp], table: Array, done: float) -> Block:
         at = np.cumsum([3, len(self._columns.attitude), len(self._columns.rates)])
@@ -275,55 +245,25 @@ class TextSource:
             done=done,
         )
 
-    def _faults(self, numbered: Sequence[tuple[int, str]]) -> list[str]:
-        """Which fields of these lines are missing or no numbers."""
+    def _faults(self, rows: Sequence[int], lines: Sequence[str]) -> list[str]:
         return [
             f"{self.place(row)}: {fault}"
-            for row, line in numbered
-            for fault in self._faults_of(line)
-        ]
-
-    def _faults_of(self, line: str) -> list[str]:
-        fields = line.split(self._separator)
-        if len(fields) <= max(self._columns.used):
-            return [f"{len(fields)} fields, expected {max(self._columns.used) + 1} or more"]
-        return [
-            f"field {index + 1}: {fields[index].strip()!r} is not a number{_hint(fields[index])}"
-            for index in self._columns.used
-            if not _is_number(fields[index])
+            for row, line in zip(rows, lines, strict=True)
+            for fault in self._text.wrong_with(line, self._columns.used)
         ]
 
     def spread(self) -> Block:
         """Lines from all over the file, found by seeking; those that do not read are left out."""
-        lines: list[tuple[int, str]] = []
-        with self.path.open("rb") as file:
-            head = self._without_header(list(islice(file, SPREAD)), 0)
-            start = file.tell()
-            for offset in np.linspace(start, self._size, SPREAD, endpoint=False).astype(int):
+        first = next(self._text.lines(rows=SPREAD), None)
+        head, start = ((), 0) if first is None else (first.texts, first.end)
+        lines = [*head]
+        with self._text.path.open("rb") as file:
+            for offset in np.linspace(start, self._text.size, SPREAD, endpoint=False).astype(int):
                 file.seek(int(offset))
                 file.readline()  # the rest of a line
-                if text := _text(file.readline()):
-                    lines.append((0, text))
-        good = [(row, line) for row, line in [*head, *lines] if not self._faults_of(line)]
+                lines.append(text_of(file.readline()))
+        used = self._columns.used
+        good = [line for line in lines if line and not self._text.wrong_with(line, used)]
         if not good:
             return next(self.blocks())  # which says what is wrong with them
-        return self._block(good, 0.0)
-
-
-def _text(line: bytes) -> str:
-    return line.decode(errors="replace").removeprefix("\ufeff").strip()
-
-
-def _is_number(field: str) -> bool:
-    """Whether NumPy reads it too, which takes neither 1_000 nor digits beyond ASCII."""
-    try:
-        float(field)
-    except ValueError:
-        return False
-    return field.isascii() and "_" not in field
-
-
-def _hint(field: str) -> str:
-    if "," in field:
-        return "; a decimal takes a point"
-    return "; degrees are written without a sign" if "°" in field else ""
+        return self._block([0] * len(good), good, 0.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +11,9 @@ import numpy as np
 from rigidsym.errors import BodyError, MissingExtra
 from rigidsym.measured.blocks import BLOCK, Block, Cloud, block_of, cloud_of
 from rigidsym.measured.sources import ArraySource, NpySource
+from rigidsym.progress import Progress
 
-_WINDOW = (
-    128 * BLOCK
-)  # particles that a worker takes at once; whole blocks, so that nothing differs
-Progress = Callable[[int, int], None]
+_WINDOW = 128 * BLOCK  # particles that a worker takes at once; whole blocks: nothing differs
 
 
 def cloud_of_dask(array: Any, names: Sequence[str] | None, *, allow: bool = False) -> Cloud:
@@ -64,7 +62,7 @@ def cloud_of_file(
             blocks += found
             done += sum(block.count for block in found)
             if progress is not None:
-                progress(done, total)
+                progress(done / total)
     return cloud_of(blocks, allow=allow)
 
 
@@ -80,7 +78,7 @@ def _blocks(
     source: ArraySource | NpySource, start: int, stop: int | None, first: int
 ) -> list[Block]:
     found = []
-    for masses, places in source.pieces(start, stop):
-        found.append(block_of(masses, places, first))
-        first += places.shape[1]
+    for piece in source.pieces(start, stop):
+        found.append(block_of(piece.masses, piece.places, first))
+        first += piece.places.shape[1]
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +12,7 @@ from rigidsym.measured.axes import principal_axes_of
 from rigidsym.measured.blocks import Block, Cloud, block_of, cloud_of
 from rigidsym.measured.result import Measured
 from rigidsym.measured.sources import ArraySource, Source, source_of
-
-Progress = Callable[[int, int], None]  # particles done, and of how many; 0: not known
+from rigidsym.progress import Progress
 
 
 def inertia_of(
@@ -61,9 +60,9 @@ def measured(cloud: Cloud) -> Measured:
 
 
 def _blocks(source: Source, progress: Progress | None) -> Iterator[Block]:
-    done, total = 0, len(source)
-    for masses, places in source.pieces():
-        yield block_of(masses, places, done)
-        done += places.shape[1]
+    done = 0
+    for piece in source.pieces():
+        yield block_of(piece.masses, piece.places, done)
+        done += piece.places.shape[1]
         if progress is not None:
-            progress(done, total)
+            progress(piece.share)

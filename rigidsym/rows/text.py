@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
@@ -14,10 +15,19 @@ from rigidsym.rows.piece import ROWS, Piece, Table
 _SEPARATORS = (",", ";", "\t", None)  # None: blanks
 
 
+@dataclass(frozen=True, slots=True)
+class Lines:
+    """Some lines that hold rows, and how far they reach."""
+
+    numbers: tuple[int, ...]  # of the lines, the first that was read being 1
+    texts: tuple[str, ...]
+    end: int  # byte at which the next ones begin
+
+
 class TextRows:
     """A text file; its first line names the columns, unless it holds numbers.
 
-    Empty lines are left out.
+    Empty lines, and those that begin with #, are left out.
     """
 
     dtype = np.dtype(np.float64)
@@ -30,50 +40,62 @@ class TextRows:
         if not first:
             raise DataError(f"{path}: no rows")
         self.separator = next(s for s in _SEPARATORS if s is None or s in first)
-        fields = first.removeprefix("#").split(self.separator)
+        fields = first.lstrip("#").split(self.separator)
         self.width = len(fields)
         has_header = not all(map(is_number, fields))
         self.names = tuple(field.strip().strip('"') for field in fields) if has_header else None
 
-    def pieces(self, columns: Sequence[int], start: int = 0, rows: int = ROWS) -> Iterator[Piece]:
-        """As `Rows.pieces`; `start` counts bytes."""
-        end = start
+    def lines(self, start: int = 0, rows: int = ROWS) -> Iterator[Lines]:
+        """The lines from a byte on at which one begins, at most `rows` at a time."""
+        end, count = start, 0
+        is_header = start == 0 and self.names is not None
         with self.path.open("rb") as file:
             file.seek(start)
             while lines := list(islice(file, rows)):
-                first, end = end, end + sum(map(len, lines))
-                texts = [text for text in map(text_of, lines) if text]
-                if first == 0 and self.names is not None:
-                    texts = texts[1:]
-                if texts:
-                    yield Piece(self._table(texts, columns), end, end / self.size)
+                end += sum(map(len, lines))
+                numbered = [(count + k, text) for k, text in enumerate(map(text_of, lines), 1)]
+                count += len(lines)
+                kept = [(number, text) for number, text in numbered if text]
+                if is_header and kept:
+                    kept, is_header = kept[1:], False
+                kept = [(number, text) for number, text in kept if not text.startswith("#")]
+                if kept:
+                    numbers, texts = zip(*kept, strict=True)
+                    yield Lines(numbers, texts, end)
 
-    def _table(self, texts: Sequence[str], columns: Sequence[int]) -> Table:
-        try:
-            return np.loadtxt(
-                texts, delimiter=self.separator, comments=None, ndmin=2, usecols=list(columns)
-            )
-        except ValueError as error:
-            raise DataError(self._fault(columns) or f"{self.path}: {error}") from None
+    def pieces(self, columns: Sequence[int], start: int = 0, rows: int = ROWS) -> Iterator[Piece]:
+        """As `Rows.pieces`; `start` counts bytes."""
+        for lines in self.lines(start, rows):
+            try:
+                table = self.table(lines.texts, columns)
+            except ValueError as error:
+                raise DataError(self._fault(columns) or f"{self.path}: {error}") from None
+            yield Piece(table, lines.end, lines.end / self.size)
+
+    def table(self, texts: Sequence[str], columns: Sequence[int]) -> Table:
+        """The numbers of some columns; raises ValueError where one does not read."""
+        return np.loadtxt(
+            texts, delimiter=self.separator, comments=None, ndmin=2, usecols=list(columns)
+        )
+
+    def wrong_with(self, line: str, columns: Sequence[int]) -> list[str]:
+        """Which fields of a line are missing or no numbers."""
+        fields = line.split(self.separator)
+        if len(fields) <= max(columns):
+            return [f"{len(fields)} fields, expected {self.width}"]
+        return [
+            f"field {place + 1}: {fields[place].strip()!r} is not a number{_hint(fields[place])}"
+            for place in columns
+            if not is_number(fields[place])
+        ]
 
     def _fault(self, columns: Sequence[int]) -> str:
         """The first line of the file that does not read, and why."""
-        with self.path.open("rb") as file:
-            is_header = self.names is not None
-            for number, line in enumerate(map(text_of, file), 1):
-                if line and not is_header and (why := self._wrong_with(line, columns)):
+        for lines in self.lines():
+            for number, line in zip(lines.numbers, lines.texts, strict=True):
+                for why in self.wrong_with(line, columns):
                     return f"{self.path}, line {number}: {why}"
-                is_header = is_header and not line
         return ""
-
-    def _wrong_with(self, line: str, columns: Sequence[int]) -> str:
-        fields = line.split(self.separator)
-        if len(fields) <= max(columns):
-            return f"{len(fields)} fields, expected {self.width}"
-        wrong = [place for place in columns if not is_number(fields[place])]
-        return (
-            f"field {wrong[0] + 1}: {fields[wrong[0]].strip()!r} is not a number" if wrong else ""
-        )
 
 
 def text_of(line: bytes) -> str:
@@ -87,3 +109,9 @@ def is_number(field: str) -> bool:
     except ValueError:
         return False
     return field.isascii() and "_" not in field
+
+
+def _hint(field: str) -> str:
+    if "," in field:
+        return "; a decimal takes a point"
+    return "; degrees are written without a sign" if "°" in field else ""
