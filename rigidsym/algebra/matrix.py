@@ -90,11 +90,14 @@ class RingMatrix:
         return RingMatrix.of(self.ring, [[function(entry) for entry in row] for row in self.rows])
 
     def scale(self, factor: PolyElement) -> RingMatrix:
-        return self.map(lambda entry: entry * factor)
+        dot = self.ring.dot
+        return RingMatrix(
+            self.ring, tuple(tuple(dot(((entry, factor),)) for entry in row) for row in self.rows)
+        )
 
     def dt(self) -> RingMatrix:
         """The time derivative, entry by entry."""
-        return self.map(self.ring.dt)
+        return RingMatrix(self.ring, tuple(tuple(map(self.ring.dt, row)) for row in self.rows))
 
     def is_zero(self) -> bool:
         return not any(self.entries)

@@ -43,7 +43,7 @@ class Presenter:
         self._expressions = _Expressions(generators, self._sums)
         self._weights = _Weights(self._expressions)
         self._matrices: dict[tuple[tuple[Row, ...], PolyElement], sp.ImmutableMatrix] = {}
-        self._products: dict[Product, sp.Expr] = {}
+        self._products: dict[tuple[Monomial, tuple[Product, ...]], sp.Expr] = {}
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
 
     def matrix(
@@ -102,18 +102,21 @@ class Presenter:
         return sp.Add(*(self._product(product) for product in products))
 
     def _product(self, product: Product) -> sp.Expr:
-        known = self._products.get(product)
-        if known is None:
-            known = self._products[product] = self._multiplied(product)
-        return known
-
-    def _multiplied(self, product: Product) -> sp.Expr:
-        powers = list(product.powers)
+        key = product.powers, product.bracket
+        factors = self._products.get(key)
+        if factors is None:
+            factors = self._products[key] = self._multiplied(*key)
         number = product.coefficient
-        factors = [sp.Rational(number.numerator, number.denominator), *self._ratios(powers)]
+        if number == 1:
+            return factors
+        return sp.Rational(number.numerator, number.denominator) * factors
+
+    def _multiplied(self, given: Monomial, bracket: Sequence[Product]) -> sp.Expr:
+        powers = list(given)
+        factors = self._ratios(powers)
         factors += [self._power(place, power) for place, power in enumerate(powers) if power]
-        if product.bracket:
-            factors.append(self._sum(product.bracket))
+        if bracket:
+            factors.append(self._sum(bracket))
         return sp.Mul(*factors)
 
     def _power(self, place: int, power: int) -> sp.Expr:

@@ -16,6 +16,7 @@ from rigidsym.errors import ModelError
 from rigidsym.models.so3 import AXES, TIME, elementary, rodrigues
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
+_NUMBERS = (sp.NumberSymbol, type(sp.I))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -143,14 +144,20 @@ class RotationModel:
         for constant in self.constants:
             if constant.name in moving:
                 raise ModelError(f"{self.name}: {constant} is both a coordinate and a constant")
-        if self.matrix.has(sp.I) or any(c.has(sp.I) for c in self.constraints):
+        numbers = set().union(*(part.atoms(*_NUMBERS) for part in self._parts))
+        if sp.I in numbers:
             raise ModelError(f"{self.name}: a rotation is real; its matrix holds the number i")
-
-        for number in self.matrix.atoms(sp.NumberSymbol) - {sp.pi, sp.E}:
+        for number in numbers - {sp.pi, sp.E}:
             raise ModelError(
                 f"{self.name}: the matrix holds the number {number}, of which the ring knows "
                 f"nothing; expected roots, as in {sp.expand_func(sp.GoldenRatio)}, or a symbol"
             )
+
+    @property
+    def _parts(self) -> tuple[sp.Basic, ...]:
+        """What the rotation is made of; turns are shorter to read than their product."""
+        turns = [part for turn in self.turns for part in (turn.angle, *turn.components)]
+        return (*(turns or [self.matrix]), *self.constraints)
 
     def _check_turns(self) -> None:
         """The matrix is the product of the turns, as it stands or in the ring."""
