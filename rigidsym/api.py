@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, field, fields, replace
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from rigidsym.mechanics import kinematics
@@ -155,4 +156,9 @@ def _derivation(
 
 
 def _values(data: Derivation | Step) -> dict[str, Any]:
-    return {field.name: getattr(data, field.name) for field in fields(data)}
+    return {name: getattr(data, name) for name in _names_of(type(data))}
+
+
+@cache
+def _names_of(kind: type[Derivation] | type[Step]) -> tuple[str, ...]:
+    return tuple(field.name for field in fields(kind))
