@@ -160,5 +160,5 @@ def _values(data: Derivation | Step) -> dict[str, Any]:
 
 
 @cache
-def _names_of(kind: type[Derivation] | type[Step]) -> tuple[str, ...]:
+def _names_of(kind: Any) -> tuple[str, ...]:
     return tuple(field.name for field in fields(kind))
