@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, field, fields, replace
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from rigidsym.mechanics import kinematics
@@ -156,9 +155,8 @@ def _derivation(
 
 
 def _values(data: Derivation | Step) -> dict[str, Any]:
-    return {name: getattr(data, name) for name in _names_of(type(data))}
+    names = _OF_STEP if isinstance(data, Step) else _OF_DERIVATION
+    return {name: getattr(data, name) for name in names}
 
 
-@cache
-def _names_of(kind: Any) -> tuple[str, ...]:
-    return tuple(field.name for field in fields(kind))
+_OF_STEP, _OF_DERIVATION = (tuple(f.name for f in fields(k)) for k in (Step, Derivation))
