@@ -273,6 +273,31 @@ def test_the_result_does_not_replace_what_is_read(motion, table, tmp_path):
         evaluation(motion, VELOCITY, tmp_path / "given.npy", tmp_path / "given.npy")
 
 
+def test_what_no_row_changes_stands_in_every_row(motion, table, tmp_path):
+    """Nine rows are as many as a matrix has entries; each still holds the whole matrix."""
+    np.save(tmp_path / "rates.npy", table[:9, 3:])
+    given = dict(zip(NAMES[:3], (0.1, 0.2, 0.3), strict=True))
+    both = ("angular_velocity_body", "rotation_matrix")
+    work = evaluation(motion, both, tmp_path / "rates.npy", tmp_path / "r.npy", given=given)
+    assert work.run().rows == 9
+    found, module = np.load(tmp_path / "r.npy"), motion.kernels().load()
+    same = module.rotation_matrix((0.1, 0.2, 0.3)).ravel()
+    assert_array_equal(found[:, 3:], np.broadcast_to(same, (9, 9)))
+    velocity = module.angular_velocity_body((0.1, 0.2, 0.3), table[:9, 3:])
+    assert_array_equal(found[:, :3], velocity)
+
+
+def test_what_needs_no_rows_is_refused(motion, table, tmp_path):
+    np.save(tmp_path / "given.npy", table)
+    paths = tmp_path / "given.npy", tmp_path / "r.npy"
+    given = dict.fromkeys(NAMES[:3], 0.1)
+    with pytest.raises(DataError, match="the same for every row"):
+        evaluation(motion, ("rotation_matrix",), *paths, columns=NAMES, given=given)
+    ball = rs.derive("ZXZ", body=rs.principal_moments(1, 1, 1, mass=1))
+    with pytest.raises(DataError, match="inertia_tensor takes no input"):
+        evaluation(ball, ("rotational_energy", "inertia_tensor"), *paths)
+
+
 def test_unknown_numbers_are_refused(motion, table, tmp_path):
     np.save(tmp_path / "given.npy", table)
     with pytest.raises(DataError, match="alpha is no input here"):

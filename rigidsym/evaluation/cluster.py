@@ -10,7 +10,7 @@ from rigidsym.errors import MissingExtra
 from rigidsym.evaluation.work import Work
 from rigidsym.rows.piece import Piece, Table
 
-_AHEAD = 2  # pieces on their way for each worker, so that none waits
+_AHEAD = 2  # pieces on their way for each thread of a worker, so that none waits
 
 
 def on_cluster(address: str, work: Work, pieces: Iterable[Piece]) -> Iterator[tuple[Piece, Table]]:
@@ -23,7 +23,7 @@ def on_cluster(address: str, work: Work, pieces: Iterable[Piece]) -> Iterator[tu
     except ImportError:
         raise MissingExtra("a Dask cluster", "dask") from None
     with Client(address) as client:
-        most = _AHEAD * max(1, len(client.scheduler_info()["workers"]))
+        most = _AHEAD * max(1, sum(client.nthreads().values()))
         waiting: deque[tuple[Piece, Any]] = deque()
         kept = client.scatter(work, broadcast=True)
         for piece in pieces:

@@ -109,6 +109,9 @@ def evaluation(
     if path.resolve() == source.resolve():
         raise DataError(f"{path}: the result would take the place of what is read")
     chosen = motion.select(quantities)
+    for name in quantities:
+        if not chosen.step(name).quantity.inputs:
+            raise DataError(f"{name} takes no input: it is the same for every row")
     inputs = inputs_of(
         chosen,
         quantities,
@@ -117,6 +120,8 @@ def evaluation(
         given=given or {},
         degrees=degrees,
     )
+    if not inputs.columns:
+        raise DataError(f"{source}: nothing of it is used; the results are the same for every row")
     work = Work(
         kernels=chosen.kernels(target),
         calls=tuple((name, chosen.step(name).quantity.inputs) for name in quantities),

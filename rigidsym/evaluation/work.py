@@ -31,8 +31,10 @@ class Work:
         found = []
         for function, names in self.calls:
             arguments = [self.inputs.arguments[name].of(table) for name in names]
-            values = getattr(module, function)(*arguments, threads=self.threads)
-            found.append(values.reshape(len(table), -1))
+            values = np.asarray(getattr(module, function)(*arguments, threads=self.threads))
+            has_rows = any(self.inputs.arguments[name].columns for name in names)
+            rows = values.reshape(len(table) if has_rows else 1, -1)
+            found.append(np.broadcast_to(rows, (len(table), rows.shape[1])))
         return in_units(self.columns, np.concatenate(found, axis=1))
 
 
