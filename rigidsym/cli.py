@@ -54,7 +54,8 @@ def main() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 0
     except OSError as error:
-        click.echo(f"rigidsym: {error}", err=True)
+        place = f"{error.filename}: " if error.filename else ""
+        click.echo(f"rigidsym: {place}{error.strerror or error}", err=True)
         status = 1
     sys.exit(status if isinstance(status, int) else 0)
 

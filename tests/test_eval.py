@@ -249,6 +249,27 @@ def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
 
 
+@pytest.mark.parametrize(
+    ("unit", "degrees", "message"),
+    [("deg", False, "--degrees is missing"), ("rad", True, "--degrees is given")],
+)
+def test_the_unit_in_a_name_is_the_one_read(motion, tmp_path, unit, degrees, message):
+    names = f"phi [{unit}],theta,psi,phi_dot,theta_dot,psi_dot"
+    (tmp_path / "log.csv").write_text(f"{names}\n1,2,3,4,5,6\n", encoding="utf-8")
+    place = tmp_path / "log.csv", tmp_path / "result.npy"
+    with pytest.raises(DataError, match=rf"column phi \[{unit}\]: {message}"):
+        evaluation(motion, VELOCITY, *place, degrees=degrees)
+    evaluation(motion, VELOCITY, *place, degrees=not degrees).run()
+
+
+def test_a_given_that_is_no_number_is_exit_code_2(tmp_path):
+    (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
+    files = tmp_path / "log.csv", "--out", tmp_path / "result.npy"
+    done = _run("ZXZ", *files, "--given", "phi=x")
+    assert done.returncode == 2
+    assert "--given phi=x: expected NAME=NUMBER" in done.stderr
+
+
 def test_a_fault_is_exit_code_1_and_leaves_nothing(tmp_path):
     (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
     done = _run("ZXZ", tmp_path / "log.csv", "--out", tmp_path / "result.npy")

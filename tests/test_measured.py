@@ -128,6 +128,25 @@ def test_other_columns_and_comments_are_left_alone(tmp_path):
         assert (inertia_of(tmp_path / file).inertia == np.diag([0, 2, 2])).all(), file
 
 
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        ("mas,x,y,z", "no column m or mass among mas, x, y, z; is mas the mass?"),
+        ("m [g],x,y,z", r"column m \[g\]: expected kg, got g"),
+        ("m,x,y [mm],z", r"column y \[mm\]: expected m, got mm"),
+    ],
+)
+def test_a_column_that_would_be_misread_is_refused(tmp_path, names, message):
+    (tmp_path / "cloud.csv").write_text(f"{names}\n1,0,0,0\n2,1,0,0\n")
+    with pytest.raises(BodyError, match=message):
+        inertia_of(tmp_path / "cloud.csv")
+
+
+def test_units_that_are_read_may_stand_in_the_names(tmp_path):
+    (tmp_path / "cloud.csv").write_text("Mass [kg],x [m],y (m),Z\n1,0,0,0\n2,3,0,0\n")
+    assert inertia_of(tmp_path / "cloud.csv").centre.tolist() == [2, 0, 0]
+
+
 def test_what_is_no_file_of_numbers_is_a_body_error(tmp_path):
     for file in ("cloud.npy", "cloud.parquet"):
         (tmp_path / file).write_bytes(b"")
@@ -359,3 +378,26 @@ def test_the_command_shows_and_prints_as_json(tmp_path):
     MESHES["sphere"].export(tmp_path / "ball.stl")
     ball = [str(tmp_path / "ball.stl"), "--density", "1000", "--json"]
     assert '"principal_moments"' in CliRunner().invoke(commands, ["inertia", *ball]).output
+
+
+@pytest.mark.parametrize(
+    ("file", "options", "message"),
+    [
+        ("cloud.csv", ["--density", "3"], "holds particles; --density is for a mesh"),
+        ("cloud.csv", ["--scale", "0.001"], "holds particles; --scale is for a mesh"),
+        ("ball.stl", ["--columns", "x,y,z"], "holds a mesh; --columns is for particles"),
+        ("ball.stl", [], "holds a mesh: expected --mass or --density"),
+        ("ball.stl", ["--mass", "-2"], "the mass is -2 kg; expected a positive number"),
+        ("ball.stl", ["--density", "nan"], "the density is nan kg/m³; expected a positive number"),
+    ],
+)
+def test_an_option_that_does_not_fit_is_refused(tmp_path, file, options, message):
+    (tmp_path / "cloud.csv").write_text("m,x,y,z\n1,0,0,0\n2,1,0,0\n")
+    MESHES["sphere"].export(tmp_path / "ball.stl")
+    done = CliRunner().invoke(commands, ["inertia", str(tmp_path / file), *options])
+    assert isinstance(done.exception, BodyError)
+    assert message in str(done.exception)
+
+
+def test_no_zero_is_shown_with_a_sign():
+    assert "-0" not in inertia_of(np.array([[1.0, 0, 0, 0]])).text().replace("-0.", "")

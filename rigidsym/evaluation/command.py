@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from rigidsym.api import derive
-from rigidsym.errors import DataError, ModelError
+from rigidsym.errors import ModelError
 from rigidsym.evaluation.evaluate import Evaluated, Evaluation, evaluation
 from rigidsym.models.rotation import RotationModel
 from rigidsym.progress import Progress, bar
@@ -68,4 +68,4 @@ def _number(text: str) -> tuple[str, float]:
     try:
         return name.strip(), float(number)
     except ValueError:
-        raise DataError(f"--given {text}: expected NAME=NUMBER") from None
+        raise click.UsageError(f"--given {text}: expected NAME=NUMBER") from None

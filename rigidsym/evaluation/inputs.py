@@ -10,7 +10,7 @@ import numpy as np
 from rigidsym.errors import DataError
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.names import offer
-from rigidsym.rows.names import plain
+from rigidsym.rows.names import plain, unit_in
 from rigidsym.rows.piece import Table
 
 _RATES = ("{}_dot", "{}rate", "d{}")
@@ -58,7 +58,8 @@ def inputs_of(
     """The columns for all arguments of some quantities, by their names or else by their order.
 
     `given` holds numbers for components that no column has, such as constants. Raises DataError
-    for a column that is missing, with the nearest names that are there.
+    for a column that is missing, with the nearest names that are there, and for one whose name
+    says degrees or radians where `degrees` says the other.
     """
     wanted = {name for q in quantities for name in derivation.step(q).quantity.inputs}
     arguments = [a for a in derivation.arguments if a.name in wanted]
@@ -70,7 +71,11 @@ def inputs_of(
         raise DataError(
             f"give all of {', '.join(partly[0].names)} as numbers, or none and have them in columns"
         )
-    columns = _by_order(free, width) if names is None else _by_name(free, names)
+    if names is None:
+        columns = _by_order(free, width)
+    else:
+        columns = _by_name(free, names)
+        _check_units(free, [names[place] for place in columns], degrees=degrees)
     return Inputs(columns=columns, arguments=_inputs(arguments, free, given, degrees))
 
 
@@ -128,6 +133,19 @@ def _by_name(arguments: Sequence[Argument], names: Sequence[str]) -> tuple[int, 
             f"no column {', '.join(missing)} among {known}; --columns says which is which"
         )
     return tuple(columns)
+
+
+def _check_units(arguments: Sequence[Argument], names: Sequence[str], *, degrees: bool) -> None:
+    """Raise DataError where the name of a column has a unit of angles that is not the one read."""
+    units = [unit for argument in arguments for unit in argument.units]
+    for name, unit in zip(names, units, strict=True):
+        said = unit_in(name).lower()
+        if is_angle(unit) and said.startswith(("rad",) if degrees else ("deg", "°")):
+            raise DataError(
+                f"column {name.strip()}: "
+                + ("--degrees is given" if degrees else "--degrees is missing")
+                + "; where the name is wrong, --columns gives another"
+            )
 
 
 def _spellings(argument: Argument, place: int) -> list[str]:

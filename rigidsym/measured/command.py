@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
+from rigidsym.errors import BodyError
 from rigidsym.measured.inertia import inertia_of
 from rigidsym.measured.mesh import ENDINGS, mesh_inertia, read_mesh_file
 from rigidsym.measured.result import Measured
@@ -22,12 +24,25 @@ def measure(
 ) -> tuple[Measured, str]:
     """What a file holds as a body, and what was counted in it: particles, or faces.
 
-    Raises BodyError and MissingExtra.
+    Raises BodyError, for options too that are for the other of the two, and MissingExtra.
     """
-    if path.suffix.lower() in ENDINGS:
+    is_mesh = path.suffix.lower() in ENDINGS
+    of_mesh = {"--mass": mass, "--density": density, "--scale": None if scale == 1 else scale}
+    of_particles = {"--columns": columns, "--scheduler": scheduler}
+    if is_mesh:
+        _refuse(of_particles, f"{path} holds a mesh", "particles")
+        if mass is None and density is None:
+            raise BodyError(f"{path} holds a mesh: expected --mass or --density")
         mesh = read_mesh_file(path, scale=scale)
         return mesh_inertia(mesh, mass=mass, density=density, allow=allow), "faces"
+    _refuse(of_mesh, f"{path} holds particles", "a mesh")
     names = None if columns is None else [name.strip() for name in columns.split(",")]
     with bar(path.name) as progress:
         found = inertia_of(path, columns=names, allow=allow, scheduler=scheduler, progress=progress)
     return found, "particles"
+
+
+def _refuse(options: Mapping[str, object], found: str, expected: str) -> None:
+    for option, value in options.items():
+        if value is not None:
+            raise BodyError(f"{found}; {option} is for {expected}")

@@ -66,6 +66,9 @@ def mesh_inertia(
     """
     if (mass is None) == (density is None):
         raise BodyError("mesh: expected either the mass or the density")
+    for what, given, unit in (("mass", mass, "kg"), ("density", density, "kg/m³")):
+        if given is not None and not (np.isfinite(given) and given > 0):
+            raise BodyError(f"mesh: the {what} is {given:g} {unit}; expected a positive number")
     if not allow:
         check_closed(mesh)
     inside = mesh.vertices.mean(axis=0)
@@ -85,8 +88,6 @@ def mesh_inertia(
     second = (own + both) * _SIMPLEX[2] - np.outer(first, first) / volume
     factor = mass / volume if mass is not None else density
     assert factor is not None
-    if not (np.isfinite(factor) and factor > 0):
-        raise BodyError(f"mesh: the density is {factor:g} kg/m³; expected a positive number")
     second = (second + second.T) * (factor / 2)
     inertia = inertia_from(second)
     return Measured(

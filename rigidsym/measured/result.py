@@ -60,7 +60,7 @@ class Measured:
 
 
 def _number(value: float) -> str:
-    return f"{value:.15g}"
+    return f"{value + 0.0:.15g}"  # −0 + 0 is 0
 
 
 def _row(values: Iterable[float]) -> str:
@@ -68,9 +68,9 @@ def _row(values: Iterable[float]) -> str:
 
 
 def _grid(matrix: Array) -> list[str]:
-    rows = [[f"{entry: .12g}" for entry in row] for row in matrix]
+    rows = [[f"{entry + 0.0: .12g}" for entry in row] for row in matrix]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [
-        "  " + "  ".join(entry.ljust(width) for entry, width in zip(row, widths, strict=True))
+        "  " + "  ".join(e.ljust(width) for e, width in zip(row, widths, strict=True)).rstrip()
         for row in rows
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import mmap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from rigidsym.errors import BodyError, DataError
 from rigidsym.measured.blocks import BLOCK, Array
 from rigidsym.names import offer
+from rigidsym.rows.names import plain, unit_in
 from rigidsym.rows.sources import rows_of
 
 DEFAULT = ("m", "x", "y", "z")
@@ -39,16 +41,26 @@ class Columns:
 
     @classmethod
     def named(cls, names: Sequence[str]) -> Columns:
-        """By the names of the columns; raises BodyError where x, y or z is missing."""
-        plain = [_SPELLINGS.get(name.strip().lower(), name.strip().lower()) for name in names]
-        for name in ("m", *_AXES):
-            if plain.count(name) > 1:
+        """By the names of the columns; others are left out.
+
+        Raises BodyError where x, y or z is missing, where no column is the mass but one looks like
+        it, and for units that are not m and kg.
+        """
+        bare = [_SPELLINGS.get(name, name) for name in map(plain, names)]
+        for name in DEFAULT:
+            if bare.count(name) > 1:
                 raise BodyError(f"two columns are named {name}")
         for name in _AXES:
-            if name not in plain:
-                raise BodyError(f"no column {name} among {', '.join(names)}; {offer(name, plain)}")
-        x, y, z = map(plain.index, _AXES)
-        return cls(mass=plain.index("m") if "m" in plain else None, place=(x, y, z))
+            if name not in bare:
+                raise BodyError(f"no column {name} among {', '.join(names)}; {offer(name, bare)}")
+        if "m" not in bare and (near := get_close_matches("mass", bare, n=1)):
+            raise BodyError(f"no column m or mass among {', '.join(names)}; is {near[0]} the mass?")
+        for name, short in zip(names, bare, strict=True):
+            unit, expected = unit_in(name), "kg" if short == "m" else "m"
+            if short in DEFAULT and unit not in ("", expected):
+                raise BodyError(f"column {name}: expected {expected}, got {unit}")
+        x, y, z = map(bare.index, _AXES)
+        return cls(mass=bare.index("m") if "m" in bare else None, place=(x, y, z))
 
     @classmethod
     def of_width(cls, width: int, names: Sequence[str] | None) -> Columns:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-_UNIT = re.compile(r"[\[(].*?[\])]")
+_UNIT = re.compile(r"[\[(](.*?)[\])]")
 _GREEK = str.maketrans(
     {"φ": "phi", "θ": "theta", "ψ": "psi", "α": "alpha", "β": "beta", "γ": "gamma", "ω": "omega"}
 )
@@ -14,3 +14,9 @@ def plain(name: str) -> str:
     """A name without its unit, quotes, case, spaces, hyphens and underscores."""
     bare = _UNIT.sub("", name).strip().strip("\"'").translate(_GREEK).lower()
     return bare.replace("_", "").replace(" ", "").replace("-", "")
+
+
+def unit_in(name: str) -> str:
+    """The unit that stands in a name, as written: deg of `Roll [deg]`; empty without one."""
+    found = _UNIT.search(name)
+    return found[1].strip() if found else ""
