@@ -49,7 +49,7 @@ def test_derive_shows_the_lecture_and_writes_its_files(tmp_path):
     }
 
 
-@pytest.mark.parametrize("spelling", ["313", "ZXZ", "z(phi) x(theta) z(psi)"])
+@pytest.mark.parametrize("spelling", ["313", "z(phi) x(theta) z(psi)"])
 def test_spellings_of_one_sequence_write_the_same_files(tmp_path, spelling):
     call("derive", spelling, "--out", "a", cwd=tmp_path)
     call("derive", "ZXZ", "--out", "b", cwd=tmp_path)

@@ -221,7 +221,7 @@ def test_the_rotation_vector_is_accurate_at_every_length(length, dtype):
     """Within 4 eps up to one radian; from there the rounding of n counts as eps n."""
     functions, eps = kernels("rotation_vector"), float(np.finfo(dtype).eps)
     random = np.random.default_rng(int(1000 * length))
-    for axis in (random.normal(size=3), np.array([0, 1.0, 0]), np.array([-0.6, 0, 0.8])):
+    for axis in (random.normal(size=3), np.array([0, 1.0, 0])):
         v = (length * axis / np.linalg.norm(axis)).astype(dtype)
         rate, second = random.normal(size=(2, 3)).astype(dtype)
         exact = rotation_vector_truth(v, rate, second)
