@@ -72,7 +72,7 @@ def test_a_folder_without_templates_is_an_error(tmp_path: Path):
 
 def test_the_shipped_templates_are_short():
     for name in resources.names("templates", ".jinja"):
-        assert len(resources.text("templates", f"{name}.jinja").splitlines()) < 250
+        assert len(resources.text("templates", f"{name}.jinja").splitlines()) < 200
 
 
 # --- commands ---
