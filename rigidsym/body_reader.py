@@ -7,9 +7,11 @@ derivation stays exact and its formulas short.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from itertools import chain, count
 from math import isfinite
 from pathlib import Path
 
@@ -24,6 +26,7 @@ from rigidsym.toml_lines import Path as Place
 
 PARAMETER_KEYS = ("positive", "about", "unit", "value")
 OF_FILES = ("mesh", "particles", "columns", "scale", "density")  # keys of bodies in files
+_WORD = re.compile(r"[^\W\d]\w*")
 A_NUMBER = 'a number, or an expression in quotes such as "2*a"'
 
 
@@ -34,6 +37,8 @@ class Declared:
         self._parameters: dict[str, Parameter] = {}
         self.files: dict[Place, Mapping[str, object]] = {}  # what they hold, by their tables
         self._notes: dict[str, tuple[str, str]] = {}  # what a name stands for, and its unit
+        self._taken: set[str] = set()  # names in the file, which no number may be given
+        self._numbers: dict[str, float] = {}  # what numbers were named
 
     def read(self, table: Table) -> None:
         """The tables of [parameters]: A = { positive = true, about = "...", unit = "kg m^2" }."""
@@ -50,16 +55,37 @@ class Declared:
             except BodyError as error:
                 table.fault(str(error), key)
 
+    def take_names(self, data: object) -> None:
+        """Note all words in the texts of a table, that a number is not named like one of them."""
+        if isinstance(data, str):
+            self._taken.update(_WORD.findall(data))
+        elif isinstance(data, Mapping):
+            for entry in data.values():
+                self.take_names(entry)
+        elif isinstance(data, list):
+            for entry in data:
+                self.take_names(entry)
+
     def symbol(self, name: str) -> sp.Symbol:
         """The symbol of a name in an expression; raises ExpressionError for what names nothing."""
         return sp.Symbol(check_name(name))
 
     def measured(self, slot: str, value: float, *, positive: bool) -> sp.Symbol:
-        """The parameter that stands for a number in a place; raises BodyError for a wrong one."""
-        self._parameters[slot] = Parameter(
-            symbol=sp.Symbol(slot), positive=positive or value > 0, value=float(value)
+        """The parameter that stands for a number in a place; raises BodyError for a wrong one.
+
+        It bears the name of the slot, or one like it where that has another meaning or value.
+        """
+        taken = self._taken | self._parameters.keys() - self._numbers.keys()
+        name = next(
+            name
+            for name in chain([slot], (f"{slot}_{k}" for k in count(2)))
+            if name not in taken and self._numbers.get(name, value) == value
         )
-        return sp.Symbol(slot)
+        self._numbers[name] = value
+        self._parameters[name] = Parameter(
+            symbol=sp.Symbol(name), positive=positive or value > 0, value=float(value)
+        )
+        return sp.Symbol(name)
 
     def without_files(self, data: object, at: Place) -> object:
         """The data at a path, with what was read from files in the place of their names."""

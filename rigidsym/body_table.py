@@ -31,6 +31,7 @@ def read_body(body: Table, parameters: Table | None, name: str, folder: Path) ->
     Paths in it start from `folder`.
     """
     declared = Declared()
+    declared.take_names(body.data)
     if parameters is not None:
         declared.read(parameters)
     kinds = [kind for kind in _KINDS if body.value(kind) is not None]

@@ -117,7 +117,8 @@ def numbers_of(body: RigidBody) -> dict[str, object]:
     def rounded(entries: Iterable[sp.Expr]) -> list[float]:
         return [float(entry.xreplace(values).evalf(_DIGITS)) for entry in entries]
 
-    inertia = rounded(body.inertia)
+    upper = (body.inertia[min(i, j), max(i, j)] for i in range(3) for j in range(3))
+    inertia = rounded(upper)
     rows = [inertia[k : k + 3] for k in (0, 3, 6)]
     (mass,) = rounded([body.mass])
     return _cleaned(mass, rounded(body.centre), rows)

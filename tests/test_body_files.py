@@ -52,6 +52,36 @@ def test_numbers_with_a_point_are_values_of_parameters():
     assert {str(p.symbol): p.value for p in body.parameters} == {"M": 3.25, "A": 1.5}
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('[body]\nprincipal_moments = [1.5, "A", 2.5]', sp.diag(1.5, A, 2.5)),
+        ('[body]\nprincipal_moments = ["C", "C", 2.5]', sp.diag(C, C, 2.5)),
+        (
+            '[body]\nshape = "cylinder"\nradius = "h"\nheight = 1.5\nmass = 12',
+            sp.diag(3 * sp.Symbol("h") ** 2 + 2.25, 3 * sp.Symbol("h") ** 2 + 2.25, 0)
+            + sp.diag(0, 0, 6 * sp.Symbol("h") ** 2),
+        ),
+        (
+            "[body]\nprincipal_moments = [1.5, 1.5, 2.5]\n[parameters]\nA = { value = 9.0 }",
+            sp.diag(1.5, 1.5, 2.5),
+        ),
+    ],
+)
+def test_a_number_takes_no_name_that_means_something_else(text, expected):
+    body = read(text).body
+    assert body is not None
+    rest = (body.in_numbers(body.inertia) - expected).applyfunc(sp.expand)
+    assert rest.is_zero_matrix
+
+
+def test_numbers_of_a_tensor_that_differ_across_the_diagonal_are_refused():
+    (fault,) = faults_of(
+        "[body]\nmass = 2.0\ninertia = [[1.5, 0.1, 0], [0.2, 2.5, 0], [0, 0, 2.6]]"
+    )
+    assert "not symmetric: I_xy − I_yx = -0.1" in fault
+
+
 def test_parameters_are_described_by_the_file():
     body = read(
         """

@@ -199,7 +199,3 @@ ORTHOGONAL_AXES = Markup(
 )
 CHARACTERISTIC = Markup(r"\det(\mathbf{I}' - I_k\mathbf{1}) = 0", "det(I′ − Iₖ 1) = 0")
 ELLIPSOID = Markup(r"a_k^2\,I_k = 1", "aₖ² Iₖ = 1")
-TRIANGLE = Markup(
-    r"\operatorname{tr}\mathbf{I}' - 2 I'_{zz} = 2\int (z'-c_z)^2\,dm",
-    "tr I′ − 2 I′_zz = 2 ∫ (z′ − c_z)² dm",
-)

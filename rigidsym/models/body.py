@@ -104,11 +104,15 @@ class RigidBody:
                 places = _AXES[row] + _AXES[column], _AXES[column] + _AXES[row]
                 raise BodyError(
                     f"{self.name}: the inertia tensor is not symmetric: "
-                    f"I_{places[0]} − I_{places[1]} = {left}"
+                    f"I_{places[0]} − I_{places[1]} = {_short(self.in_numbers(left))}"
                 )
 
     def __str__(self) -> str:
         return self.name
+
+
+def _short(value: sp.Expr) -> str:
+    return f"{float(value):g}" if value.is_Float else str(value)
 
 
 def principal_moments(
