@@ -62,7 +62,7 @@ def _solids() -> list[str]:
 
 def _quantities() -> list[str]:
     return [
-        f"{quantity.name:<34} {_padded(quantity.symbol.text, 9)} {quantity.about}"
+        f"{quantity.name:<34} {_padded(quantity.symbol.text, 15)} {quantity.about}"
         for table in (quantities(passive=False), INERTIA_QUANTITIES, ENERGY_QUANTITIES)
         for quantity in table.values()
     ]

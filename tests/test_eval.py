@@ -288,6 +288,13 @@ def test_what_is_no_table_of_numbers_is_refused(tmp_path):
             rows_of(path)
 
 
+@pytest.mark.parametrize(("content", "found"), [(b"x", "another kind of file"), (b"", "an empty")])
+def test_a_file_that_is_no_npy_is_named_without_advice_on_pickles(tmp_path, content, found):
+    (tmp_path / "log.npy").write_bytes(content)
+    with pytest.raises(DataError, match=rf"log\.npy: not an NPY file of numbers, but {found}"):
+        rows_of(tmp_path / "log.npy")
+
+
 def test_the_result_does_not_replace_what_is_read(motion, table, tmp_path):
     np.save(tmp_path / "given.npy", table)
     with pytest.raises(DataError, match="what is read"):

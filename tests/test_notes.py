@@ -14,7 +14,7 @@ from rigidsym.models.catalogue import EulerAngles
 from rigidsym.models.rotation import Citation, RotationModel
 from rigidsym.models.so3 import elementary, time_function
 from rigidsym.notes.document import Document, Equation, Paragraph, Table
-from rigidsym.notes.entries import entry_names
+from rigidsym.notes.entries import entry_names, indexed
 from rigidsym.notes.escape import escape
 from rigidsym.notes.measure import columns
 from rigidsym.notes.note import Note, note
@@ -243,6 +243,11 @@ def test_what_idle_rates_leave_determined():
     assert kept(0, 0, 1) == [a]
     assert kept(1, 1, 0) == [rates[0] - rates[1], rates[2]]  # they leave the place b = 0
     assert kept(sp.sqrt(2), 0, 1) == []
+
+
+def test_the_entries_of_a_listed_symbol_are_what_it_lists():
+    names = indexed(Markup(r"\left(k_x, k_y, k_z\right)", "(k_x, k_y, k_z)"), (3,))
+    assert [(name.latex, name.text) for name in names] == [("k_x",) * 2, ("k_y",) * 2, ("k_z",) * 2]
 
 
 def test_names_of_entries():

@@ -15,6 +15,7 @@ from rigidsym.detective.readings import ANGLE_NAMES
 from rigidsym.detective.samples import Block, SampleError
 from rigidsym.detective.turns import Array
 from rigidsym.errors import DataError
+from rigidsym.rows.npy import mapped
 from rigidsym.rows.text import TextRows, text_of
 
 BLOCK = 16384  # rows that are in memory at once
@@ -175,9 +176,9 @@ def from_file(path: Path, columns: Sequence[str] | None = None) -> Source:
     if path.suffix.lower() != ".npy":
         return TextSource(path, columns)
     try:
-        array = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (ValueError, EOFError) as error:
-        raise SampleError([f"{path}: not an NPY file of numbers ({error})"]) from error
+        array = mapped(path)
+    except DataError as error:
+        raise SampleError([str(error)]) from None
     return _from_npy(path, array, columns)
 
 

@@ -16,6 +16,7 @@ from rigidsym.errors import BodyError, DataError
 from rigidsym.measured.blocks import BLOCK, Array
 from rigidsym.names import offer
 from rigidsym.rows.names import plain, unit_in
+from rigidsym.rows.npy import mapped
 from rigidsym.rows.sources import rows_of
 
 DEFAULT = ("m", "x", "y", "z")
@@ -124,14 +125,12 @@ class NpySource:
 
     def __init__(self, path: Path, names: Sequence[str] | None = None) -> None:
         try:
-            mapped = np.load(path, mmap_mode="r", allow_pickle=False)
-        except (ValueError, EOFError) as error:
-            raise BodyError(f"{path}: not an NPY file of numbers: {error}") from None
-        if not isinstance(mapped, np.memmap):
-            raise BodyError(f"{path}: expected one array, in the format NPY")
-        self._map: mmap.mmap | None = getattr(mapped, "_mmap", None)
-        self._source = ArraySource(mapped, names)
-        self._row_bytes = mapped.itemsize * (mapped.shape[1] if mapped.ndim == 2 else 1)
+            array = mapped(path)
+        except DataError as error:
+            raise BodyError(str(error)) from None
+        self._map: mmap.mmap | None = getattr(array, "_mmap", None)
+        self._source = ArraySource(array, names)
+        self._row_bytes = array.itemsize * (array.shape[1] if array.ndim == 2 else 1)
 
     def __len__(self) -> int:
         return len(self._source)

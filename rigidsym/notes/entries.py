@@ -11,6 +11,8 @@ _BOLD = re.compile(r"\\(?:mathbf|boldsymbol)\{([^{}]*)\}")
 _RATE = re.compile(r"\\frac\{d(\w|\\[A-Za-z]+)\}\{dt\}")
 _RATE_TEXT = re.compile(r"d(\w)(′?)/dt")
 _INDEX = re.compile(r"(.*[^}])_(\w)")  # an index that the symbol has already
+_LIST = re.compile(r"\((\w+(?:, \w+)+)\)")
+_LIST_LATEX = re.compile(r"\\left\((.*)\\right\)")
 _LETTER = re.compile(r"(?:\w|\\[A-Za-z]+|\\dot\{(?:\w|\\[A-Za-z]+)\})'?")
 _LETTER_TEXT = re.compile(r"\w\u0307?′?")
 RESIDUAL = Markup(r"\boldsymbol{\Delta}", "Δ")  # what is left over of a claim
@@ -37,7 +39,10 @@ def _argument_name(quantity: str) -> str:
 
 
 def indexed(symbol: Markup, shape: tuple[int, ...]) -> tuple[Markup, ...]:
-    """The symbol with the index of each entry, in light face."""
+    """The symbol with the index of each entry, in light face; (a₁, a₂, a₃) lists its own."""
+    if listed := _LIST.fullmatch(symbol.text):
+        names = _LIST_LATEX.sub(r"\1", symbol.latex).split(", ")
+        return tuple(map(Markup, names, listed[1].split(", ")))
     stem, own = _plain_letter(symbol), Markup("", "")
     indexed_already = _INDEX.fullmatch(symbol.text)
     if indexed_already:

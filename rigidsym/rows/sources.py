@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from rigidsym.errors import DataError, MissingExtra
+from rigidsym.rows.npy import mapped
 from rigidsym.rows.piece import ROWS, Piece, Rows
 from rigidsym.rows.text import TextRows
 
@@ -37,12 +38,9 @@ class NpyRows:
     names: tuple[str, ...] | None = None
 
     def __init__(self, path: Path) -> None:
-        try:
-            array = np.load(path, mmap_mode="r", allow_pickle=False)
-        except (ValueError, EOFError) as error:
-            raise DataError(f"{path}: not an NPY file of numbers ({error})") from None
-        if not isinstance(array, np.memmap) or array.ndim != 2 or array.dtype.kind not in "fiu":
-            found = f"{getattr(array, 'dtype', 'several arrays')} {getattr(array, 'shape', '')}"
+        array = mapped(path)
+        if array.ndim != 2 or array.dtype.kind not in "fiu":
+            found = f"{array.dtype} {array.shape}"
             raise DataError(f"{path}: expected numbers of shape (rows, columns), got {found}")
         self._array = array
         self._map: mmap.mmap | None = getattr(array, "_mmap", None)
