@@ -315,6 +315,19 @@ def test_what_no_row_changes_stands_in_every_row(motion, table, tmp_path):
     assert_array_equal(found[:, :3], velocity)
 
 
+def test_the_body_of_a_derivation_file_is_known(table, tmp_path):
+    text = '[rotation]\nsequence = "ZXZ"\n[body]\nmass = 3\nprincipal_moments = [1.5, "B", 2.5]\n'
+    (tmp_path / "top.toml").write_text(text, encoding="utf-8")
+    np.save(tmp_path / "log.npy", table)
+    options = ("--quantity", "rotational_energy", "--given", "B=2.0")
+    paths = (tmp_path / "top.toml", tmp_path / "log.npy")
+    done = _run(*paths, "--out", tmp_path / "r.npy", *options)
+    assert done.returncode == 0, done.stderr
+    turned = rs.derive("ZXZ").kernels().load().angular_velocity_body(table[:, :3], table[:, 3:])
+    energy = 0.5 * turned**2 @ (1.5, 2.0, 2.5)
+    np.testing.assert_allclose(np.load(tmp_path / "r.npy")[:, 0], energy, rtol=1e-13)
+
+
 def test_what_needs_no_rows_is_refused(motion, table, tmp_path):
     np.save(tmp_path / "given.npy", table)
     paths = tmp_path / "given.npy", tmp_path / "r.npy"

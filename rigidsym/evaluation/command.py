@@ -7,9 +7,10 @@ from pathlib import Path
 
 import click
 
-from rigidsym.api import derive
+from rigidsym.api import Motion, derive
 from rigidsym.errors import ModelError
 from rigidsym.evaluation.evaluate import Evaluated, Evaluation, evaluation
+from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel
 from rigidsym.progress import Progress, bar
 from rigidsym.rotations import rotation_from
@@ -28,14 +29,19 @@ def evaluated(
     threads: int,
     scheduler: str | None,
 ) -> Evaluated:
-    """Evaluate quantities of a rotation, or of a derivation file, for each row of a file."""
+    """Evaluate quantities of a rotation, or of a derivation file, for each row of a file.
+
+    The numbers of the file's body are known; `given` goes before them.
+    """
+    model, body = _subject(rotation)
+    motion = derive(model, only=quantities, body=body)
     work = evaluation(
-        derive(_model(rotation), only=quantities),
+        motion,
         quantities,
         source,
         path,
         columns=None if columns is None else [name.strip() for name in columns.split(",")],
-        given=dict(map(_number, given)),
+        given=_known(motion, quantities) | dict(map(_number, given)),
         degrees=degrees,
         threads=threads,
         scheduler=scheduler,
@@ -52,15 +58,24 @@ def _run(work: Evaluation, progress: Progress | None) -> Evaluated:
         raise
 
 
-def _model(rotation: str) -> RotationModel:
+def _subject(rotation: str) -> tuple[RotationModel, RigidBody | None]:
+    """The rotation, and the body that turns so where a derivation file has one."""
     if not rotation.endswith(".toml"):
-        return rotation_from(rotation)
+        return rotation_from(rotation), None
     from rigidsym.spec import read_file
 
-    models = read_file(rotation).models
-    if len(models) != 1:
-        raise ModelError(f"{rotation} has {len(models)} rotations; expected one")
-    return models[0]
+    spec = read_file(rotation)
+    if len(spec.models) != 1:
+        raise ModelError(f"{rotation} has {len(spec.models)} rotations; expected one")
+    return spec.models[0], spec.body
+
+
+def _known(motion: Motion, quantities: Sequence[str]) -> dict[str, float]:
+    """The parameters of the body that have a value, where a quantity takes them."""
+    taken = {name for quantity in quantities for name in motion.step(quantity).quantity.inputs}
+    if motion.body is None or "parameters" not in taken:
+        return {}
+    return {p.symbol.name: p.value for p in motion.body.parameters if p.value is not None}
 
 
 def _number(text: str) -> tuple[str, float]:
