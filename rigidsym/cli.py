@@ -134,19 +134,21 @@ def run(files: tuple[str, ...], out: Path, pdf: bool, as_json: bool) -> None:
 
 
 @commands.command()
-@click.argument("asked", nargs=-1, required=True, metavar="ROTATION|FILE.c...")
+@click.argument("asked", nargs=-1, required=True, metavar="ROTATION|FILE...")
 @TEMPLATES
 @OUT
 def build(asked: tuple[str, ...], out: Path) -> None:
     """Compile functions in C into Python modules, NAME_c.py.
 
-    Given a rotation, its C is written first, as by derive --target c; given a file, the others
-    of its derivation stand beside it. Exit code 4 without a C compiler; what is written stays.
+    Given a rotation or a derivation FILE, its C is written first, as by --target c; given
+    NAME.c, the others of its derivation stand beside it. Exit code 4 without a C compiler; what
+    is written stays.
     """
     from rigidsym.building import built
 
     for each in asked:
-        click.echo(built(each, out))
+        for module in built(each, out):
+            click.echo(module)
 
 
 @commands.command()

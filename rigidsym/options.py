@@ -143,8 +143,15 @@ def as_chosen(spec: DerivationSpec) -> DerivationSpec:
 
 def _derivatives(spec: DerivationSpec, texts: Iterable[str]) -> tuple[str, ...]:
     """Those of the specification, then those of the command line, each once."""
+    from rigidsym.errors import QuantityError
     from rigidsym.kernels.derivatives import read_requests
+    from rigidsym.names import offer
+    from rigidsym.spec import QUANTITIES
 
+    for request in read_requests(texts := tuple(texts)):
+        if request.quantity not in QUANTITIES:
+            near = offer(request.quantity, QUANTITIES)
+            raise QuantityError(f"--derivative: no quantity {request.quantity!r}; {near}")
     return tuple(map(str, read_requests([*spec.derivatives, *texts])))
 
 

@@ -280,3 +280,11 @@ def test_the_command_line_adds_to_a_file(tmp_path):
     text = (tmp_path / "a" / "a.py").read_text()
     for name in ("jacobian_q", "jvp_q_dot", "vjp_q"):
         assert f'"angular_velocity_body_{name}",' in text
+
+
+def test_an_unknown_quantity_on_the_command_line_is_a_fault_of_usage(tmp_path):
+    options = ["--derivative", "angular_velocity:q", "--out", str(tmp_path)]
+    done = CliRunner().invoke(commands, ["derive", "ZXZ", *options])
+    assert isinstance(done.exception, QuantityError)
+    assert "--derivative: no quantity 'angular_velocity'; did you mean" in str(done.exception)
+    assert not list(tmp_path.iterdir())

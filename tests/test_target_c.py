@@ -160,6 +160,9 @@ def test_build_takes_a_rotation_and_a_file_and_says_what_is_missing(tmp_path):
     )
     folder = tmp_path / "quaternion"
     assert run(sys.executable, "-c", code, cwd=folder).startswith("[[1.0, 0.0, 0.0], [0.0")
+    (tmp_path / "mine.toml").write_text('[rotation]\nsequence = "z(phi)"\n')
+    made = call("build", "mine.toml", "--out", ".", cwd=tmp_path).stdout.strip()
+    assert made == "mine/mine_c.py"
     (folder / "quaternion.h").unlink()
     wrong = call("build", "quaternion/quaternion.c", cwd=tmp_path, status=2).stderr
     assert wrong.startswith("rigidsym: quaternion/quaternion.h: not there;")
