@@ -339,6 +339,16 @@ def test_what_needs_no_rows_is_refused(motion, table, tmp_path):
         evaluation(ball, ("rotational_energy", "inertia_tensor"), *paths)
 
 
+@pytest.mark.parametrize("marks", ["", "{}", "[]", '{"marks": {"rows": 1}, "asked": ""'])
+def test_marks_that_do_not_read_begin_anew(motion, table, expected, tmp_path, marks):
+    np.save(tmp_path / "given.npy", table)
+    result = tmp_path / "result.npy"
+    (tmp_path / "result.npy.part").write_bytes(b"half")
+    (tmp_path / "result.npy.part.json").write_text(marks, encoding="utf-8")
+    assert evaluation(motion, VELOCITY, tmp_path / "given.npy", result).run().resumed == 0
+    assert_array_equal(np.load(result), expected)
+
+
 def test_unknown_numbers_are_refused(motion, table, tmp_path):
     np.save(tmp_path / "given.npy", table)
     with pytest.raises(DataError, match="alpha is no input here"):

@@ -98,8 +98,7 @@ def test_columns_by_name_in_every_format(tmp_path):
     from pyarrow import parquet
 
     table = rows(30)
-    mixed = table[:, [3, 0, 2, 1]]
-    names = ["z", "mass", "y", "x"]
+    mixed, names = table[:, [3, 0, 2, 1]], ["z", "mass", "y", "x"]
     np.save(tmp_path / "plain.npy", mixed)
     np.save(
         tmp_path / "named.npy",
@@ -108,7 +107,8 @@ def test_columns_by_name_in_every_format(tmp_path):
     np.savetxt(tmp_path / "cloud.csv", mixed, delimiter=",", header=",".join(names), fmt="%.17g")
     np.savetxt(tmp_path / "blanks.txt", mixed, header=" ".join(names), fmt="%.17g", comments="")
     parquet.write_table(
-        pyarrow.table({n: mixed[:, k] for k, n in enumerate(names)}), tmp_path / "cloud.parquet"
+        pyarrow.table({n: mixed[:, k] for k, n in enumerate(names)} | {"name": ["ball"] * 30}),
+        tmp_path / "cloud.parquet",
     )
     expected = inertia_of(table).inertia
     assert (inertia_of(tmp_path / "plain.npy", columns=names).inertia == expected).all()
@@ -117,34 +117,9 @@ def test_columns_by_name_in_every_format(tmp_path):
 
 
 def test_other_columns_and_comments_are_left_alone(tmp_path):
-    pyarrow = pytest.importorskip("pyarrow")
-    from pyarrow import parquet
-
     text = "# x,y,z,name\n\n# two balls\n0,0,0,first\n2,0,0,second\n"
     (tmp_path / "cloud.csv").write_text(text)
-    columns = {"x": [0, 2], "name": ["first", "second"], "y": [0, 0], "z": [0, 0]}
-    parquet.write_table(pyarrow.table(columns), tmp_path / "cloud.parquet")
-    for file in ("cloud.csv", "cloud.parquet"):
-        assert (inertia_of(tmp_path / file).inertia == np.diag([0, 2, 2])).all(), file
-
-
-@pytest.mark.parametrize(
-    ("names", "message"),
-    [
-        ("mas,x,y,z", "no column m or mass among mas, x, y, z; is mas the mass?"),
-        ("m [g],x,y,z", r"column m \[g\]: expected kg, got g"),
-        ("m,x,y [mm],z", r"column y \[mm\]: expected m, got mm"),
-    ],
-)
-def test_a_column_that_would_be_misread_is_refused(tmp_path, names, message):
-    (tmp_path / "cloud.csv").write_text(f"{names}\n1,0,0,0\n2,1,0,0\n")
-    with pytest.raises(BodyError, match=message):
-        inertia_of(tmp_path / "cloud.csv")
-
-
-def test_units_that_are_read_may_stand_in_the_names(tmp_path):
-    (tmp_path / "cloud.csv").write_text("Mass [kg],x [m],y (m),Z\n1,0,0,0\n2,3,0,0\n")
-    assert inertia_of(tmp_path / "cloud.csv").centre.tolist() == [2, 0, 0]
+    assert (inertia_of(tmp_path / "cloud.csv").inertia == np.diag([0, 2, 2])).all()
 
 
 def test_what_is_no_file_of_numbers_is_a_body_error(tmp_path):
@@ -175,6 +150,7 @@ def with_entry(row: int, column: int, value: float) -> np.ndarray:
         (with_entry(7, 0, -1.0), r"a particle has the mass -1 kg; expected none that is negative"),
         (rows(20) * (-1, 1, 1, 1), r"a particle has the mass"),
         (rows(20) * (0, 1, 1, 1), r"the total mass is 0 kg; expected a positive mass"),
+        (np.tile([1e308, 0, 0, 0], (3, 1)), r"the total mass is inf kg; expected a positive mass"),
         (rows(20)[:0], r"expected at least one particle, got none"),
         (rows(20)[:, :2], r"expected 3 columns \(x, y, z\) or 4 \(m, x, y, z\), got 2"),
         (rows(20) * (1, 1e200, 1, 1), r"too large for double precision"),

@@ -34,8 +34,11 @@ class Draft:
         """Where to go on; from the beginning where there is no draft, or one of other work."""
         if not self._marks.is_file() or not self._rows.exists():
             return Marks()
-        kept = json.loads(self._marks.read_text(encoding="utf-8"))
-        return Marks(**kept["marks"]) if kept["asked"] == self._asked else Marks()
+        try:
+            kept = json.loads(self._marks.read_text(encoding="utf-8"))
+            return Marks(**kept["marks"]) if kept["asked"] == self._asked else Marks()
+        except (ValueError, KeyError, TypeError):  # another program's file, or half of one
+            return Marks()
 
     def save(self, marks: Marks) -> None:
         """To be called when the rows are in the draft."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import fsum
+from math import fsum, inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,7 +91,7 @@ def cloud_of(blocks: Iterable[Block], *, allow: bool = False) -> Cloud:
     if lightest < 0 and not allow:
         raise BodyError(f"a particle has the mass {lightest:g} kg; expected none that is negative")
     mass = fsum(block.mass for block in found)
-    if not mass > 0:
+    if not 0 < mass < inf:
         raise BodyError(f"the total mass is {mass:g} kg; expected a positive mass")
     masses = np.array([block.mass for block in found])
     abouts = np.array([block.about for block in found])
