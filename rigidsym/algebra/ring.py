@@ -93,14 +93,16 @@ class Ring:
         """The sum of the products, less those of `minus`, in normal form."""
         times = self.polynomials.monomial_mul
         total: Terms = {}
+        known = total.get
         for sign, group in ((1, pairs), (-1, minus)):
             for first, second in group:
                 if not second:
                     continue
                 for monomial, coefficient in first.items():
+                    weight = sign * coefficient
                     for other, factor in second.items():
                         product = times(monomial, other)
-                        total[product] = total.get(product, 0) + sign * coefficient * factor
+                        total[product] = known(product, 0) + weight * factor
         return self._settled(total) if total else self.zero
 
     def difference(self, first: PolyElement, second: PolyElement) -> PolyElement:
@@ -119,6 +121,8 @@ class Ring:
     def _settled(self, terms: Terms) -> PolyElement:
         """The polynomial of these terms, in normal form."""
         forms = self._normal_forms
+        if forms.standard.issuperset(terms):
+            return self.zero.new({m: c for m, c in terms.items() if c})
         result: Terms = {}
         for monomial, coefficient in terms.items():
             form = forms[monomial]

@@ -73,9 +73,9 @@ def _columns(values: Values, axes: Sequence[RingMatrix]) -> RingMatrix:
     for coordinate in values.arguments["q"].symbols:
         column = RingMatrix(ring, ((ring.zero,),) * 3)
         for turn, axis in zip(values.model.turns, axes, strict=True):
-            if turn.angle == coordinate:
+            if turn.angle is coordinate or turn.angle == coordinate:
                 column = column + axis
-            elif turn.angle.has(coordinate):
+            elif not turn.angle.is_Function and turn.angle.has(coordinate):
                 column = column + axis.scale(values.codec.encode(sp.diff(turn.angle, coordinate)))
         columns.append(column.entries)
     return RingMatrix(ring, tuple(columns)).T
