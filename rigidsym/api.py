@@ -30,6 +30,12 @@ class Motion(Derivation):
 
     manner: Manner = DEFAULT
 
+    def __repr__(self) -> str:
+        """One line, for a prompt; the steps themselves would fill pages."""
+        count = sum(not proof.is_exact for proof in self.proofs)
+        names = ", ".join(step.quantity.name for step in self.steps)
+        return f"<Motion {self.name}, {f'{count} unproved' if count else 'proved'}: {names}>"
+
     def kernels(
         self, target: str = "numpy", *, conversions: bool = False, derivatives: Asked = ()
     ) -> KernelModule:

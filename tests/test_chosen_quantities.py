@@ -91,3 +91,13 @@ def test_the_summary_counts_the_proofs_of_conversions(tmp_path):
         for more in ((), ("--conversions",))
     ]
     assert counts[1] > counts[0]
+
+
+def test_a_prompt_shows_one_line():
+    motion = derive("ZXZ", only=["rotation_matrix", "angular_velocity_body"])
+    names = "rotation_matrix, angular_velocity_body"
+    assert repr(motion) == f"<Motion euler_zxz_intrinsic, proved: {names}>"
+    first = motion.steps[0]
+    doubtful = replace(first, proofs=(replace(first.proofs[0], status="unproved"),))
+    part = replace(motion, steps=(doubtful, *motion.steps[1:]))
+    assert repr(part) == f"<Motion euler_zxz_intrinsic, 1 unproved: {names}>"
