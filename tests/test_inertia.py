@@ -10,10 +10,11 @@ import sympy as sp
 
 import rigidsym as rs
 from rigidsym.errors import BodyError
+from rigidsym.mechanics.bodies import body_of
 from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.mechanics.principal import principal_of
 from rigidsym.models.body import given_inertia
-from rigidsym.models.distribution import Composite, Part, Particle, Particles
+from rigidsym.models.distribution import Composite, Part, Particle, Particles, Solid
 from rigidsym.models.solids import SHAPES, shaped
 
 A, B, C, M, a, b, c, d, h, m = sp.symbols("A B C M a b c d h m")
@@ -154,3 +155,18 @@ def test_an_unphysical_body_made_in_python_is_refused_with_the_amount():
         rs.principal_moments(A, A, C, mass=sp.Integer(-2))
     with pytest.raises(BodyError, match="the mass is zero"):
         rs.body_of(particles((m, a, 0, 0), (-m, 0, 0, 0)))
+
+
+def test_a_map_that_folds_over_is_refused():
+    """x = u² goes through the same places twice; in the middle of its bounds it does not tell."""
+    u, v, w, rho = sp.symbols("u v w rho")
+    unit = (sp.S.Zero, sp.S.One)
+    folded = Solid(
+        title="fold",
+        coordinates=(u, v, w),
+        place=sp.ImmutableMatrix([u**2, v, w]),
+        bounds=((sp.Integer(-1), sp.Integer(3)), unit, unit),
+        density=rho,
+    )
+    with pytest.raises(BodyError, match="the map folds over"):
+        body_of(folded)

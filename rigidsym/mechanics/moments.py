@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache, singledispatch
-from itertools import pairwise
+from itertools import pairwise, product
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -222,23 +222,32 @@ class _Integrals:
         return measure, self.ring.one
 
     def _sign(self, determinant: PolyElement) -> int:
-        """Of a determinant, from three places within the bounds; the map may not fold over."""
+        """Of a determinant, from places within the bounds; the map may not fold over.
+
+        With constants that have no value it is looked at in three places alone, since not every
+        choice of values need be one that the solid can have.
+        """
         expression = self.codec.decode(determinant)
         names = expression.free_symbols.union(
             *(b.free_symbols for p in self.solid.bounds for b in p)
         )
         free = sorted(names - set(self.solid.coordinates), key=str)
         point = {s: sp.Rational(7 + k, 5 + 3 * k) for k, s in enumerate(free)}
-        signs = {sp.sign(expression.xreplace(self._inside(point, k)).evalf()) for k in (3, 4, 5)}
+        count = len(self.solid.coordinates)
+        sevenths = [(k,) * count for k in (3, 4, 5)] if free else product((1, 3, 6), repeat=count)
+        signs = {sp.sign(expression.xreplace(self._inside(point, k)).evalf()) for k in sevenths}
         signs.discard(sp.S.Zero)
         if len(signs) > 1:
             raise BodyError(f"{self.solid.title}: the map folds over: its determinant changes sign")
         return int(signs.pop()) if signs else 1
 
-    def _inside(self, point: dict[sp.Symbol, sp.Expr], k: int) -> dict[sp.Symbol, sp.Expr]:
+    def _inside(
+        self, point: dict[sp.Symbol, sp.Expr], sevenths: Sequence[int]
+    ) -> dict[sp.Symbol, sp.Expr]:
         """A place within the bounds, the coordinates one after the other."""
         inside = dict(point)
-        for coordinate, (low, high) in zip(self.solid.coordinates, self.solid.bounds, strict=True):
+        pairs = zip(self.solid.coordinates, self.solid.bounds, sevenths, strict=True)
+        for coordinate, (low, high), k in pairs:
             below, above = low.xreplace(inside), high.xreplace(inside)
             inside[coordinate] = below + (above - below) * sp.Rational(k, 7)
         return inside
