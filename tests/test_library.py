@@ -346,7 +346,7 @@ def test_vectors_are_printed_as_vectors():
     assert "The vector is v = (v₁, v₂, v₃)." in shown
     assert "The length |v| is written n, so that n² = v·v and n n\u0307 = v·v\u0307." in shown
     assert r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})" in motion.note().latex()
-    assert "The vector is" not in show(motion_of("lecture"), width=120)
+    assert "The vector is" not in show(motion_of("lecture_angles"), width=120)
 
 
 def test_the_conditions_of_a_proof_are_said():
@@ -356,7 +356,7 @@ def test_the_conditions_of_a_proof_are_said():
     shown = " ".join(show(motion, width=120).split())
     assert "proved under the condition a² + b² + c² = 1." in shown
     assert "a^{2} + b^{2} + c^{2} = 1" in motion.note().latex()
-    assert "condition" not in show(motion_of("lecture"), width=120)
+    assert "condition" not in show(motion_of("lecture_angles"), width=120)
 
 
 def test_derive_reads_text_as_the_command_line_does():

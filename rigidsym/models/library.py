@@ -65,7 +65,7 @@ PARAMETRISATIONS: Mapping[str, Entry] = MappingProxyType(
 
 PRESETS: Mapping[str, Preset] = MappingProxyType(
     {
-        "lecture": Preset(
+        "lecture_angles": Preset(
             rotation="ZXZ",
             about="the Euler angles of the lecture",
             source=lecture("17", "section 3.2"),
