@@ -96,7 +96,9 @@ TENSORS = {
     "another axis apart": sp.Matrix([[a, 0, d], [0, b, 0], [d, 0, c]]),
     "corner of a cube": sp.Matrix([[a, -d, -d], [-d, a, -d], [-d, -d, a]]),
     "numbers": sp.Matrix([[3, 1, 0], [1, 3, 0], [0, 0, 5]]),
-    "rational roots": sp.Matrix([[6, -2, 0], [-2, 6, -2], [0, -2, 6]]),
+    "one rational root": sp.Matrix([[6, -2, 0], [-2, 6, -2], [0, -2, 6]]),
+    "an oblique axis apart": sp.Matrix([[6, 1, 1], [1, 6, 1], [1, 1, 7]]),
+    "an oblique axis in symbols": sp.Matrix([[a, d, d], [d, a, d], [d, d, b]]),
 }
 VALUES = {a: 7.0, b: 6.0, c: 5.0, d: 1.5}
 
@@ -109,14 +111,12 @@ def test_principal_axes_in_symbols_agree_with_numbers(name):
     numbers = np.array(tensor.subs(VALUES).tolist(), dtype=float)
     moments = np.array(found.moments.subs(VALUES).evalf().tolist(), dtype=float).ravel()
     assert np.allclose(sorted(moments), np.linalg.eigvalsh(numbers))
-    assert (found.axes is None) == (name == "rational roots")
-    if found.axes is not None:
-        axes = np.array(found.axes.subs(VALUES).evalf().tolist(), dtype=float)
-        assert np.linalg.det(axes) == pytest.approx(1)
-        assert np.allclose(numbers @ axes, axes * moments)
-        body = given_inertia(tensor, mass=M)
-        steps = ("principal_moments", "principal_axes")
-        assert rs.derive("ZXZ", steps, body=body).is_proved
+    axes = np.array(found.axes.subs(VALUES).evalf().tolist(), dtype=float)
+    assert np.linalg.det(axes) == pytest.approx(1)
+    assert np.allclose(numbers @ axes, axes * moments)
+    body = given_inertia(tensor, mass=M)
+    steps = ("principal_moments", "principal_axes")
+    assert rs.derive("ZXZ", steps, body=body).is_proved
 
 
 def test_repeated_moments_are_said():

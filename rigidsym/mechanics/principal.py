@@ -18,7 +18,7 @@ class Principal:
     """Principal moments (3, 1) and axes (3, 3), and how they were found."""
 
     moments: sp.ImmutableMatrix
-    axes: sp.ImmutableMatrix | None  # None where they would hold roots of roots
+    axes: sp.ImmutableMatrix | None  # None where no direction was found
     because: str
 
 
@@ -58,7 +58,17 @@ def _root_apart(inertia: sp.ImmutableMatrix, alone: int) -> sp.Expr:
     """
     i, j = (alone + 1) % 3, (alone + 2) % 3
     p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
-    number, factors = sp.factor_list(sp.together((p - q) ** 2 + 4 * r**2))
+    return _square_root((p - q) ** 2 + 4 * r**2)
+
+
+def _square_root(expression: sp.Expr) -> sp.Expr:
+    """The root, with the squares among the factors taken out of it."""
+    above, below = sp.fraction(sp.together(expression))
+    return _root_of_polynomial(above) / _root_of_polynomial(below)
+
+
+def _root_of_polynomial(expression: sp.Expr) -> sp.Expr:
+    number, factors = sp.factor_list(expression)
     inside, outside = sp.sympify(number), sp.S.One
     for factor, times in factors:
         outside *= factor ** (times // 2)
@@ -105,15 +115,46 @@ def _factored(inertia: sp.ImmutableMatrix) -> Principal | None:
             roots += [(-b + root) / (2 * a), (-b - root) / (2 * a)]
         elif degree == 3:
             return None
-    is_rational = not any(map(_has_root, roots))
+    apart = [root for root in roots if not _has_root(root)]
+    if len(apart) == 1:
+        return _about_one_axis(inertia, apart[0])
     repeated = len(set(roots)) < 3
     because = "The characteristic polynomial factors"
     if repeated:
         because += "; two moments are equal, so that every axis across the third is principal"
     roots = sorted(roots, key=lambda root: (roots.count(root) == 1, str(root)))  # a single one last
-    axes = _axes(inertia, roots) if is_rational else None
+    axes = _axes(inertia, roots)
     moments = sp.ImmutableMatrix([sp.factor(root) for root in roots])
     return Principal(moments=moments, axes=axes, because=f"{because}.")
+
+
+def _about_one_axis(inertia: sp.ImmutableMatrix, moment: sp.Expr) -> Principal | None:
+    """One moment is rational, and so is the direction of its axis; the others lie across it."""
+    axis = _null_vector(inertia, moment)
+    if axis is None:
+        return None
+    across = (axis.cross(sp.eye(3)[:, k]) for k in range(3))
+    first = min((vector for vector in across if any(vector)), key=sp.count_ops)
+    second = axis.cross(first).applyfunc(sp.cancel)
+    lengths = [sp.sqrt(sp.factor(sp.cancel(v.dot(v)))) for v in (first, axis)]
+    frame = [first / lengths[0], second / (lengths[0] * lengths[1]), axis / lengths[1]]
+    squares = (first.dot(first), second.dot(second))
+    p, q = (
+        sp.cancel(v.dot(inertia * v) / square)
+        for v, square in zip((first, second), squares, strict=True)
+    )
+    product = first.dot(inertia * second)
+    root = _square_root((p - q) ** 2 + 4 * sp.cancel(product**2 / (squares[0] * squares[1])))
+    cosine = sp.sqrt(sp.Rational(1, 2) + (p - q) / (2 * root))
+    sine = product / (lengths[0] ** 2 * lengths[1] * root * cosine)
+    axes = [cosine * frame[0] + sine * frame[1], cosine * frame[1] - sine * frame[0], frame[2]]
+    half = sp.cancel((p + q) / 2)
+    return Principal(
+        moments=sp.ImmutableMatrix([half + root / 2, half - root / 2, moment]),
+        axes=sp.ImmutableMatrix(sp.Matrix.hstack(*axes)),
+        because="The characteristic polynomial has one linear factor, whose axis follows from "
+        "linear equations; across it a quadratic equation is left.",
+    )
 
 
 def _has_root(expression: sp.Expr) -> bool:
