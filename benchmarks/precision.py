@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.form import SYMBOLS
 from benchmarks.measure import Settings, progress
 from benchmarks.report import Cell, Column, Report, Table
 from benchmarks.truth import Truth, mp, turns_of
@@ -26,21 +27,6 @@ from rigidsym.rotations import rotation_from
 
 Float = type[np.floating[Any]]
 
-SHORT = {
-    "rotation_matrix": "R",
-    "rotation_rate": "dR/dt",
-    "spin_matrix": "dR/dt Rᵀ",
-    "angular_velocity_space": "Ω",
-    "angular_velocity_body": "Ω′",
-    "rate_matrix_space": "W",
-    "inverse_rate_matrix_space": "W⁻¹",
-    "rates_from_angular_velocity_space": "W⁻¹Ω",
-    "rate_matrix_body": "W′",
-    "inverse_rate_matrix_body": "W′⁻¹",
-    "rates_from_angular_velocity_body": "W′⁻¹Ω′",
-    "angular_acceleration_space": "dΩ/dt",
-    "angular_acceleration_body": "dΩ′/dt",
-}
 CHAINS = (
     "z(phi) x(theta/2) z(psi)",
     "y(phi) x(theta)",
@@ -289,8 +275,8 @@ def report(found: Mapping[str, Errors]) -> Report:
 def _table(found: Mapping[str, Errors], where: str, precision: str) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for text, errors_of in found.items():
-        cells = [errors_of.get((where, precision, name)) for name in SHORT]
+        cells = [errors_of.get((where, precision, name)) for name in SYMBOLS]
         if any(cell is not None for cell in cells):
             rows.append((text, *cells))
-    columns = (Column("rotation"), *(Column(short, ".1f") for short in SHORT.values()))
+    columns = (Column("rotation"), *(Column(short, ".1f") for short in SYMBOLS.values()))
     return Table(f"{where}, {precision}", columns, tuple(rows))

@@ -251,7 +251,7 @@ def test_near_poles_and_beside_switches_the_errors_are_those_stated(text):
         (where, dtype) for where in kinds for dtype in ("float64", "float32")
     }
     for where in kinds:
-        assert {name for place, _, name in found if place == where} == set(precision.SHORT)
+        assert {name for place, _, name in found if place == where} == set(form.SYMBOLS)
     assert 0 < max(found.values()) <= 6
 
 
