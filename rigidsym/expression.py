@@ -248,7 +248,7 @@ class _Walk:
     def _name(self, token: _Token) -> Sized:
         name = spelled(token.text)
         if name in self._names:
-            return Sized.atom(sp.sympify(self._names[name]))
+            return Sized.atom(sp.sympify(self._names[name], strict=True))
         if name == "pi":
             return Sized(sp.pi, 0, 1, 1)
         if name in FUNCTIONS:

@@ -19,7 +19,7 @@ class Rationals:
     """Quotients over one ring: in (`read`), and out in textbook form (`write`)."""
 
     def __init__(self, expressions: Iterable[sp.Expr], constraints: Iterable[sp.Expr] = ()) -> None:
-        parts = (part for e in expressions for part in sp.sympify(e).as_numer_denom())
+        parts = (part for e in expressions for part in sp.sympify(e, strict=True).as_numer_denom())
         self._take(codec_for(parts, constraints=constraints))
 
     @classmethod
@@ -34,7 +34,7 @@ class Rationals:
 
     def read(self, expression: sp.Expr) -> Quotient:
         """Raises AlgebraError for an expression that the ring was not built for."""
-        above, below = sp.sympify(expression).as_numer_denom()
+        above, below = sp.sympify(expression, strict=True).as_numer_denom()
         return self.codec.encode_quotient(above) * self.codec.encode_quotient(below).inverse()
 
     def read_matrix(self, matrix: sp.MatrixBase) -> list[list[Quotient]]:

@@ -69,7 +69,7 @@ def _square_root(expression: sp.Expr) -> sp.Expr:
 
 def _root_of_polynomial(expression: sp.Expr) -> sp.Expr:
     number, factors = sp.factor_list(expression)
-    inside, outside = sp.sympify(number), sp.S.One
+    inside, outside = number, sp.S.One
     for factor, times in factors:
         outside *= factor ** (times // 2)
         inside *= factor ** (times % 2)
