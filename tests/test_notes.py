@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import pytest
 import sympy as sp
 from conftest import derived
 
+import rigidsym as rs
 from rigidsym.mechanics.derivation import Derivation, Markup, Place, Proof, Singularity
 from rigidsym.mechanics.kinematics import derive
 from rigidsym.models.catalogue import EulerAngles
@@ -18,6 +20,7 @@ from rigidsym.notes.entries import entry_names, indexed
 from rigidsym.notes.escape import escape
 from rigidsym.notes.measure import columns
 from rigidsym.notes.note import Note, note
+from rigidsym.notes.results import RESULTS
 from rigidsym.notes.singular_words import determined
 from rigidsym.notes.terminal import show
 from rigidsym.notes.words import listed, plain, unit_in_words, with_symbols
@@ -95,6 +98,24 @@ def test_every_equation_names_the_function_that_evaluates_it(motion):
         call == f"{step.quantity.name}({', '.join(step.quantity.inputs)})"
         for call, step in zip(calls, motion.steps, strict=True)
     )
+
+
+def test_results_stand_in_boxes_and_steps_do_not(motion):
+    made = _note(motion)
+    boxed = [e.label for e in made.document.equations if e.is_result]
+    assert set(boxed) == RESULTS & {step.quantity.name for step in motion.steps}
+    assert 0 < len(boxed) < len(motion.steps)
+    for text in (made.latex(), made.markdown()):
+        assert text.count(r"\boxed{") == len(boxed)
+    displays = made.html().split('<div class="equation"')[1:]
+    shown = [re.match(r' id="(\w+)"', text) for text in displays if 'class="boxed"' in text]
+    assert [found and found[1] for found in shown] == boxed
+
+
+def test_every_result_is_an_equation_of_some_note():
+    motion = rs.derive("ZXZ", body=rs.solid("cone", density=sp.Symbol("rho")), theory=True)
+    names = {step.quantity.name for step in motion.steps} | {s.name for s in motion.theory}
+    assert names >= RESULTS
 
 
 def test_without_a_module_no_functions_are_named():

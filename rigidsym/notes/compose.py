@@ -37,6 +37,7 @@ from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.notation import notation_of
 from rigidsym.notes.paging import paged
 from rigidsym.notes.prose import motion, product, turn
+from rigidsym.notes.results import RESULTS
 from rigidsym.notes.rewriting import in_manner
 from rigidsym.notes.singular_words import failures, meaning, measured
 from rigidsym.notes.summary import summary
@@ -250,7 +251,7 @@ class Composer:
     def _equation(self, step: Step) -> Equation:
         function = _call(step) if step.quantity.name in self.functions else ""
         equation = equation_of(step, self.derivation.arguments)
-        return replace(equation, function=function)
+        return replace(equation, function=function, is_result=step.quantity.name in RESULTS)
 
     def _proofs(self) -> Iterator[Block]:
         steps = self.derivation.steps

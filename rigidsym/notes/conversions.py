@@ -69,7 +69,7 @@ def _quaternion(derivation: Derivation, step: Step, *, has_functions: bool) -> I
     yield Paragraph((*sentence, *(("\u00a0", Cited(source)) if source else ()), "."))
     numbered = replace(step, number=len(derivation.steps) + 1)
     call = f"quaternion({', '.join(step.quantity.inputs)})" if has_functions else ""
-    yield replace(equation_of(numbered, derivation.arguments), function=call)
+    yield replace(equation_of(numbered, derivation.arguments), function=call, is_result=True)
 
 
 def _matrix(conversions: Conversions) -> Iterator[Block]:

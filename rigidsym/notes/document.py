@@ -44,6 +44,12 @@ class Cited:
 
     citation: Citation
 
+    @property
+    def place(self) -> str:
+        """Where in the source; nothing where it is the whole."""
+        equation = self.citation.equation
+        return f"eq.\u00a0{equation}" if equation else ""
+
 
 Span = str | Markup | Code | Strong | EquationReference | Cited
 Text = tuple[Span, ...]
@@ -67,6 +73,7 @@ class Equation:
     function: str = ""  # of the kernel module, as it is called
     proved: tuple[Markup, ...] = ()
     unproved: tuple[Markup, ...] = ()
+    is_result: bool = False  # what a reader looks up stands in a box
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +147,10 @@ class Document:
         """The sources that the text cites, each once, in order of appearance."""
         spans = (span for text in self._texts() for span in text)
         return tuple(dict.fromkeys(s.citation.text for s in spans if isinstance(s, Cited)))
+
+    def source_number(self, cited: Cited) -> int:
+        """The number of the source that is cited."""
+        return self.sources.index(cited.citation.text) + 1
 
     def number(self, label: str) -> int:
         """The number of an equation, by its label."""

@@ -89,4 +89,11 @@ def definitions(parts: Sequence[Part], notation: Notation) -> Equation:
 
 
 def _without_entries(equation: Equation, sides: Sequence[Markup]) -> Equation:
-    return replace(equation, sides=(*equation.sides, *sides), matrix=None, entries=())
+    """Ended by these sides in place of its entries; where nothing is left, it is a definition."""
+    return replace(
+        equation,
+        sides=(*equation.sides, *sides),
+        matrix=None,
+        entries=(),
+        is_result=equation.is_result and bool(sides),
+    )

@@ -215,9 +215,8 @@ class Printer:
                 return self._cited(span)
 
     def _cited(self, cited: Cited) -> str:
-        number = self.document.sources.index(cited.citation.text) + 1
-        equation = escape(cited.citation.equation)
-        place = f", eq.\u00a0{equation}" if equation else ""
+        number = self.document.source_number(cited)
+        place = f", {escape(cited.place)}" if cited.place else ""
         return f'[<a href="#source-{number}">{number}</a>{place}]'
 
 

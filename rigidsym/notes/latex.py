@@ -24,7 +24,7 @@ from rigidsym.notes.document import (
     Text,
 )
 from rigidsym.notes.escape import escape
-from rigidsym.notes.layout import display, pack
+from rigidsym.notes.layout import PAGE, display, pack
 from rigidsym.notes.plain import cleaned
 from rigidsym.notes.prose import announcement
 from rigidsym.notes.tikz import tikz
@@ -39,7 +39,6 @@ _DELIMITERS = {
     "comment_end_string": "=))",
 }
 _LINE = 41.5  # ems: 160 mm at 11 points
-_NUMBERED_LINE = 38.6  # ems: beside a number such as (13)
 
 
 def print_latex(document: Document) -> str:
@@ -61,7 +60,8 @@ def print_latex(document: Document) -> str:
         ],
         metadata=metadata(document),
         sources=[
-            {"key": printer.key(source), "text": escape(source)} for source in document.sources
+            {"key": printer.key(place), "text": escape(source)}
+            for place, source in enumerate(document.sources, start=1)
         ],
     )
 
@@ -109,7 +109,7 @@ class _Printer:
                 return f"{{\\keep\n\\begin{{verbatim}}\n{block.code}\n\\end{{verbatim}}\n}}"
 
     def _equation(self, equation: Equation) -> str:
-        width = _NUMBERED_LINE if equation.number else _LINE
+        width = PAGE if equation.number else _LINE
         shown = display(equation, self.document.notation, width)
         announced = self._text(announcement(equation, shown.done))
         lines = [announced] if announced else []
@@ -177,13 +177,12 @@ class _Printer:
                 return self._cited(span)
 
     def _cited(self, cited: Cited) -> str:
-        source, equation = cited.citation.text, escape(cited.citation.equation)
-        place = f"[eq.~{equation}]" if equation else ""
-        return rf"\cite{place}{{{self.key(source)}}}"
+        place = f"[{escape(cited.place)}]" if cited.place else ""
+        return rf"\cite{place}{{{self.key(self.document.source_number(cited))}}}"
 
-    def key(self, source: str) -> str:
+    def key(self, source: int) -> str:
         """The key of a source, unique among the notes that may be bound together."""
-        return self._label(f"source-{self.document.sources.index(source) + 1}")
+        return self._label(f"source-{source}")
 
     def _label(self, label: str) -> str:
         return f"{self.document.name}:{label}"

@@ -6,7 +6,7 @@ The choice is by estimated width, in this order. A reader who has to know of it 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
 
@@ -19,7 +19,8 @@ from rigidsym.notes.formula import latex
 from rigidsym.notes.measure import ems, matrix_ems
 from rigidsym.notes.notation import Notation
 
-PAGE = 38.6  # ems of a display on a page, beside a number such as (13)
+PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
+BOX = 0.65  # ems that the box around a result takes
 
 Rows = Sequence[Sequence[str]]
 Done = Literal["", "abbreviated", "listed"]
@@ -41,7 +42,17 @@ class Display:
 
 
 def display(equation: Equation, notation: Notation, width: float) -> Display:
-    """The equation in the first form that fits into `width` ems; a listing where none does."""
+    """The equation in the first form that fits into `width` ems; a listing where none does.
+
+    A result is in a box, which is part of its width.
+    """
+    if not equation.is_result:
+        return _display(equation, notation, width)
+    inside = _display(equation, notation, width - BOX)
+    return replace(inside, latex=rf"\boxed{{{inside.latex}}}", width=inside.width + BOX)
+
+
+def _display(equation: Equation, notation: Notation, width: float) -> Display:
     if equation.scalar is not None:
         return _scalar(equation, latex(equation.scalar, notation), width)
     if equation.matrix is None:

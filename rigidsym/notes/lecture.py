@@ -21,6 +21,7 @@ from rigidsym.notes.document import (
     Text,
 )
 from rigidsym.notes.manner import DEFAULT, Manner
+from rigidsym.notes.results import RESULTS
 from rigidsym.notes.rewriting import in_manner
 from rigidsym.notes.summands import in_brackets, sums
 from rigidsym.notes.words import words
@@ -102,6 +103,7 @@ class _Lecture(Composer):
             label=statement.name if statement.number else "",
             proved=tuple(proof.claim for proof in statement.proofs if proof.is_exact),
             unproved=tuple(proof.claim for proof in statement.proofs if not proof.is_exact),
+            is_result=statement.name in RESULTS,
         )
 
     def _of_the_rotation(self) -> Iterator[Block]:

@@ -153,10 +153,8 @@ class _Printer:
                 return self._cited(span)
 
     def _cited(self, cited: Cited) -> str:
-        number = self.document.sources.index(cited.citation.text) + 1
-        equation = _inside(cited.citation.equation)
-        place = f", eq. {equation}" if equation else ""
-        return f"[{number}{place}]"
+        place = f", {_inside(cited.place)}" if cited.place else ""
+        return f"[{self.document.source_number(cited)}{place}]"
 
 
 def _inside(text: str) -> str:

@@ -21,6 +21,9 @@ _CLASSES = {  # for the style sheet
     '<mfrac displaystyle="false">': '<mfrac class="flat">',
     '<mrow displaystyle="true">': '<mrow class="tall">',
     '<mrow displaystyle="false">': '<mrow class="flat">',
+    # menclose is not in MathML Core: the style sheet draws the box
+    '<menclose notation="box">': '<mrow class="boxed">',
+    "</menclose>": "</mrow>",
 }
 _ROW_SPACE = re.compile(r"\\\\\[\d+pt\]")  # the style sheet sets the distance of rows
 

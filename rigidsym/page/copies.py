@@ -50,5 +50,6 @@ def copies_of(derivation: Derivation, document: Document) -> Copies:
 
 def _latex(document: Document) -> Iterator[tuple[str, str]]:
     for equation in document.equations:
-        inside = display(equation, document.notation, _PAPER).latex
+        plain = replace(equation, is_result=False)  # who copies it has boxes of their own
+        inside = display(plain, document.notation, _PAPER).latex
         yield equation.label, f"\\[\n{inside}\n\\]\n"
