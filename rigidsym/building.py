@@ -12,17 +12,17 @@ from rigidsym.spec import DerivationSpec, spec_of
 from rigidsym.writing import write_text
 
 
-def built(asked: str, out: Path) -> Iterator[Path]:
+def built(asked: str, out: Path, *, portable: bool = False) -> Iterator[Path]:
     """The module NAME_c.py of a file NAME.c, or of each rotation; its files go to out/NAME/.
 
     What is written stays where the compiler is missing or stops; see `c_build.build`.
     """
     source = Path(asked)
     if source.suffix == ".c":
-        yield build(source)
+        yield build(source, portable=portable)
         return
     for single in spec_of(asked).singles():
-        yield build(_written(single, out))
+        yield build(_written(single, out), portable=portable)
 
 
 def _written(spec: DerivationSpec, out: Path) -> Path:

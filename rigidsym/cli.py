@@ -135,19 +135,21 @@ def run(files: tuple[str, ...], out: Path, pdf: bool, as_json: bool) -> None:
 
 @commands.command()
 @click.argument("asked", nargs=-1, required=True, metavar="ROTATION|FILE...")
+@click.option("--portable", is_flag=True, help="For any processor of this kind; slower.")
 @TEMPLATES
 @OUT
-def build(asked: tuple[str, ...], out: Path) -> None:
+def build(asked: tuple[str, ...], out: Path, *, portable: bool) -> None:
     """Compile functions in C into Python modules, NAME_c.py.
 
     Given a rotation or a derivation FILE, its C is written first, as by --target c; given
-    NAME.c, the others of its derivation stand beside it. Exit code 4 without a C compiler; what
-    is written stays.
+    NAME.c, the others of its derivation stand beside it. What is compiled belongs to processors
+    with the instructions of this one, unless --portable. Exit code 4 without a C compiler; what is
+    written stays.
     """
     from rigidsym.building import built
 
     for each in asked:
-        for module in built(each, out):
+        for module in built(each, out, portable=portable):
             click.echo(module)
 
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import ctypes
+import os
+import platform
 import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,10 +22,15 @@ from rigidsym.kernels.sine import reduction, two_over_pi
 from rigidsym.kernels.targets import c_build
 from rigidsym.kernels.targets.c_precision import PRECISIONS
 
+REQUIRED = os.environ.get("RIGIDSYM_REQUIRE_COMPILERS") == "1"  # then they fail, not skip
 COMPILERS = [
-    pytest.param(name, marks=pytest.mark.skipif(not shutil.which(name), reason=f"no {name}"))
+    pytest.param(
+        name,
+        marks=pytest.mark.skipif(not (REQUIRED or shutil.which(name)), reason=f"no {name}"),
+    )
     for name in ("gcc", "clang")
 ]
+CPU = Path("/proc/cpuinfo").read_text("utf-8") if Path("/proc/cpuinfo").is_file() else ""
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wshadow", "-Wconversion")
 ROTATIONS = ("ZXZ", "rotation_vector", "quaternion")
 NAME = "euler_zxz_intrinsic"
@@ -32,32 +40,32 @@ MAIN = """
 #include "euler_zxz_intrinsic.h"
 
 #define N 131
-static double q[N][3], q_dot[N][3], matrix[N][9], body[N][3];
-static float qf[N][3], matrixf[N][9];
+static double q[3 * N], q_dot[3 * N], matrix[9 * N], body[3 * N];
+static float qf[3 * N], matrixf[9 * N];
 
 int main(void)
 {
     const double sizes[] = {1.0, 1e4, 1e6, 1e15, 1e22, 1e300, 1e-300, 0.0};
     for (int i = 0; i < N; i++) {
         for (int k = 0; k < 3; k++) {
-            q[i][k] = (0.37 * i - 20.0 + k) * sizes[i % 8];
-            q_dot[i][k] = 0.1 * i - k;
-            qf[i][k] = (float)((0.37 * i - 20.0 + k) * (i % 8 == 5 ? 1e30 : sizes[i % 8]));
+            q[3 * i + k] = (0.37 * i - 20.0 + k) * sizes[i % 8];
+            q_dot[3 * i + k] = 0.1 * i - k;
+            qf[3 * i + k] = (float)((0.37 * i - 20.0 + k) * (i % 8 == 5 ? 1e30 : sizes[i % 8]));
         }
     }
     volatile double zero = 0.0;
-    q[9][0] = 1.0 / zero;
-    q[10][2] = zero / zero;
+    q[27] = 1.0 / zero;
+    q[32] = zero / zero;
     for (size_t count = 0; count <= N; count += 1 + count / 3) {
-        euler_zxz_intrinsic_rotation_matrix_array(count, q[0], 3, 1, matrix[0], 9, 1);
-        euler_zxz_intrinsic_rotation_matrix_arrayf(count, qf[0], 3, 1, matrixf[0], 9, 1);
+        euler_zxz_intrinsic_rotation_matrix_array(count, q, 3, 1, matrix, 9, 1);
+        euler_zxz_intrinsic_rotation_matrix_arrayf(count, qf, 3, 1, matrixf, 9, 1);
         euler_zxz_intrinsic_angular_velocity_body_array(
-            count, q[0] + 3 * (N - 1), -3, 1, q_dot[0], 0, 1, body[0], 3, 1);
+            count, q + 3 * (N - 1), -3, 1, q_dot, 0, 1, body, 3, 1);
     }
-    euler_zxz_intrinsic_rotation_matrix(q[4], matrix[4]);
-    euler_zxz_intrinsic_rates_from_angular_velocity_space(q[0], q_dot[1], body[1]);
-    printf("%.17g %.17g %.9g\\n", matrix[0][0], matrix[5][8], (double)matrixf[3][8]);
-    printf("%.17g %.17g %.17g\\n", q[0][1], q[5][1], (double)qf[3][1]);
+    euler_zxz_intrinsic_rotation_matrix(q + 12, matrix + 36);
+    euler_zxz_intrinsic_rates_from_angular_velocity_space(q, q_dot + 3, body + 3);
+    printf("%.17g %.17g %.9g\\n", matrix[0], matrix[53], (double)matrixf[35]);
+    printf("%.17g %.17g %.17g\\n", q[1], q[16], (double)qf[10]);
     return 0;
 }
 """
@@ -147,6 +155,33 @@ def test_sanitizers_find_nothing_at_any_size(sources, compiler):
     with mp.workdps(400):
         assert abs(values[1] - mp.cos(mp.mpf(angles[1]))) < 1e-15
         assert abs(values[2] - mp.cos(mp.mpf(angles[2]))) < 3e-7
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+@pytest.mark.skipif("avx" not in CPU, reason="a processor without AVX")
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_no_loop_leaves_wide_registers_in_use(tmp_path, monkeypatch, compiler):
+    """Where one does, all that was compiled for older processors slows down after it."""
+    monkeypatch.setenv("CC", compiler)
+    rs.derive("ZXZ", only=["rotation_matrix"]).kernels("c").write(tmp_path)
+    c_build.build(tmp_path / f"{NAME}.c")
+    (library,) = tmp_path.glob("*.so")
+    text = run("objdump", "-d", "--no-show-raw-insn", library.name, cwd=tmp_path)
+    loops = [part for part in text.split("\n\n") if "_loop" in part.partition("\n")[0]]
+    assert len(loops) >= 2
+    for loop in loops:
+        assert "vzeroupper" in loop
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+def test_a_portable_module_has_no_instruction_of_this_processor_alone(tmp_path):
+    rs.derive("ZXZ", only=["rotation_matrix"]).kernels("c").write(tmp_path)
+    made = call("build", "--portable", f"{NAME}.c", cwd=tmp_path).stdout.strip()
+    assert made == f"{NAME}_c.py"
+    (library,) = tmp_path.glob("*.so")
+    text = run("objdump", "-d", "--no-show-raw-insn", library.name, cwd=tmp_path)
+    assert "mulpd" in text or platform.machine() != "x86_64"
+    assert not re.search(r"%[yz]mm", text)
 
 
 @pytest.mark.skipif(not shutil.which("cc"), reason="no cc")

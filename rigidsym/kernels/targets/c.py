@@ -27,7 +27,7 @@ _WORDS = (
     "union unsigned void volatile while asm typeof "
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf nan "
     "NULL NAN INFINITY HUGE_VAL HUGE_VALF HUGE_VALL SIZE_MAX PTRDIFF_MAX math_errhandling "
-    "size_t ptrdiff_t uint32_t uint64_t TILE tile found rows count at i j "
+    "size_t ptrdiff_t uint32_t uint64_t TILE INLINED tile found rows count at i j "
 )
 RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
 _WIDTH = 92

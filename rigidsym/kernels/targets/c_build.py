@@ -36,9 +36,11 @@ _OF_THIS_PROCESSOR = ("-march=native", "-mtune=icelake-server", "-mprefer-vector
 _LOG_LINES = 15
 
 
-def build(source: Path) -> Path:
+def build(source: Path, *, portable: bool = False) -> Path:
     """Compile NAME.c, beside which its other files stand, and return the module NAME_c.py.
 
+    The code is for this processor and those that know all its instructions; a portable one is for
+    any that the compiler knows under the same name, at some three times the time.
     Raises MissingTool without a C compiler, CheckError where a file is missing, and ToolFailed,
     with the end of what the compiler says, where it stops.
     """
@@ -50,7 +52,7 @@ def build(source: Path) -> Path:
     handle, draft = tempfile.mkstemp(dir=folder, prefix=".", suffix=".so")
     os.close(handle)
     try:
-        _compile([str(path) for path in needed[:2]], draft)
+        _compile([str(path) for path in needed[:2]], draft, portable=portable)
         Path(draft).chmod(0o755)
         os.replace(draft, library)
     finally:
@@ -90,14 +92,15 @@ def compiler() -> str:
     )
 
 
-def _compile(sources: list[str], library: str) -> None:
+def _compile(sources: list[str], library: str, *, portable: bool) -> None:
     import numpy as np
 
     folders = [sysconfig.get_paths()["include"], np.get_include()]
     command = [compiler(), *_FLAGS, *(f"-I{folder}" for folder in folders), *sources]
     tail = ["-o", library, "-lm"]
-    problem = _run([*command, *_OF_THIS_PROCESSOR, *tail])
-    if problem:
+    chosen = () if portable else _OF_THIS_PROCESSOR
+    problem = _run([*command, *chosen, *tail])
+    if problem and chosen:
         problem = _run([*command, *tail])
     if problem:
         raise ToolFailed(f"the C compiler stopped; the end of what it says:\n{problem}")

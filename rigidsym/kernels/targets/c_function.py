@@ -105,7 +105,7 @@ def _listed(indent: int, head: str, items: Sequence[str]) -> str:
 def _body(kernel: Kernel, precision: Precision) -> str:
     real, suffix = precision.real, precision.suffix
     given = [f"const {real} {name}" for name in kernel.components]
-    head = f"static inline {precision.word} evaluate_{kernel.name}{suffix}("
+    head = f"INLINED {precision.word} evaluate_{kernel.name}{suffix}("
     items = ["const int far", *given, f"{real} *out"]
     return "\n".join(
         [
