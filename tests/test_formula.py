@@ -141,13 +141,21 @@ def test_a_node_without_a_form_is_named(expression, kind):
 
 def test_names_come_from_the_notation():
     notation = notation_of(arguments_of(EulerAngles("ZYX", ("heading", "phi_1", "q2"))))
-    rates = dynamicsymbols("heading phi_1 q2", 1)
-    assert [latex(rate, notation) for rate in rates] == [
-        r"\dot{\mathit{h}}\mathit{eading}",
-        r"\dot{\phi}_{1}",
-        r"\dot{q}_{2}",
-    ]
-    assert [text(rate, notation) for rate in rates] == ["h\u0307eading", "φ̇₁", "q\u0307₂"]
+    heading, phi, q = dynamicsymbols("heading phi_1 q2", 1)
+    half = sp.Rational(1, 2)
+    for rate, as_latex, as_text in (
+        (phi, r"\dot{\phi}_{1}", "φ̇₁"),
+        (q, r"\dot{q}_{2}", "q\u0307₂"),
+        (heading, r"\frac{d\,\mathit{heading}}{dt}", "d heading/dt"),
+        (heading.diff(), r"\frac{d^{2}\mathit{heading}}{dt^{2}}", "d² heading/dt²"),
+        (
+            half * A * heading**2,
+            r"\frac{1}{2}\,A\,\Bigl(\frac{d\,\mathit{heading}}{dt}\Bigr)^{2}",
+            "½A (d heading/dt)²",
+        ),
+        (half * heading, r"\frac{1}{2}\,\frac{d\,\mathit{heading}}{dt}", "½ d heading/dt"),
+    ):
+        assert (latex(rate, notation), text(rate, notation)) == (as_latex, as_text)
 
 
 def test_a_formula_without_any_notation_uses_the_names_of_its_symbols():

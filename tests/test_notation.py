@@ -40,8 +40,13 @@ FILE = '[rotation]\nsequence = "ZXZ"\n'
         ({"rates": "fraction"}, (r"\ddot{\phi}", "φ̈"), (r"\frac{d^{2}\phi}{dt^{2}}", "d²φ/dt²")),
         (
             {"rates": "fraction"},
-            (r"\dot{\mathit{h}}\mathit{eading}", "ḣeading"),
-            (r"\frac{d\mathit{h}\mathit{eading}}{dt}", "dheading/dt"),
+            (r"\frac{d\,\mathit{heading}}{dt}", "d heading/dt"),
+            (r"\frac{d\,\mathit{heading}}{dt}", "d heading/dt"),
+        ),
+        (
+            {"rates": "fraction"},
+            (r"\dot{\mathbf{r}}_C", "ṙ_C"),
+            (r"\frac{d\mathbf{r}_C}{dt}", "dr_C/dt"),
         ),
         (
             {"rates": "fraction"},

@@ -20,10 +20,13 @@ from rigidsym.models.so3 import time_function
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
 
-_DOTS = (  # order of the derivative: suffix of the name, LaTeX accent, combining character
-    ("", "{}", ""),
-    ("_dot", r"\dot{{{}}}", "\u0307"),
-    ("_ddot", r"\ddot{{{}}}", "\u0308"),
+_SUFFIXES = ("", "_dot", "_ddot")  # of names, by the order of the derivative
+_DOTS = ("", "\u0307", "\u0308")
+_ACCENTS = ("{}", r"\dot{{{}}}", r"\ddot{{{}}}")
+_QUOTIENTS = (  # of words: LaTeX, text
+    ("{}", "{}"),
+    (r"\frac{{d\,{}}}{{dt}}", "d {}/dt"),
+    (r"\frac{{d^{{2}}{}}}{{dt^{{2}}}}", "d² {}/dt²"),
 )
 _CENTRE = ("X", "Y", "Z")
 POINT = tuple(sp.Symbol(f"p_{axis}") for axis in "xyz")
@@ -73,7 +76,7 @@ def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument,
             name="parameters",
             symbols=symbols,
             names=names,
-            notation=tuple(_marked(name, "{}", "") for name in names),
+            notation=tuple(map(_marked, names)),
             units=("",) * len(model.constants) + tuple(p.unit for p in of_body),
             about=f"constants: {'; '.join(about)}",
         ),
@@ -82,12 +85,12 @@ def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument,
 
 def _centre(order: int) -> Argument:
     """The space components of the position of the centre of mass, or of its velocity."""
-    suffix, accent, combining = _DOTS[order]
+    suffix = _SUFFIXES[order]
     return Argument(
         name=f"centre{suffix}",
         symbols=tuple(_derivative(time_function(name), order) for name in _CENTRE),
         names=tuple(name + suffix for name in _CENTRE),
-        notation=tuple(_marked(name, accent, combining) for name in _CENTRE),
+        notation=tuple(_marked(name, order) for name in _CENTRE),
         units=(_per_second("m", order),) * 3,
         about=f"space components of the {('position', 'velocity')[order]} of the centre of mass",
     )
@@ -101,7 +104,7 @@ def _of_lines() -> tuple[Argument, ...]:
             name=name,
             symbols=symbols,
             names=tuple(symbol.name for symbol in symbols),
-            notation=tuple(_marked(symbol.name, "{}", "") for symbol in symbols),
+            notation=tuple(_marked(symbol.name) for symbol in symbols),
             units=(unit,) * 3,
             about=words,
         )
@@ -112,13 +115,13 @@ def _of_lines() -> tuple[Argument, ...]:
 
 
 def _coordinates(model: RotationModel, order: int, name: str, about: str) -> Argument:
-    suffix, accent, combining = _DOTS[order]
+    suffix = _SUFFIXES[order]
     plain = [coordinate.func.__name__ for coordinate in model.coordinates]
     return Argument(
         name=name,
         symbols=tuple(_derivative(coordinate, order) for coordinate in model.coordinates),
         names=tuple(label + suffix for label in plain),
-        notation=tuple(_marked(label, accent, combining) for label in plain),
+        notation=tuple(_marked(label, order) for label in plain),
         units=tuple(_per_second(unit, order) for unit in model.coordinate_units),
         about=about,
     )
@@ -130,20 +133,21 @@ def _derivative(coordinate: sp.Expr, order: int) -> sp.Expr:
 
 
 @lru_cache(maxsize=1024)
-def _marked(label: str, accent: str, combining: str) -> Markup:
-    """A coordinate's name with its dots, which stand above the first letter: φ̇₁, ḣeading."""
+def _marked(label: str, order: int = 0) -> Markup:
+    """A name, or its derivative: φ̇₁, and d yaw₁/dt.
+
+    A dot above a word would stand above one of its letters, as if they were factors, and so the
+    derivative of a word is a quotient in every notation.
+    """
     head, above, below = split_super_sub(label)
-    latex = sp.latex(sp.Symbol(head))
-    if latex != head or len(head) == 1:
-        latex = accent.format(latex)
-    elif combining:  # a word, not a product of letters
-        latex = accent.format(rf"\mathit{{{head[0]}}}") + rf"\mathit{{{head[1:]}}}"
-    else:
-        latex = rf"\mathit{{{head}}}"
-    latex += f"_{{{' '.join(below)}}}" if below else ""
-    latex += f"^{{{' '.join(above)}}}" if above else ""
-    pretty = pretty_symbol(label)
-    return Markup(latex, pretty[0] + combining + pretty[1:])
+    latex, text = sp.latex(sp.Symbol(head)), pretty_symbol(label)
+    scripts = f"_{{{' '.join(below)}}}" if below else ""
+    scripts += f"^{{{' '.join(above)}}}" if above else ""
+    if latex == head and len(head) > 1:  # a word, not a product of letters
+        quotient, on_a_line = _QUOTIENTS[order]
+        word = rf"\mathit{{{head}}}{scripts}"
+        return Markup(quotient.format(word), on_a_line.format(text))
+    return Markup(_ACCENTS[order].format(latex) + scripts, text[0] + _DOTS[order] + text[1:])
 
 
 def _per_second(unit: str, order: int) -> str:

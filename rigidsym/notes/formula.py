@@ -104,9 +104,14 @@ class _Walk:
         factors = ordered_factors(sp.Mul.make_args(rest), self.notation)
         below = [_inverted(factor) for factor in factors if _is_reciprocal(factor)]
         above = [factor for factor in factors if not _is_reciprocal(factor)]
-        if below or (len(above) == 1 and (_is_name(above[0]) or _is_root(above[0]))):
+        if below or (len(above) == 1 and self._stands_above(above[0])):
             return self._quotient(_scaled(coefficient.p, above), _scaled(coefficient.q, below))
         return self._many(_scaled(coefficient, above))
+
+    def _stands_above(self, factor: sp.Expr) -> bool:
+        """Whether θ/2 and √2/2 are written so; ½ dθ/dt and ½ sin θ are not."""
+        is_name = _is_name(factor) and self.expression(factor).binding == Binding.NAME
+        return is_name or _is_root(factor)
 
     def _quotient(self, above: Sequence[sp.Expr], below: Sequence[sp.Expr]) -> Piece:
         numerator = self._at_least(self.pen.above, self._many(above))

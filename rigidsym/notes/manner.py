@@ -42,11 +42,10 @@ _VECTORS = re.compile(r"([Ωω])(?![₀-₉]|[′ᴮ][₀-₉])")
 _DOT = re.compile(
     r"\\(d?dot)"
     r"(\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\})"  # braces, up to three deep
-    r"(\\mathit\{[^{}]*\})?"  # the rest of a word whose first letter has the dot
     r"((?:'|[_^](?:\{(?:[^{}]|\{[^{}]*\})*\}|\w))*)"  # prime, indices
 )
 _BY_RATES = re.compile(r"\\partial ?\\frac\{d(\\mathbf\{q\})\}\{dt\}")
-_DOT_TEXT = re.compile(r"([^\W\d_])([\u0307\u0308])([^\W_]*?[′ᴮ]?[₀-₉]*)(?!\w)")
+_DOT_TEXT = re.compile(r"([^\W\d_])([\u0307\u0308])([′ᴮ]?[₀-₉]*(?:_\w+)?)(?!\w)")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -149,9 +148,9 @@ DEFAULT = Manner()  # that in which formulas are composed
 
 def _fraction(dotted: re.Match[str]) -> str:
     """\\dot{\\phi}_{1} as the quotient of differentials."""
-    kind, name, rest, scripts = dotted.groups()
+    kind, name, scripts = dotted.groups()
     power = "" if kind == "dot" else "^{2}"
-    whole = name[1:-1] + (rest or "") + scripts
+    whole = name[1:-1] + scripts
     return rf"\frac{{d{power}{whole}}}{{dt{power}}}"
 
 

@@ -160,7 +160,8 @@ class TextPen:
     def product(self, factors: Sequence[Piece]) -> str:
         text = factors[0].text
         for before, factor in pairwise(factors):
-            is_close = before.binding == Binding.NUMBER and factor.binding != Binding.CALL
+            is_apart = factor.binding in (Binding.CALL, Binding.FRACTION)  # sin θ, d yaw/dt
+            is_close = before.binding == Binding.NUMBER and not is_apart
             text += ("" if is_close else " ") + factor.text
         return text
 
