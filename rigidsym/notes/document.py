@@ -7,7 +7,7 @@ hold SymPy matrices, so that each printer can break and abbreviate them for its 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import sympy as sp
 
@@ -130,11 +130,6 @@ class Document:
         """The numbered equations, in order."""
         blocks = (block for section in self.sections for block in section.blocks)
         return (block for block in blocks if isinstance(block, Equation) and block.number)
-
-    @property
-    def without_sheets(self) -> Document:
-        """The same without what repeats it on a sheet of its own."""
-        return replace(self, sections=tuple(s for s in self.sections if not s.on_own_page))
 
     @property
     def figures(self) -> tuple[Figure, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 
 from rigidsym.kernels.infix import infix
@@ -25,11 +25,11 @@ from rigidsym.page.series import orders_of
 _show = partial(infix, functions={name: name for name in FUNCTIONS})
 
 
-def c_of(kernel: Kernel) -> list[str | None]:
-    """The header that it needs, None for the functions c_k that it calls, and the function."""
+def c_of(kernel: Kernel, series: Mapping[str, str]) -> str:
+    """The header that it needs, the functions c_k that it may call, and the function."""
     fitted = narrowed(kernel, _show, line=WIDTH - len("    const double ;"), output=WIDTH - 14)
-    series = [None] if orders_of(kernel) else []
-    return ["#include <math.h>\n", *series, "\n".join(_function(fitted)) + "\n"]
+    called = [f"{series['c']}\n"] if orders_of(kernel) else []
+    return "\n".join(["#include <math.h>\n", *called, *_function(fitted), ""])
 
 
 def _listed(head: str, items: list[str]) -> str:

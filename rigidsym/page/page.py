@@ -8,106 +8,83 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import re
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from itertools import accumulate
 from typing import Any
 
 from rigidsym import resources
 from rigidsym.kernels.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Markup, Step
-from rigidsym.notes.document import Document, Equation, Table
+from rigidsym.notes.document import Document, Equation, Paragraph
 from rigidsym.notes.html import escape, rendered
 from rigidsym.notes.mathml import mathml
 from rigidsym.notes.singular_words import singular
 from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
-from rigidsym.page.copies import LANGUAGES, LATEX, Copies, copies_of
+from rigidsym.page.copies import LANGUAGES, copies_of
 from rigidsym.page.functions import SHOWN, functions_of
-from rigidsym.page.printer import PagePrinter
+from rigidsym.page.packing import pack
+from rigidsym.page.printer import Packable, PagePrinter
 from rigidsym.page.stage import shown_angles, stage_of
 
 TEMPLATE = "page.html.jinja"
 SCRIPT = "page.mjs.jinja"
 MOST_BYTES = 150_000
 
-_PLAIN = re.compile(r' alttext="[^"]*"')
-_LEFT_OUT = 120  # bytes that say so
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Part:
-    """What a page can do without: a display, a table, or the code of an equation."""
-
-    block: Equation | Table
-    is_code: bool
-    size: int  # bytes that go with it
-
-    @property
-    def weight(self) -> int:
-        """What it costs, as far as its use goes: a display is worth three times as many bytes."""
-        return self.size if isinstance(self.block, Equation) and not self.is_code else 3 * self.size
-
-    @property
-    def is_live(self) -> bool:
-        return isinstance(self.block, Equation) and self.block.label in SHOWN
+_SAVED = 0.85  # of what is packed
+_SHORT = 300  # bytes that are not worth it
 
 
 def print_page(derivation: Derivation, document: Document) -> str:
     """The page of a derivation, whose note is given; the same input gives the same bytes.
 
-    It has at most MOST_BYTES. Where all would be longer, formulas come without their plain text,
-    which browsers that know no MathML would read; then the largest parts are left to the note and
-    the module, code and tables before displays, and those of what is shown live last.
+    Nothing of the note is left out. Where all would be longer than MOST_BYTES, parts of it are
+    packed, and the script spells them when the page is opened.
     """
     page = _Page(derivation, document)
-    whole = page.text()
-    if len(whole.encode()) <= MOST_BYTES:
-        return whole
-    over = len(_terse(whole).encode()) - MOST_BYTES
-    parts = sorted(page.parts(), key=lambda part: (part.is_live, -part.weight))
-    saved = accumulate((part.size for part in parts), initial=0)
-    left_out = [part for part, before in zip(parts, saved, strict=False) if before < over]
-    return _terse(page.text(left_out))
-
-
-def _terse(html: str) -> str:
-    return _PLAIN.sub("", html)
+    packed: list[tuple[Packable, int]] = []
+    rest = page.packable()
+    while True:
+        text = page.text([block for block, _ in packed])
+        over = len(text.encode()) - MOST_BYTES
+        if over <= 0 or not rest:
+            return text
+        saved = accumulate((_SAVED * size for _, size in rest), initial=0.0)
+        count = sum(before < over for before, _ in zip(saved, rest, strict=False))
+        packed, rest = packed + rest[:count], rest[count:]
 
 
 class _Page:
-    """One page, which can be printed with more or fewer equations."""
+    """One page, which can be printed with more or fewer displays packed."""
 
     def __init__(self, derivation: Derivation, document: Document) -> None:
         self.derivation = derivation
-        self.document = document.without_sheets  # a page has no room to say it twice
+        self.document = document
         self.functions = functions_of(derivation.model)
         self.groups = groups_of(
             self.functions.derivation, self.document.notation, shown_angles(derivation.model)
         )
         self.copies = copies_of(derivation, document)
+        self.printer = PagePrinter(document, copied=self.copies)
 
-    def parts(self) -> Iterator[Part]:
-        """All that can be left out, in the order of the note."""
-        printer = PagePrinter(self.document, copied=self.copies.texts)
-        for block in (block for section in self.document.sections for block in section.blocks):
-            if not isinstance(block, Equation | Table):
-                continue
-            whole = printer.forms(block) if isinstance(block, Equation) else printer.table(block)
-            shown = _terse(whole)
-            yield Part(block=block, is_code=False, size=len(shown.encode()) - _LEFT_OUT)
-            text = self.copies.texts.get(block.label) if isinstance(block, Equation) else None
-            if text is not None:
-                size = len(_json(text).encode()) - len(_json({LATEX: text[LATEX]}).encode())
-                yield Part(block=block, is_code=True, size=size)
+    def packable(self) -> list[tuple[Packable, int]]:
+        """Parts of the note and their bytes, those first that are missed least without a script.
 
-    def text(self, left_out: Collection[Part] = ()) -> str:
-        blocks = [part.block for part in left_out if not part.is_code]
-        codes = [p.block.label for p in left_out if p.is_code and isinstance(p.block, Equation)]
-        copies = self.copies.without_code(codes)
-        printer = PagePrinter(self.document, copied=copies.texts, left_out=blocks)
-        script = self._script(copies)
+        First what is said again on a sheet of its own, then displays, those that the page shows
+        live after the others, and words last; among equals the larger first.
+        """
+        ranks: dict[Packable, int] = {}
+        for section in self.document.sections:
+            for block in section.blocks:
+                if isinstance(block, Packable):
+                    ranks.setdefault(block, 0 if section.on_own_page else _rank(block))
+        sizes = {block: len(self.printer.unpacked(block).encode()) for block in ranks}
+        order = sorted(ranks, key=lambda block: (ranks[block], -sizes[block]))
+        return [(block, sizes[block]) for block in order if sizes[block] > _SHORT]
+
+    def text(self, packed: Sequence[Packable]) -> str:
+        printer = PagePrinter(self.document, copied=self.copies, packed=packed)
+        script = self._script([self.printer.unpacked(block) for block in packed])
         return rendered(
             TEMPLATE,
             printer,
@@ -119,30 +96,24 @@ class _Page:
             ],
             values=[self._value(step) for step in self.functions.steps],
             pole=self._pole(),
-            poles=[*self._messages(printer)],
             stage=self._stage(),
         )
 
-    def _script(self, copies: Copies) -> str:
+    def _script(self, blocks: Sequence[str]) -> str:
         """The script of the page; nothing in it can end its element."""
+        carried = {"copies": self.copies, "poles": [*self._poles()], "blocks": blocks}
         data = {
             "stage": self._stage(),
             "controls": [_data(c) for group in self.groups for c in group.controls],
             "inputs": self.functions.arguments,
-            "poles": [*self._poles()],
-            "copies": copies.texts,
-            "shared": copies.shared,
             "languages": LANGUAGES,
+            "packed": pack(_json(carried)),
         }
-        written = _json(data)
-        text = (
-            resources.environment()
-            .get_template(SCRIPT)
-            .render(
-                kernels=self.functions.source,
-                names=", ".join(self.functions.arguments),
-                data=written,
-            )
+        template = resources.environment().get_template(SCRIPT)
+        text = template.render(
+            kernels=self.functions.source,
+            names=", ".join(self.functions.arguments),
+            data=_json(data),
         )
         return text.replace("</", "<\\/").replace("<!--", "<\\!--")
 
@@ -166,10 +137,10 @@ class _Page:
         }
 
     def _poles(self) -> Iterator[dict[str, Any]]:
-        """The places of the coordinates at which the rates fail, in radians."""
+        """Where the rates fail, in radians, and what is to be said there."""
         found = self.derivation.singularities
         coordinates = self.derivation.model.coordinates
-        for k, point in enumerate(found.points if found else ()):
+        for point in found.points if found else ():
             is_shown = all(p.coordinate in coordinates and p.value.is_number for p in point.places)
             if point.places and is_shown:
                 places = [
@@ -180,17 +151,19 @@ class _Page:
                     }
                     for place in point.places
                 ]
-                yield {"id": f"pole-{k}", "places": places}
-
-    def _messages(self, printer: PagePrinter) -> Iterator[dict[str, str]]:
-        found = self.derivation.singularities
-        for k, point in enumerate(found.points if found else ()):
-            yield {"id": f"pole-{k}", "words": printer.words(singular(point, self.derivation))}
+                words = self.printer.words(singular(point, self.derivation))
+                yield {"places": places, "words": words}
 
     def _pole(self) -> str:
         """How the margin is called, where there is one."""
         kernel = next((k for k in self.functions.kernels if k.name == MARGIN), None)
         return "" if kernel is None else escape(kernel.symbol)
+
+
+def _rank(block: Packable) -> int:
+    if isinstance(block, Equation):
+        return 2 if block.label in SHOWN else 1
+    return 3 if isinstance(block, Paragraph) else 1
 
 
 def _json(data: object) -> str:

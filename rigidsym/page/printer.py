@@ -1,42 +1,50 @@
-"""The note within a page: one form of each display, and buttons that copy it."""
+"""The note within a page: blocks that stand in it or are packed, and buttons that copy."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Sequence
 
 from rigidsym.mechanics.derivation import Markup
-from rigidsym.notes.document import Document, Equation, Paragraph, Table, Text
+from rigidsym.notes.document import (
+    Block,
+    Document,
+    Equation,
+    EquationRow,
+    Paragraph,
+    Table,
+    Text,
+)
 from rigidsym.notes.html import Printer, escape
-from rigidsym.notes.layout import display
 
-_ROOM = 39.5  # ems of a display; what is wider scrolls in a box of its own
+Packable = Equation | EquationRow | Paragraph | Table
 
 
 class PagePrinter(Printer):
-    """Blocks of a note, but for those in `left_out`; `copied` have buttons."""
+    """Blocks of a note; of those in `packed` only their places; `copied` have buttons."""
 
     def __init__(
-        self,
-        document: Document,
-        *,
-        copied: Collection[str],
-        left_out: Iterable[Equation | Table] = (),
+        self, document: Document, *, copied: Collection[str], packed: Sequence[Packable] = ()
     ) -> None:
         super().__init__(document)
         self.copied = copied
-        self.left_out = frozenset(left_out)
+        self._places = {block: place for place, block in enumerate(packed)}
+
+    def unpacked(self, block: Packable) -> str:
+        """What stands in the place of a block: of an equation its displays, not its number."""
+        return self.forms(block) if isinstance(block, Equation) else self._block(block)
 
     def forms(self, equation: Equation) -> str:
-        if equation in self.left_out:
-            return self._left_out()
-        return self.display(equation, display(equation, self.document.notation, _ROOM), "display")
+        return self._place(equation) if equation in self._places else super().forms(equation)
 
-    def table(self, table: Table) -> str:
-        return self._left_out() if table in self.left_out else super().table(table)
+    def _block(self, block: Block) -> str:
+        if isinstance(block, EquationRow | Paragraph | Table) and block in self._places:
+            return self._place(block)
+        return super()._block(block)
 
-    def _left_out(self) -> str:
+    def _place(self, block: Packable) -> str:
         note = f"<code>{escape(self.document.name)}.html</code>"
-        return f'<p class="left-out">Too long for this page; the note, {note}, has it.</p>'
+        words = f"Shown with JavaScript; without, it stands in the note, {note}."
+        return f'<p class="packed" data-packed="{self._places[block]}">{words}</p>'
 
     def tools(self, equation: Equation) -> str:
         """Where the script puts a button a language, if there is something to copy."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 
 from rigidsym.kernels.infix import infix
@@ -15,13 +15,13 @@ from rigidsym.page.series import orders_of
 _show = partial(infix, functions={name: name for name in FUNCTIONS})
 
 
-def python_of(kernel: Kernel) -> list[str | None]:
-    """Imports, None for the functions c_k that it calls, and the function."""
+def python_of(kernel: Kernel, series: Mapping[str, str]) -> str:
+    """Imports, the functions c_k that it may call, and the function."""
     fitted = narrowed(kernel, _show, line=WIDTH - 4, output=WIDTH - 13)
     imports = ", ".join(sorted(_imports(fitted)))
     head = [f"from math import {imports}\n\n"] if imports else []
-    series = [None] if orders_of(kernel) else []
-    return [*head, *series, "\n".join(_function(fitted)) + "\n"]
+    called = [f"{series['python']}\n"] if orders_of(kernel) else []
+    return "\n".join([*head, *called, *_function(fitted), ""])
 
 
 def _imports(kernel: Kernel) -> set[str]:
