@@ -74,7 +74,7 @@ class Motion(Derivation):
     def page(self, *, with_kernels: bool = True) -> str:
         """One HTML file: the note, and a figure with sliders that moves, without network.
 
-        At most 150 kB: equations that are too long for that are left to the note.
+        At most 150 kB: where the note is longer, its longest parts are packed.
         """
         from rigidsym.page.page import print_page
 

@@ -40,6 +40,7 @@ from rigidsym.notes.words import equal, plain
 
 TEMPLATE = "note.html.jinja"
 _PAGE = 39.5  # ems of a display on a page, some less than there are: browsers differ in fonts
+_IN_WORDS = 0.75  # of a display's ems: what a formula among words may take
 _PHONE = 19.0  # ems of a display on a screen 360 pixels wide
 # a formula with the brackets, commas and stops that no line may part from it
 _MATH = r"<math(?:(?!</math>).)*</math>"
@@ -139,13 +140,21 @@ class Printer:
         return ""
 
     def display(self, equation: Equation, shown: Display, kind: str) -> str:
-        announced = self._text(announcement(equation, shown.done))
-        lead = f"<p>{announced}</p>" if announced else ""
-        formula = mathml(shown.latex, self._spoken(equation), is_display=True)
         room = _PAGE if "page" in kind else _PHONE
+        lead = self._lead(equation, shown, room)
+        formula = mathml(shown.latex, self._spoken(equation), is_display=True)
         # what may have to be scrolled must be within reach of the keyboard
         reach = ' tabindex="0" role="group" aria-label="wide formula"' if shown.width > room else ""
         return f'<div class="{kind}">{lead}<div class="formula"{reach}>{formula}</div></div>'
+
+    def _lead(self, equation: Equation, shown: Display, room: float) -> str:
+        """What is said before a display; sides too long for a line of words are set apart."""
+        sides = display(Equation(sides=equation.sides), self.document.notation, room)
+        if shown.done == "listed" and (sides.lines > 1 or sides.width > _IN_WORDS * room):
+            formula = mathml(sides.latex, equal(*equation.sides).text, is_display=True)
+            return f'<div class="formula">{formula}</div><p>Its entries are</p>'
+        announced = self._text(announcement(equation, shown.done))
+        return f"<p>{announced}</p>" if announced else ""
 
     def _spoken(self, equation: Equation) -> str:
         """The equation on one line of Unicode; a matrix row by row."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from rigidsym.kernels.lower import lower
 from rigidsym.kernels.targets import c, numpy
