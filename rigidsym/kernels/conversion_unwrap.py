@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import sympy as sp
 
 from rigidsym.kernels.formulas import Line
+from rigidsym.kernels.naming import Names
 from rigidsym.kernels.writing_lines import LineWriter, number
 from rigidsym.mechanics.conversion_chain import ChainTurns
 from rigidsym.mechanics.conversion_forms import ClosedForm
@@ -16,7 +17,11 @@ from rigidsym.mechanics.conversion_turns import ThreeTurns
 from rigidsym.models.rotation import RotationModel
 
 _SHAPE = ("base", "apart", "together", "before", "after", "opposite", "volume")
-_LOCAL = (*_SHAPE, "samples", "lost", "angles", "result", "q", "parameters", "first", "middle")
+_LOCAL = (
+    *_SHAPE,
+    *("samples", "lost", "angles", "columns", "q", "parameters", "first", "middle", "third"),
+    *(f"turn_{k}" for k in (1, 2, 3)),
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -34,12 +39,13 @@ class ChainUnwrapping:
     """The angles of turns in terms of samples, and the samples in terms of the angles."""
 
     constants: tuple[str, ...]  # the components of "parameters"
-    used: tuple[Line, ...]  # those that are needed, and where they stand
+    used: tuple[tuple[str, int], ...]  # those that are needed, and where they stand
+    samples: tuple[tuple[str, int], ...]  # the same of the coordinates
     lines: tuple[Line, ...]  # what the axes are to one another
     angles: tuple[str, ...]  # of the turns, three of them where two sets give one rotation
     is_triangle: bool
     turns: tuple[str, ...]  # names of the followed angles
-    placed: tuple[Line, ...]  # the coordinates that follow from them
+    placed: tuple[tuple[int, str], ...]  # where the coordinates stand that follow from them
 
 
 _REMARKS: Mapping[str, str] = {
@@ -61,13 +67,15 @@ _WHOLE_TURNS = "No angle of a turn changes by more than π from one sample to th
 
 
 def unwrapping_of(
-    model: RotationModel, rule: ThreeTurns | ChainTurns | ClosedForm
+    model: RotationModel,
+    rule: ThreeTurns | ChainTurns | ClosedForm,
+    reserved: Iterable[str] = (),
 ) -> Unwrapping | None:
     """The continuity of a model's coordinates; None where they are unique."""
     if isinstance(rule, ThreeTurns):
         return _of_turns(rule)
     if isinstance(rule, ChainTurns):
-        return _of_chain(model, rule)
+        return _of_chain(model, rule, reserved)
     if rule.rule not in _REMARKS:
         return None
     kind = "quaternion" if rule.rule == "cayley_klein" else rule.rule
@@ -89,10 +97,11 @@ def _of_turns(rule: ThreeTurns) -> Unwrapping:
     )
 
 
-def _of_chain(model: RotationModel, rule: ChainTurns) -> Unwrapping:
+def _of_chain(model: RotationModel, rule: ChainTurns, reserved: Iterable[str]) -> Unwrapping:
     is_triangle = len(rule.solved) == 3 and (not rule.mirror or rule.is_across)
-    names = {symbol: symbol.name for symbol in model.constants}
-    samples = {q: f"samples[..., {k}]" for k, q in enumerate(model.coordinates)}
+    free = Names((*_LOCAL, *reserved))
+    names = {symbol: free.fresh(symbol.name) for symbol in model.constants}
+    samples = {q: free.fresh(f"sample_{k}") for k, q in enumerate(model.coordinates, 1)}
     writer = LineWriter({**names, **samples}, taken=_LOCAL)
     angles = rule.solved if is_triangle else rule.solved[: len(rule.places)]
     written = tuple(writer.text(turn.angle) for turn in angles)
@@ -101,22 +110,18 @@ def _of_chain(model: RotationModel, rule: ChainTurns) -> Unwrapping:
     turns = sp.symbols([f"turn_{k + 1}" for k in range(len(angles))])
     kept = sp.Matrix(turns[: len(rule.places)]) - sp.Matrix(rule.offsets)
     placed = tuple(
-        (f"result[..., {place}]", writer.text(value))
+        (place, writer.text(value))
         for place, value in zip(rule.places, rule.inverse * kept, strict=True)
     )
     texts = " ".join([*written, *(value for _, value in (*writer.lines, *placed))])
-    used = tuple(
-        (name, f"parameters[..., {place}]")
-        for place, name in enumerate(names.values())
-        if re.search(rf"\b{name}\b", texts)
-    )
     kept_too = "What the rotation does not determine stays as it is." if rule.kept else ""
     return Unwrapping(
         kind="chain",
         remarks=tuple(t for t in (_TWO_SETS if is_triangle else _WHOLE_TURNS, kept_too) if t),
         chain=ChainUnwrapping(
             constants=tuple(names.values()),
-            used=used,
+            used=_found(names.values(), texts),
+            samples=_found(samples.values(), texts),
             lines=tuple(writer.lines),
             angles=written,
             is_triangle=is_triangle,
@@ -124,6 +129,12 @@ def _of_chain(model: RotationModel, rule: ChainTurns) -> Unwrapping:
             placed=placed,
         ),
     )
+
+
+def _found(names: Iterable[str], texts: str) -> tuple[tuple[str, int], ...]:
+    """The names that stand in some lines, and their places."""
+    words = set(re.findall(r"\w+", texts))
+    return tuple((name, place) for place, name in enumerate(names) if name in words)
 
 
 def _relations(writer: LineWriter, rule: ChainTurns) -> None:

@@ -75,7 +75,7 @@ def lower_conversions(
     if backward is not None:
         given = _given(derivation.model, backward.rule, reserved)
         formulas += (*_backward(derivation.model, backward, given), *_shadow_sets(backward.rule))
-        unwrapping = unwrapping_of(derivation.model, backward.rule)
+        unwrapping = unwrapping_of(derivation.model, backward.rule, reserved)
     return ConversionProgram(
         arguments=_with_parameters(derivation, program.arguments, formulas),
         kernels=program.kernels,

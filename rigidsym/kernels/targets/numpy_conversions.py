@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from string import Template
 
 from rigidsym import resources
@@ -14,7 +14,7 @@ from rigidsym.kernels.layout import WIDTH, bracketed, docstring, exploded
 from rigidsym.kernels.targets.numpy_function import OPTIONS, Additions, Function
 
 _HELPERS = "kernels_numpy_conversions.jinja"
-_UNWRAP = "kernels_numpy_unwrap_{}.jinja"
+_UNWRAP = "kernels_unwrap_{}.jinja"
 _ARRAYS = {
     "sqrt": "np.sqrt",
     "atan2": "np.arctan2",
@@ -27,6 +27,12 @@ _ARRAYS = {
     "reach": "_reach(far)",
     "nan": "np.nan",
     "pi": "np.pi",
+}
+_NUMPY = {
+    "np": "np",
+    "running_maximum": "np.maximum.accumulate",
+    "root": "np.sqrt",
+    "is_whole": "not gap.any()",
 }
 _FLOATS = {name: name for name in ("sqrt", "atan2", "hypot", "sin", "cos")} | {
     "pick": "_pick",
@@ -67,15 +73,22 @@ def additions(program: ConversionProgram, shape: str) -> Additions:
 
 
 def _helpers(unwrapping: Unwrapping | None) -> str:
-    environment = resources.environment()
-    texts = [environment.get_template(_HELPERS).render()]
+    template = resources.environment().get_template(_HELPERS)
+    texts = [template.render(has_unwrap=unwrapping is not None)]
     if unwrapping is not None:
-        template = environment.get_template(_UNWRAP.format(unwrapping.kind))
-        numbers = {name: repr(number) for name, number in unwrapping.numbers.items()}
-        chain = _chain(unwrapping.chain) if unwrapping.chain else {}
-        about = docstring(_about_unwrap(unwrapping), indent=4)
-        texts.append(template.render(about=about, **numbers, **chain))
+        texts.append(unwrap_text(unwrapping, _ARRAYS, _NUMPY))
     return "\n\n".join(texts)
+
+
+def unwrap_text(
+    unwrapping: Unwrapping, spelling: Mapping[str, str], library: Mapping[str, str]
+) -> str:
+    """`unwrap` and what it needs, on the arrays of a library that has NumPy's functions."""
+    template = resources.environment().get_template(_UNWRAP.format(unwrapping.kind))
+    numbers = {name: repr(number) for name, number in unwrapping.numbers.items()}
+    chain = _chain(unwrapping.chain, spelling) if unwrapping.chain else {}
+    about = docstring(_about_unwrap(unwrapping), indent=4)
+    return template.render(about=about, **numbers, **chain, **library)
 
 
 def _about_unwrap(unwrapping: Unwrapping) -> list[str | Sequence[str]]:
@@ -91,11 +104,13 @@ def _about_unwrap(unwrapping: Unwrapping) -> list[str | Sequence[str]]:
     ]
 
 
-def _chain(unwrapping: ChainUnwrapping) -> dict[str, str | bool]:
+def _chain(unwrapping: ChainUnwrapping, spelling: Mapping[str, str]) -> dict[str, str | bool]:
     """The pieces of `unwrap` for turns about any axes."""
-    lines = [*unwrapping.used, *unwrapping.lines]
+    lines = [(name, f"samples[..., {place}]") for name, place in unwrapping.samples]
     if unwrapping.used:
-        lines.insert(0, ("parameters", '_checked("parameters", parameters)'))
+        lines.append(("parameters", '_checked("parameters", parameters)'))
+    lines += [(name, f"parameters[..., {place}]") for name, place in unwrapping.used]
+    lines += unwrapping.lines
     followed = "_followed(angles)"
     before = ""
     if unwrapping.is_triangle:
@@ -103,12 +118,13 @@ def _chain(unwrapping: ChainUnwrapping) -> dict[str, str | bool]:
             "angles = _without_poles(angles, base, apart, together)\n    "
             "angles = _nearest(angles, base, before, after, opposite, volume)\n    "
         )
+    placed = [(f"columns[{place}]", value) for place, value in unwrapping.placed]
     return {
         "signature": "q, parameters" if unwrapping.constants else "q",
-        "known": "\n".join(_assigned(4, name, _spelled(v, _ARRAYS)) for name, v in lines),
+        "known": "\n".join(_assigned(4, name, spelled(v, spelling)) for name, v in lines),
         "angles": "\n".join(f"        {angle}," for angle in unwrapping.angles),
         "followed": f"{before}{_named(unwrapping.turns)} = {followed}",
-        "placed": "\n".join(_assigned(4, name, value) for name, value in unwrapping.placed),
+        "placed": "\n".join(_assigned(4, name, value) for name, value in placed),
         "is_triangle": unwrapping.is_triangle,
     }
 
@@ -195,8 +211,8 @@ def _body(formula: Formula, indent: int, spelling: dict[str, str]) -> Iterator[s
     if not formula.inputs:
         yield _matrix_line(indent, is_float=spelling is _FLOATS)
     for names, value in formula.lines:
-        yield _assigned(indent, names, _spelled(value, spelling))
-    outputs = [_spelled(output, spelling) for output in formula.outputs]
+        yield _assigned(indent, names, spelled(value, spelling))
+    outputs = [spelled(output, spelling) for output in formula.outputs]
     if len(outputs) == 1:
         yield f"{' ' * indent}return ({outputs[0]},)"
     else:
@@ -211,7 +227,8 @@ def _matrix_line(indent: int, *, is_float: bool) -> str:
     return bracketed(indent, f"{', '.join(MATRIX)} = _rotation_matrix(", ["*components"], ")")
 
 
-def _spelled(text: str, spelling: dict[str, str]) -> str:
+def spelled(text: str, spelling: Mapping[str, str]) -> str:
+    """A line of a formula in the words of a target."""
     return Template(text).substitute(spelling)
 
 
