@@ -50,6 +50,15 @@ class Formula:
     unit: str = ""
     kept: tuple[str, ...] = ()  # the last inputs, the components of "kept": 0 where left out
 
+    @property
+    def components(self) -> dict[str, tuple[str, ...]]:
+        """The inputs by argument."""
+        end = len(self.inputs) - len(self.kept)
+        sizes = {"p": len(QUATERNION), "matrix": len(MATRIX)}
+        start = sizes.get(self.arguments[0], end)
+        found = {"parameters": self.inputs[start:end], "kept": self.kept}
+        return {a: found.get(a, self.inputs[:start]) for a in self.arguments}
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ConversionProgram:

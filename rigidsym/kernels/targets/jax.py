@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import keyword
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from types import ModuleType
 
@@ -13,7 +14,7 @@ from rigidsym.errors import MissingExtra
 from rigidsym.kernels.conversions import ConversionProgram
 from rigidsym.kernels.infix import infix
 from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Program, names_in
-from rigidsym.kernels.layout import WIDTH, assignment_lines, bracketed, docstring, exploded
+from rigidsym.kernels.layout import WIDTH, assignment_lines, bracketed, docstring
 from rigidsym.kernels.narrow import narrowed
 from rigidsym.kernels.targets import numpy as python
 from rigidsym.kernels.targets import numpy_singular as singular
@@ -28,26 +29,61 @@ _show = partial(infix, functions={name: f"jnp.{name}" for name in FUNCTIONS})
 
 
 def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
-    """The module; conversions are the NumPy target's, and the module says so."""
-    kernels = [_fitted(kernel) for kernel in program.kernels]
+    """The module, with the conversions where they are asked for."""
+    converting = conversions.kernels if conversions else ()
+    kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
     last = singular.last_order(kernels)
     has_parts = any(kernel.parts for kernel in kernels)
     orders = range(FIRST_SERIES, last + 2 * _DERIVATIVES + 1) if last >= 0 else ()
+    added = _converted(program, conversions)
+    functions = [*map(_function, kernels), *added.functions]
+    names = [function["name"] for function in functions] + ["unwrap"] * bool(added.unwrap)
     text = (
         resources.environment()
         .get_template(TEMPLATE)
         .render(
-            about=docstring([*_about(program, has_conversions=conversions is not None)]),
-            imports=_imports(has_parts=has_parts, has_series=bool(orders)),
-            exports=python.lines(f'"{name}",' for name in sorted(k.name for k in kernels)),
-            components=python.lines(map(python.entry, program.arguments)),
-            functions=[*map(_function, kernels)],
+            about=docstring([*_about(program), *added.remarks]),
+            imports=_imports(
+                has_parts=has_parts, has_series=bool(orders), has_unwrap=bool(added.unwrap)
+            ),
+            exports=python.lines(f'"{name}",' for name in sorted(names)),
+            components=python.lines(
+                (*map(python.entry, python.arguments(program, conversions)), *added.components)
+            ),
+            functions=functions,
             has_parts=has_parts,
             has_divisors=any(map(singular.guards_of, kernels)),
             series="\n".join(map(singular.entry, orders)),
+            has_formulas=bool(added.functions),
+            unwrap=added.unwrap,
+            np="jnp",
         )
     )
     return {f"{program.name}_jax.py": text}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Converted:
+    """What conversions add to a module."""
+
+    functions: Sequence[Mapping[str, str]] = ()
+    components: Sequence[str] = ()  # lines of the table of arguments
+    remarks: Sequence[str] = ()
+    unwrap: str = ""
+
+
+def _converted(program: Program, conversions: ConversionProgram | None) -> Converted:
+    coordinates = [argument for argument in program.arguments if argument.name == "q"]
+    if conversions is None or not coordinates:
+        return Converted()
+    from rigidsym.kernels.targets import jax_conversions
+
+    return Converted(
+        functions=jax_conversions.functions(conversions, len(coordinates[0].components)),
+        components=jax_conversions.entries(conversions),
+        remarks=conversions.remarks,
+        unwrap=jax_conversions.unwrap(conversions),
+    )
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
@@ -59,10 +95,10 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
         raise MissingExtra("the target jax", "jax") from error
 
 
-def _imports(*, has_parts: bool, has_series: bool) -> str:
+def _imports(*, has_parts: bool, has_series: bool, has_unwrap: bool) -> str:
     """The lines before that of jax.numpy."""
     standard = ["from functools import cache"] * has_series + ["from math import prod"] * has_parts
-    jax = ["import jax"] * has_series
+    jax = ["import jax"] * (has_series or has_unwrap)
     return "".join(f"{line}\n" for line in [*standard, *[""] * bool(standard), *jax])
 
 
@@ -75,6 +111,8 @@ def _function(kernel: Kernel) -> dict[str, str]:
     given = [f"{name}={name}" for name in vectors]
     taken = list(_taken(kernel))
     return {
+        "name": kernel.name,
+        "ufunc": f'{kernel.name}.signature = "{python.ufunc(kernel)}"',
         "signature": bracketed(0, f"def {kernel.name}(", vectors, "):"),
         "about": docstring(python.about_kernel(kernel), indent=4),
         "body": "\n".join(
@@ -102,12 +140,8 @@ def _taken(kernel: Kernel) -> Iterator[str]:
     used = {name for value in values for name in names_in(value)}
     for argument in kernel.arguments:
         names = [name if name in used else "_" for name in argument.components]
-        left = f"({names[0]},)" if len(names) == 1 else ", ".join(names)
-        line = f'    {left} = parts["{argument.name}"]'
-        if len(line) > WIDTH:
-            line = exploded(4, "(", names, f') = parts["{argument.name}"]')
         if used.intersection(names):
-            yield line
+            yield python.unpacked(names, f'parts["{argument.name}"]')
 
 
 def _lines(kernel: Kernel) -> Iterator[str]:
@@ -123,7 +157,7 @@ def _lines(kernel: Kernel) -> Iterator[str]:
                 yield assignment_lines(4, name, _show(value))
 
 
-def _about(program: Program, *, has_conversions: bool) -> Iterator[str | Sequence[str]]:
+def _about(program: Program) -> Iterator[str | Sequence[str]]:
     """The paragraphs of the module's docstring."""
     yield f"{program.title}: functions for JAX."
     yield " ".join(program.convention)
@@ -133,10 +167,11 @@ def _about(program: Program, *, has_conversions: bool) -> Iterator[str | Sequenc
     yield (
         "All other axes broadcast. The functions are pure: jax.jit, vmap, grad, jvp and vjp "
         "apply. Types are those of JAX: float32, or float64 where jax_enable_x64 is set and an "
-        "argument is float64. They run where JAX does, on a GPU too; tested on processors alone."
+        "argument is float64. They run where JAX does, on a GPU too; tested on processors alone. "
+        "What the NumPy module has beside is not here: `out` and `threads`, since arrays of JAX "
+        "do not change and it shares work by itself, and scalar twins, since jax.jit of one "
+        "orientation is that."
     )
-    if has_conversions:
-        yield "The conversions stand in the NumPy module."
     yield from singular.remarks(program.kernels)
     yield (
         f"Generated by rigidsym {__version__}; do not edit. The equations are those of the note "

@@ -54,7 +54,7 @@ def module_text(
         about=docstring([*_about(program), *added.remarks]),
         imports=_import(singular.imports(kernels) | added.imports),
         exports=lines(f'"{name}",' for name in sorted((*_exports(kernels), *added.exports))),
-        components=lines((*map(entry, _arguments(program, conversions)), *added.components)),
+        components=lines((*map(entry, arguments(program, conversions)), *added.components)),
         functions=[*map(_function, kernels), *added.functions],
         has_parts=any(kernel.parts for kernel in kernels),
         helpers="".join(
@@ -70,7 +70,7 @@ def _import(names: set[str]) -> str:
     return f"from math import {', '.join(sorted({'prod', *names}))}\n\n"
 
 
-def _arguments(program: Program, conversions: ConversionProgram | None) -> list[Argument]:
+def arguments(program: Program, conversions: ConversionProgram | None) -> list[Argument]:
     """All arguments that the functions of the module take, each once."""
     more = conversions.arguments if conversions else ()
     return list({a.name: a for a in (*program.arguments, *more)}.values())
@@ -118,6 +118,13 @@ def _fitted(kernel: Kernel) -> Kernel:
     return narrowed(kernel, _show, line=WIDTH - 8, output=WIDTH - deepest - len(","))
 
 
+def unpacked(names: Sequence[str], value: str) -> str:
+    """_, theta, psi = parts["q"]"""
+    left = f"({names[0]},)" if len(names) == 1 else ", ".join(names)
+    line = f"    {left} = {value}"
+    return line if len(line) <= WIDTH else exploded(4, "(", names, f") = {value}")
+
+
 def _functions(kernels: Sequence[Kernel]) -> set[str]:
     return {call.function for kernel in kernels for call in singular.calls_of(kernel).values()}
 
@@ -149,7 +156,7 @@ def _function(kernel: Kernel) -> Function:
         signature=bracketed(0, f"def {kernel.name}(", [*vectors, "*", *OPTIONS], "):"),
         about=docstring(about_kernel(kernel), indent=4),
         body=_body(kernel, [block, scalar, shape, *("out", "threads"), *given]),
-        ufunc=f'{kernel.name}.signature = "{_ufunc(kernel)}"',
+        ufunc=f'{kernel.name}.signature = "{ufunc(kernel)}"',
         scalar_signature=bracketed(0, f"def {scalar}(", kernel.components, "):"),
         scalar_about=docstring(
             [f"`{kernel.name}` of one orientation; floats to {_nesting(kernel)}."], indent=4
@@ -169,7 +176,7 @@ def _body(kernel: Kernel, arguments: Sequence[str]) -> str:
     return f"{call}\n{bracketed(4, 'return _parted(', ['both', *map(str, kernel.parts)], ')')}"
 
 
-def _ufunc(kernel: Kernel) -> str:
+def ufunc(kernel: Kernel) -> str:
     """The signature as a generalised ufunc: (3),(3)->(3)."""
     inputs = ",".join(f"({len(argument.components)})" for argument in kernel.arguments)
     results = kernel.parts or (kernel.shape,)

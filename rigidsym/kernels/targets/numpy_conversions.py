@@ -28,7 +28,7 @@ _ARRAYS = {
     "nan": "np.nan",
     "pi": "np.pi",
 }
-_NUMPY = {
+_NUMPY = {  # words of the templates that libraries of NumPy's kind share
     "np": "np",
     "running_maximum": "np.maximum.accumulate",
     "root": "np.sqrt",
@@ -65,7 +65,7 @@ def additions(program: ConversionProgram, shape: str) -> Additions:
     return Additions(
         functions=tuple(_function(formula, shape) for formula in formulas),
         exports=tuple(exports) + (("unwrap",) if unwrapping else ()),
-        components=_components(formulas),
+        components=components(formulas),
         imports=frozenset(called & _OF_MATH),
         helpers=_helpers(unwrapping) if exports else "",
         remarks=program.remarks,
@@ -74,7 +74,7 @@ def additions(program: ConversionProgram, shape: str) -> Additions:
 
 def _helpers(unwrapping: Unwrapping | None) -> str:
     template = resources.environment().get_template(_HELPERS)
-    texts = [template.render(has_unwrap=unwrapping is not None)]
+    texts = [template.render(has_unwrap=unwrapping is not None, **_NUMPY)]
     if unwrapping is not None:
         texts.append(unwrap_text(unwrapping, _ARRAYS, _NUMPY))
     return "\n\n".join(texts)
@@ -121,10 +121,10 @@ def _chain(unwrapping: ChainUnwrapping, spelling: Mapping[str, str]) -> dict[str
     placed = [(f"columns[{place}]", value) for place, value in unwrapping.placed]
     return {
         "signature": "q, parameters" if unwrapping.constants else "q",
-        "known": "\n".join(_assigned(4, name, spelled(v, spelling)) for name, v in lines),
+        "known": "\n".join(assigned(4, name, spelled(v, spelling)) for name, v in lines),
         "angles": "\n".join(f"        {angle}," for angle in unwrapping.angles),
         "followed": f"{before}{_named(unwrapping.turns)} = {followed}",
-        "placed": "\n".join(_assigned(4, name, value) for name, value in placed),
+        "placed": "\n".join(assigned(4, name, value) for name, value in placed),
         "is_triangle": unwrapping.is_triangle,
     }
 
@@ -133,7 +133,8 @@ def _named(names: Sequence[str]) -> str:
     return f"({names[0]},)" if len(names) == 1 else ", ".join(names)
 
 
-def _components(formulas: Sequence[Formula]) -> tuple[str, ...]:
+def components(formulas: Sequence[Formula]) -> tuple[str, ...]:
+    """Lines of the table of arguments for what is no vector of the derivation."""
     used = {argument for formula in formulas for argument in formula.arguments}
     lines = []
     if "p" in used:
@@ -165,7 +166,7 @@ def _function(formula: Formula, shape: str) -> Function:
     needed = [f"{i}=0.0" if i in formula.kept else i for i in inputs]
     return Function(
         signature=bracketed(0, f"def {name}(", [*given, "*", *OPTIONS], "):"),
-        about=docstring(_about(formula), indent=4),
+        about=docstring(about_formula(formula), indent=4),
         body=bracketed(
             4, "return _apply(", [block, scalar, result, "out", "threads", *passed], ")"
         ),
@@ -175,7 +176,7 @@ def _function(formula: Formula, shape: str) -> Function:
         exceptional=bracketed(8, "return _exceptional(", [block, result, *inputs], ")"),
         block_signature=bracketed(0, f"def {block}(", inputs, "):"),
         block_body="\n".join(_body(formula, 4, _ARRAYS)),
-        ufunc=f'{name}.signature = "{_ufunc(formula, shape)}"',
+        ufunc=f'{name}.signature = "{ufunc(formula, shape)}"',
     )
 
 
@@ -183,17 +184,16 @@ def _shape(formula: Formula, shape: str) -> str:
     return "(4,)" if formula.name == "quaternion" else shape
 
 
-def _ufunc(formula: Formula, shape: str) -> str:
+def ufunc(formula: Formula, shape: str) -> str:
     """The signature as a generalised ufunc; `shape` is that of the coordinates, "(3,)"."""
-    sizes = {"p": "(4)", "matrix": "(3,3)", "q": shape.replace(",)", ")")}
-    beside = {"p": len(QUATERNION), "matrix": len(MATRIX)}.get(formula.arguments[0], 0)
-    constants = len(formula.inputs) - beside - len(formula.kept) if formula.inputs else "k"
-    sizes |= {"parameters": f"({constants})", "kept": f"({len(formula.kept)})"}
+    counts = {a: f"({len(names) or 'k'})" for a, names in formula.components.items()}
+    sizes = counts | {"matrix": "(3,3)", "q": shape.replace(",)", ")")}
     inputs = ",".join(sizes[argument] for argument in formula.arguments)
     return f"{inputs}->({len(formula.outputs)})"
 
 
-def _about(formula: Formula) -> list[str | Sequence[str]]:
+def about_formula(formula: Formula) -> list[str | Sequence[str]]:
+    """The paragraphs of a function's docstring."""
     unit = f"  in {formula.unit}" if formula.unit else ""
     result = f"(..., {len(formula.outputs)})"
     shapes = [(a, _SHAPES[a].format(len(formula.kept))) for a in formula.arguments]
@@ -211,7 +211,7 @@ def _body(formula: Formula, indent: int, spelling: dict[str, str]) -> Iterator[s
     if not formula.inputs:
         yield _matrix_line(indent, is_float=spelling is _FLOATS)
     for names, value in formula.lines:
-        yield _assigned(indent, names, spelled(value, spelling))
+        yield assigned(indent, names, spelled(value, spelling))
     outputs = [spelled(output, spelling) for output in formula.outputs]
     if len(outputs) == 1:
         yield f"{' ' * indent}return ({outputs[0]},)"
@@ -232,7 +232,7 @@ def spelled(text: str, spelling: Mapping[str, str]) -> str:
     return Template(text).substitute(spelling)
 
 
-def _assigned(indent: int, names: str, value: str) -> str:
+def assigned(indent: int, names: str, value: str) -> str:
     """One assignment; what is too wide is a call, and stands with an argument a line."""
     line = f"{' ' * indent}{names} = {value}"
     if len(line) <= WIDTH:

@@ -81,8 +81,9 @@ def helpers(kernels: Sequence[Kernel]) -> list[str]:
         found.append(environment.get_template(_DIVISORS).render())
     last = last_order(kernels)
     if last >= 0:
-        table = [entry(order) for order in range(FIRST_SERIES, last + 1)]
-        found.append(environment.get_template(_SERIES).render(series="\n".join(table)))
+        table = [f"{entry(order)}\n" for order in range(FIRST_SERIES, last + 1)]
+        series = f"{{\n{''.join(table)}}}" if table else "{}"
+        found.append(environment.get_template(_SERIES).render(series=series))
     return found
 
 
