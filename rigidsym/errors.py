@@ -104,6 +104,12 @@ class MissingExtra(RigidsymError):
         super().__init__(f"{what} needs an extra that is missing: pip install 'rigidsym[{extra}]'")
 
 
+class ClusterError(RigidsymError):
+    """A Dask scheduler that does not answer, or one without workers."""
+
+    exit_code: ClassVar[int] = 4
+
+
 class TemplateFault(RigidsymError):
     """A template that cannot be filled: the message says which, where, and what names it has."""
 
@@ -116,6 +122,18 @@ class ToolFailed(RigidsymError):
 
 class DataError(RigidsymError):
     """A file of numbers that does not hold what was asked of it; the message says where."""
+
+    exit_code: ClassVar[int] = 3
+
+
+class RequestError(DataError):
+    """Something asked of files of numbers that cannot be, whatever they hold."""
+
+    exit_code: ClassVar[int] = 2
+
+
+class DraftInUse(RigidsymError):
+    """A result that another process is writing; the message names it."""
 
 
 class KernelError(RigidsymError):

@@ -7,24 +7,39 @@ import tempfile
 from pathlib import Path
 
 
-def write_text(path: Path, text: str) -> Path:
+def write_text(path: Path, text: str, *, is_lasting: bool = False) -> Path:
     """Write text as UTF-8 with the line ends it has; returns the path. Makes its folder."""
-    return write_bytes(path, text.encode("utf-8"))
+    return write_bytes(path, text.encode("utf-8"), is_lasting=is_lasting)
 
 
-def write_bytes(path: Path, content: bytes) -> Path:
-    """Write bytes to a new file and move it into place; what was there before stays until then."""
+def write_bytes(path: Path, content: bytes, *, is_lasting: bool = False) -> Path:
+    """Write bytes to a new file and move it into place; what was there before stays until then.
+
+    `is_lasting` waits until the bytes would outlast a power cut.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     descriptor, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(descriptor, "wb") as file:
             file.write(content)
+            if is_lasting:
+                file.flush()
+                os.fsync(file.fileno())
         Path(draft).chmod(0o666 & ~_umask())
         os.replace(draft, path)
     except BaseException:
         Path(draft).unlink(missing_ok=True)
         raise
     return path
+
+
+def to_disk(path: Path) -> None:
+    """Wait until a file, or the names in a folder, would outlast a power cut."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def _umask() -> int:

@@ -1,16 +1,10 @@
-"""`rigidsym eval`: files of any length in bounded memory, resumed where they stopped."""
+"""`rigidsym eval`: the columns that are read, the numbers that are written, and what is refused."""
 
 from __future__ import annotations
 
-import json
-import os
-import signal
-import subprocess
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from log_files import COUNT, NAMES, VELOCITY, WRITERS, logged, read, run
 from numpy.testing import assert_array_equal
 from scipy.spatial.transform import Rotation
 
@@ -19,58 +13,20 @@ from rigidsym.errors import DataError
 from rigidsym.evaluation.evaluate import evaluation
 from rigidsym.rows.sources import rows_of
 
-NAMES = ("phi", "theta", "psi", "phi_dot", "theta_dot", "psi_dot")
-COUNT = 1000
-VELOCITY = ("angular_velocity_body",)
-
-
-def _command(*arguments: object) -> list[str]:
-    program = "from rigidsym.cli import main; main()"
-    return [sys.executable, "-c", program, "eval", *map(str, arguments)]
-
-
-def _run(*arguments: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(_command(*arguments), capture_output=True, text=True, check=False)
-
 
 @pytest.fixture(scope="module")
 def motion() -> rs.Motion:
-    return rs.derive(rs.EulerAngles("ZXZ"))
+    return rs.derive("ZXZ")
 
 
 @pytest.fixture(scope="module")
 def table() -> np.ndarray:
-    return np.random.default_rng(7).uniform(-3, 3, (COUNT, 6))
+    return logged()
 
 
 @pytest.fixture(scope="module")
 def expected(motion, table):
     return motion.kernels().load().angular_velocity_body(table[:, :3], table[:, 3:])
-
-
-def _as_npy(path: Path, table: np.ndarray) -> None:
-    np.save(path, table)
-
-
-def _as_text(path: Path, table: np.ndarray) -> None:
-    lines = [",".join(map(repr, row)) for row in table.tolist()]
-    path.write_text("\n".join([",".join(NAMES), *lines]) + "\n", encoding="utf-8")
-
-
-def _as_parquet(path: Path, table: np.ndarray) -> None:
-    import pyarrow
-    from pyarrow import parquet
-
-    columns = dict(zip(NAMES, table.T, strict=True))
-    parquet.write_table(pyarrow.table(columns), path, row_group_size=300)
-
-
-WRITERS = {".npy": _as_npy, ".csv": _as_text, ".parquet": _as_parquet}
-
-
-def _read(path: Path) -> np.ndarray:
-    rows = rows_of(path)
-    return np.concatenate([p.table for p in rows.pieces(range(rows.width))])
 
 
 @pytest.mark.parametrize("target", WRITERS)
@@ -80,7 +36,7 @@ def test_each_kind_of_file_to_each(motion, table, expected, tmp_path, source, ta
     WRITERS[source](given, table)
     made = evaluation(motion, VELOCITY, given, result, piece=137).run()
     assert made.rows == COUNT
-    assert_array_equal(_read(result), expected)
+    assert_array_equal(read(result), expected)
     assert sorted(tmp_path.iterdir()) == sorted([given, result])  # no draft, no marks
 
 
@@ -93,14 +49,14 @@ def test_single_precision_is_kept(motion, table, tmp_path, target):
     kernel = motion.kernels().load().angular_velocity_body
     values = kernel(single[:, :3], single[:, 3:])
     assert values.dtype == np.float32
-    assert_array_equal(_read(result).astype(np.float32), values)
+    assert_array_equal(read(result).astype(np.float32), values)
 
 
 def test_columns_are_found_by_names_with_units_in_any_order(tmp_path):
     text = "t;Yaw [deg];pitch[deg];ROLL (deg);yaw rate;d_pitch;roll_dot\n5;90;0;0;0;0;10\n"
     (tmp_path / "log.csv").write_text(text, encoding="utf-8")
     result = tmp_path / "rates.csv"
-    done = _run("z(yaw) y(pitch) x(roll)", tmp_path / "log.csv", "--out", result, "--degrees")
+    done = run("z(yaw) y(pitch) x(roll)", tmp_path / "log.csv", "--out", result, "--degrees")
     assert done.returncode == 0, done.stderr
     head, line = result.read_text(encoding="utf-8").splitlines()
     assert head.startswith("angular_velocity_body_1 [deg/s],")
@@ -131,107 +87,6 @@ def test_constants_are_given_as_numbers(table, tmp_path):
     assert_array_equal(np.load(result), kernel(table[:, :1], table[:, 1:2], [0.3]))
 
 
-class _Stopped(Exception):
-    pass
-
-
-@pytest.mark.parametrize("target", WRITERS)
-@pytest.mark.parametrize("source", WRITERS)
-def test_stopped_work_goes_on_where_it_was(motion, table, expected, tmp_path, source, target):
-    given, result = tmp_path / f"given{source}", tmp_path / f"result{target}"
-    WRITERS[source](given, table)
-    work = evaluation(motion, VELOCITY, given, result, piece=100)
-
-    def stop(share: float) -> None:
-        if share > 0.5:
-            raise _Stopped
-
-    with pytest.raises(_Stopped):
-        work.run(stop)
-    assert not result.exists()
-    made = evaluation(motion, VELOCITY, given, result, piece=100).run()
-    assert 400 < made.resumed < COUNT
-    assert made.rows == COUNT
-    assert_array_equal(_read(result), expected)
-
-
-def test_rows_beyond_the_marks_are_written_anew(motion, table, expected, tmp_path):
-    """As after a kill between the rows and their marks."""
-    np.save(tmp_path / "given.npy", table)
-    result = tmp_path / "result.npy"
-
-    def stop(share: float) -> None:
-        if share > 0.5:
-            raise _Stopped
-
-    with pytest.raises(_Stopped):
-        evaluation(motion, VELOCITY, tmp_path / "given.npy", result, piece=100).run(stop)
-    with (tmp_path / "result.npy.part").open("ab") as draft:
-        draft.write(b"half a row")
-    evaluation(motion, VELOCITY, tmp_path / "given.npy", result, piece=100).run()
-    assert_array_equal(np.load(result), expected)
-
-
-def test_a_draft_of_other_work_is_not_taken_up(motion, table, tmp_path):
-    np.save(tmp_path / "given.npy", table)
-    result = tmp_path / "result.npy"
-
-    def stop(_: float) -> None:
-        raise _Stopped
-
-    with pytest.raises(_Stopped):
-        evaluation(motion, VELOCITY, tmp_path / "given.npy", result, piece=100).run(stop)
-    other = ("angular_velocity_space",)
-    made = evaluation(motion, other, tmp_path / "given.npy", result, piece=100).run()
-    kernel = motion.kernels().load().angular_velocity_space
-    assert made.resumed == 0
-    assert_array_equal(np.load(result), kernel(table[:, :3], table[:, 3:]))
-
-
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -9)])
-def test_an_interrupted_command_resumes(tmp_path, number, code):
-    count = 600_000
-    angles = np.linspace(0, 1, 6 * count).reshape(count, 6)
-    np.save(tmp_path / "given.npy", angles)
-    result = tmp_path / "result.csv"  # slow to write, so that there is time to interrupt it
-    command = _command("ZXZ", tmp_path / "given.npy", "--out", result)
-    marks = tmp_path / "result.csv.part.json"
-    with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE) as process:
-        while not marks.exists() and process.poll() is None:
-            pass
-        os.kill(process.pid, number)
-        process.communicate()
-    assert process.returncode == code
-    assert not result.exists()
-    done = json.loads(marks.read_text(encoding="utf-8"))["marks"]["rows"]
-    assert 0 < done < count
-    again = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert f"{count} rows, " in again.stdout
-    assert "by an earlier run" in again.stdout
-    with result.open(encoding="utf-8") as file:
-        assert sum(1 for _ in file) == count + 1
-
-
-def test_memory_does_not_grow_with_the_file(tmp_path):
-    peaks = []
-    for count in (100_000, 2_000_000):
-        np.save(tmp_path / "given.npy", np.zeros((count, 6)))
-        program = (
-            "import resource, sys\n"
-            "from rigidsym.evaluation.command import evaluated\n"
-            "from pathlib import Path\n"
-            "evaluated('ZXZ', Path(sys.argv[1]), Path(sys.argv[2]), columns=None, given=(),\n"
-            "    quantities=('angular_velocity_body',), degrees=False, threads=1, scheduler=None)\n"
-            "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)\n"
-        )
-        files = map(str, (tmp_path / "given.npy", tmp_path / "result.npy"))
-        done = subprocess.run(
-            [sys.executable, "-c", program, *files], capture_output=True, text=True, check=True
-        )
-        peaks.append(int(done.stdout) / 1024)
-    assert peaks[1] - peaks[0] < 40  # MB, where the larger file has 96 MB
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -253,7 +108,7 @@ def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
     ("unit", "degrees", "message"),
     [("deg", False, "--degrees is missing"), ("rad", True, "--degrees is given")],
 )
-def test_the_unit_in_a_name_is_the_one_read(motion, tmp_path, unit, degrees, message):
+def test_the_unit_in_a_name_is_the_oneread(motion, tmp_path, unit, degrees, message):
     names = f"phi [{unit}],theta,psi,phi_dot,theta_dot,psi_dot"
     (tmp_path / "log.csv").write_text(f"{names}\n1,2,3,4,5,6\n", encoding="utf-8")
     place = tmp_path / "log.csv", tmp_path / "result.npy"
@@ -265,15 +120,15 @@ def test_the_unit_in_a_name_is_the_one_read(motion, tmp_path, unit, degrees, mes
 def test_a_given_that_is_no_number_is_exit_code_2(tmp_path):
     (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
     files = tmp_path / "log.csv", "--out", tmp_path / "result.npy"
-    done = _run("ZXZ", *files, "--given", "phi=x")
+    done = run("ZXZ", *files, "--given", "phi=x")
     assert done.returncode == 2
     assert "--given phi=x: expected NAME=NUMBER" in done.stderr
 
 
-def test_a_fault_is_exit_code_1_and_leaves_nothing(tmp_path):
+def test_a_fault_of_the_file_is_exit_code_3_and_leaves_nothing(tmp_path):
     (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
-    done = _run("ZXZ", tmp_path / "log.csv", "--out", tmp_path / "result.npy")
-    assert done.returncode == 1
+    done = run("ZXZ", tmp_path / "log.csv", "--out", tmp_path / "result.npy")
+    assert done.returncode == 3
     assert done.stderr.startswith("rigidsym: 3 columns without names")
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
 
@@ -295,7 +150,7 @@ def test_a_file_that_is_no_npy_is_named_without_advice_on_pickles(tmp_path, cont
         rows_of(tmp_path / "log.npy")
 
 
-def test_the_result_does_not_replace_what_is_read(motion, table, tmp_path):
+def test_the_result_does_not_replace_what_isread(motion, table, tmp_path):
     np.save(tmp_path / "given.npy", table)
     with pytest.raises(DataError, match="what is read"):
         evaluation(motion, VELOCITY, tmp_path / "given.npy", tmp_path / "given.npy")
@@ -321,7 +176,7 @@ def test_the_body_of_a_derivation_file_is_known(table, tmp_path):
     np.save(tmp_path / "log.npy", table)
     options = ("--quantity", "rotational_energy", "--given", "B=2.0")
     paths = (tmp_path / "top.toml", tmp_path / "log.npy")
-    done = _run(*paths, "--out", tmp_path / "r.npy", *options)
+    done = run(*paths, "--out", tmp_path / "r.npy", *options)
     assert done.returncode == 0, done.stderr
     turned = rs.derive("ZXZ").kernels().load().angular_velocity_body(table[:, :3], table[:, 3:])
     energy = 0.5 * turned**2 @ (1.5, 2.0, 2.5)
@@ -339,14 +194,13 @@ def test_what_needs_no_rows_is_refused(motion, table, tmp_path):
         evaluation(ball, ("rotational_energy", "inertia_tensor"), *paths)
 
 
-@pytest.mark.parametrize("marks", ["", "{}", "[]", '{"marks": {"rows": 1}, "asked": ""'])
-def test_marks_that_do_not_read_begin_anew(motion, table, expected, tmp_path, marks):
-    np.save(tmp_path / "given.npy", table)
-    result = tmp_path / "result.npy"
-    (tmp_path / "result.npy.part").write_bytes(b"half")
-    (tmp_path / "result.npy.part.json").write_text(marks, encoding="utf-8")
-    assert evaluation(motion, VELOCITY, tmp_path / "given.npy", result).run().resumed == 0
-    assert_array_equal(np.load(result), expected)
+@pytest.mark.parametrize(("name", "found"), [("r.xlsx", "the ending .xlsx"), ("r", "no ending")])
+def test_an_ending_that_nobody_writes_is_exit_code_2(tmp_path, name, found):
+    (tmp_path / "log.csv").write_text("1,2,3,4,5,6\n", encoding="utf-8")
+    done = run("ZXZ", tmp_path / "log.csv", "--out", tmp_path / name)
+    assert done.returncode == 2
+    assert f"{name} has {found}; a result ends in .npy, .csv, .txt, .parquet, .pq" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
 
 
 def test_unknown_numbers_are_refused(motion, table, tmp_path):

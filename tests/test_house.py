@@ -23,6 +23,7 @@ ORDER = (
     "writing",
     "bounded",
     "progress",
+    "cluster",
     "names",
     "rows",
     "measured",

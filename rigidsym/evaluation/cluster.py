@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from rigidsym.errors import MissingExtra
+from rigidsym.cluster import connected
 from rigidsym.evaluation.work import Work
 from rigidsym.rows.piece import Piece, Table
 
@@ -16,14 +16,10 @@ _AHEAD = 2  # pieces on their way for each thread of a worker, so that none wait
 def on_cluster(address: str, work: Work, pieces: Iterable[Piece]) -> Iterator[tuple[Piece, Table]]:
     """Each piece with its result, in order; workers need rigidsym, and no file of ours.
 
-    Raises MissingExtra without Dask, and OSError where no scheduler answers.
+    Raises MissingExtra and ClusterError, as `connected` does.
     """
-    try:
-        from distributed import Client
-    except ImportError:
-        raise MissingExtra("a Dask cluster", "dask") from None
-    with Client(address) as client:
-        most = _AHEAD * max(1, sum(client.nthreads().values()))
+    with connected(address) as client:
+        most = _AHEAD * sum(client.nthreads().values())
         waiting: deque[tuple[Piece, Any]] = deque()
         kept = client.scatter(work, broadcast=True)
         for piece in pieces:

@@ -46,6 +46,8 @@ def evaluated(
         threads=threads,
         scheduler=scheduler,
     )
+    if scheduler is not None:
+        click.echo(f"rigidsym: connecting to {scheduler}", err=True)
     with bar(source.name) as progress:
         return _run(work, progress)
 
@@ -53,8 +55,9 @@ def evaluated(
 def _run(work: Evaluation, progress: Progress | None) -> Evaluated:
     try:
         return work.run(progress)
-    except KeyboardInterrupt:
-        click.echo(f"rigidsym: {draft_of(work.path)} keeps what is done; run it again", err=True)
+    except (KeyboardInterrupt, OSError):
+        if (draft := draft_of(work.path)).exists():
+            click.echo(f"rigidsym: {draft} keeps what is done; run it again to go on", err=True)
         raise
 
 

@@ -9,8 +9,8 @@ from hashlib import sha256
 from pathlib import Path
 
 from rigidsym.evaluation.work import Work
-from rigidsym.rows.sinks import draft_of
-from rigidsym.writing import write_text
+from rigidsym.rows.sinks import Sink, draft_of, reaches
+from rigidsym.writing import to_disk, write_text
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -26,27 +26,40 @@ class Draft:
     """The marks of one result; they hold for one input and one piece of work alone."""
 
     def __init__(self, path: Path, asked: str) -> None:
+        self._path = path
         self._asked = asked
         self._rows = draft_of(path)
         self._marks = self._rows.with_name(f"{self._rows.name}.json")
 
     def marks(self) -> Marks:
-        """Where to go on; from the beginning where there is no draft, or one of other work."""
-        if not self._marks.is_file() or not self._rows.exists():
-            return Marks()
+        """Where to go on; from the beginning where there is no draft, or one of other work.
+
+        Marks of other work are forgotten before its draft is written over: they would be taken
+        up by that work again, with rows that are not its own.
+        """
+        marks = self._kept()
+        if marks.rows and reaches(self._path, marks.sink):
+            return marks
+        self.forget()
+        return Marks()
+
+    def _kept(self) -> Marks:
         try:
             kept = json.loads(self._marks.read_text(encoding="utf-8"))
             return Marks(**kept["marks"]) if kept["asked"] == self._asked else Marks()
-        except (ValueError, KeyError, TypeError):  # another program's file, or half of one
+        except (FileNotFoundError, ValueError, KeyError, TypeError):  # none, or half of one
             return Marks()
 
-    def save(self, marks: Marks) -> None:
-        """To be called when the rows are in the draft."""
+    def save(self, marks: Marks, sink: Sink) -> None:
+        """Keep the marks, once the rows that they speak of are on the disk."""
+        sink.settle()
         content = {"asked": self._asked, "marks": asdict(marks)}
-        write_text(self._marks, json.dumps(content, indent=1) + "\n")
+        write_text(self._marks, json.dumps(content, indent=1) + "\n", is_lasting=True)
 
     def forget(self) -> None:
-        self._marks.unlink(missing_ok=True)
+        if self._marks.exists():
+            self._marks.unlink()
+            to_disk(self._marks.parent)
 
     def remove(self) -> None:
         """Leave nothing behind."""

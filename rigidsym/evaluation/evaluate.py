@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from time import monotonic
 
 from rigidsym.api import Motion
-from rigidsym.errors import DataError
+from rigidsym.errors import DataError, RequestError
+from rigidsym.evaluation.claim import claimed
 from rigidsym.evaluation.draft import Draft, Marks, asked_of
 from rigidsym.evaluation.inputs import inputs_of
 from rigidsym.evaluation.outputs import columns_of
 from rigidsym.evaluation.work import Work
 from rigidsym.progress import Progress
 from rigidsym.rows.piece import ROWS, Piece, Rows, Table
-from rigidsym.rows.sinks import sink_for
+from rigidsym.rows.sinks import Sink, check_ending, sink_for
 from rigidsym.rows.sources import rows_of
 
 
@@ -38,20 +41,28 @@ class Evaluation:
     path: Path
     piece: int = ROWS  # rows in memory at once
     scheduler: str | None = None
+    settle: float = 1.0  # seconds between the marks from which a killed run goes on
 
     def run(self, progress: Progress | None = None) -> Evaluated:
         """Go through the file, from where an earlier run of the same stopped.
 
         Rows go to a draft beside the result, PATH.part, which becomes the result when all are
-        there. Raises DataError, and then leaves no draft, for rows that are no numbers.
+        there. Raises DataError, and then leaves no draft, for rows that are no numbers, and
+        DraftInUse while another process writes the same result. Stopped otherwise, it leaves a
+        draft with marks to go on from, unless nothing was done.
         """
+        with claimed(self.path):
+            return self._run(progress)
+
+    def _run(self, progress: Progress | None) -> Evaluated:
         draft = Draft(self.path, asked_of(self.source, self.work))
         marks = draft.marks()
         begun = marks.rows
         try:
             marks = self._filled(draft, marks, progress)
-        except DataError:
-            draft.remove()
+        except BaseException as error:
+            if isinstance(error, DataError) or not draft.marks().rows:
+                draft.remove()
             raise
         names = tuple(map(str, self.work.columns))
         return Evaluated(path=self.path, rows=marks.rows, resumed=begun, columns=names)
@@ -60,17 +71,32 @@ class Evaluation:
         names = list(map(str, self.work.columns))
         sink = sink_for(self.path, names, self.rows.dtype, marks.sink)
         try:
-            pieces = self.rows.pieces(self.work.inputs.columns, marks.source, self.piece)
-            for piece, table in self._computed(pieces):
-                place = sink.append(table)
-                marks = Marks(source=piece.end, sink=place, rows=marks.rows + len(table))
-                draft.save(marks)
-                if progress is not None:
-                    progress(piece.share)
+            marks = self._appended(sink, draft, marks, progress)
+            draft.save(marks, sink)
             sink.finish(marks.rows)
         finally:
             sink.close()
         draft.forget()
+        return marks
+
+    def _appended(self, sink: Sink, draft: Draft, marks: Marks, progress: Progress | None) -> Marks:
+        """All rows; marks are kept now and then, for a disk takes its time, and on the way out."""
+        saved = monotonic()
+        try:
+            pieces = self.rows.pieces(self.work.inputs.columns, marks.source, self.piece)
+            for piece, table in self._computed(pieces):
+                place = sink.append(table)
+                marks = Marks(source=piece.end, sink=place, rows=marks.rows + len(table))
+                if monotonic() - saved >= self.settle:
+                    draft.save(marks, sink)
+                    saved = monotonic()
+                if progress is not None:
+                    progress(piece.share)
+        except BaseException:
+            if marks.rows:
+                with suppress(OSError):  # where the disk is full, the marks before these hold
+                    draft.save(marks, sink)
+            raise
         return marks
 
     def _computed(self, pieces: Iterable[Piece]) -> Iterator[tuple[Piece, Table]]:
@@ -101,17 +127,19 @@ def evaluation(
     the order of the functions. `given` has numbers for arguments that are in no column.
     `degrees`: angles and their rates are in degrees, in the file and in the result.
 
-    Raises DataError for a file or columns that do not fit, and QuantityError.
+    Raises DataError for a file or columns that do not fit, RequestError for what cannot be, such as
+    an unknown ending of the result, and QuantityError.
     """
+    check_ending(path)
     rows = rows_of(source)
     if columns is not None and len(columns) != rows.width:
         raise DataError(f"{source}: {rows.width} columns, but {len(columns)} names")
     if path.resolve() == source.resolve():
-        raise DataError(f"{path}: the result would take the place of what is read")
+        raise RequestError(f"{path}: the result would take the place of what is read")
     chosen = motion.select(quantities)
     for name in quantities:
         if not chosen.step(name).quantity.inputs:
-            raise DataError(f"{name} takes no input: it is the same for every row")
+            raise RequestError(f"{name} takes no input: it is the same for every row")
     inputs = inputs_of(
         chosen,
         quantities,
@@ -121,7 +149,9 @@ def evaluation(
         degrees=degrees,
     )
     if not inputs.columns:
-        raise DataError(f"{source}: nothing of it is used; the results are the same for every row")
+        raise RequestError(
+            f"{source}: nothing of it is used; the results are the same for every row"
+        )
     work = Work(
         kernels=chosen.kernels(target),
         calls=tuple((name, chosen.step(name).quantity.inputs) for name in quantities),

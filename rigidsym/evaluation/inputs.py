@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigidsym.errors import DataError
+from rigidsym.errors import DataError, RequestError
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.names import offer
 from rigidsym.rows.names import plain, unit_in
@@ -59,16 +59,17 @@ def inputs_of(
 
     `given` holds numbers for components that no column has, such as constants. Raises DataError
     for a column that is missing, with the nearest names that are there, and for one whose name
-    says degrees or radians where `degrees` says the other.
+    says degrees or radians where `degrees` says the other; RequestError for numbers that are
+    for no input.
     """
     wanted = {name for q in quantities for name in derivation.step(q).quantity.inputs}
     arguments = [a for a in derivation.arguments if a.name in wanted]
     known = {name for argument in arguments for name in argument.names}
     if strange := [name for name in given if name not in known]:
-        raise DataError(f"{strange[0]} is no input here; {offer(strange[0], sorted(known))}")
+        raise RequestError(f"{strange[0]} is no input here; {offer(strange[0], sorted(known))}")
     free = [a for a in arguments if not set(a.names) <= given.keys()]
     if partly := [a for a in free if not given.keys().isdisjoint(a.names)]:
-        raise DataError(
+        raise RequestError(
             f"give all of {', '.join(partly[0].names)} as numbers, or none and have them in columns"
         )
     if names is None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rigidsym.cluster import connected
 from rigidsym.errors import BodyError, MissingExtra
 from rigidsym.measured.blocks import BLOCK, Block, Cloud, block_of, cloud_of
 from rigidsym.measured.sources import ArraySource, NpySource
@@ -45,17 +46,15 @@ def cloud_of_file(
     allow: bool = False,
 ) -> Cloud:
     """Of an NPY file that the workers of a cluster see under the same path."""
-    try:
-        from distributed import Client, as_completed
-    except ImportError:
-        raise MissingExtra("a Dask cluster", "dask") from None
     if path.suffix.lower() != ".npy":
         raise BodyError(f"{path}: workers read parts of NPY files alone")
     place = path.resolve()
     total = len(NpySource(place, names))
     blocks: list[Block] = []
     done = 0
-    with Client(scheduler) as client:
+    with connected(scheduler) as client:
+        from distributed import as_completed
+
         starts = range(0, total, _WINDOW)
         tasks = client.map(_of_file, [str(place)] * len(starts), starts, names=names, pure=False)
         for _, found in as_completed(tasks, with_results=True):

@@ -8,14 +8,16 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.lib import format as npy
 
-from rigidsym.errors import MissingExtra
+from rigidsym.errors import MissingExtra, RequestError
 from rigidsym.rows.piece import Table
+from rigidsym.writing import to_disk
 
 
 class Sink(Protocol):
@@ -23,6 +25,9 @@ class Sink(Protocol):
 
     def append(self, table: Table) -> int:
         """Write rows; the place at which they end, in the sink's own measure."""
+
+    def settle(self) -> None:
+        """Wait until all rows so far are on the disk."""
 
     def finish(self, rows: int) -> None:
         """Close the draft, which holds this many rows, and move it into its place."""
@@ -36,18 +41,24 @@ def draft_of(path: Path) -> Path:
     return path.with_name(f"{path.name}.part")
 
 
+def check_ending(path: Path) -> None:
+    """Raise RequestError for a file that no sink writes, naming the endings that are known."""
+    if path.suffix.lower() not in ENDINGS:
+        found = f"the ending {path.suffix}" if path.suffix else "no ending"
+        raise RequestError(f"{path} has {found}; a result ends in {', '.join(ENDINGS)}")
+
+
 def sink_for(path: Path, names: Sequence[str], dtype: np.dtype[Any], start: int = 0) -> Sink:
-    """The sink for a file, by its ending: NPY, Parquet, or else text with commas.
+    """The sink for a file, by its ending: NPY, Parquet, or text with commas.
 
     `start` is the place at which a draft goes on; 0 begins a new one.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
-    kinds: dict[str, type[NpySink] | type[ParquetSink]] = {
-        ".npy": NpySink,
-        ".parquet": ParquetSink,
-        ".pq": ParquetSink,
-    }
-    return kinds.get(path.suffix.lower(), TextSink)(path, names, dtype, start)
+    return _KINDS[path.suffix.lower()](path, names, dtype, start)
+
+
+def reaches(path: Path, place: int) -> bool:
+    """Whether the draft of a file has all that was written up to a place."""
+    return _KINDS[path.suffix.lower()].reaches(draft_of(path), place)
 
 
 class _FileSink:
@@ -59,17 +70,27 @@ class _FileSink:
         self._file.truncate(start)
         self._file.seek(start)
 
+    @staticmethod
+    def reaches(draft: Path, place: int) -> bool:
+        return draft.is_file() and draft.stat().st_size >= place
+
     def _write(self, content: bytes) -> int:
         self._file.write(content)
         self._file.flush()
         return self._file.tell()
 
+    def settle(self) -> None:
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
     def finish(self, rows: int) -> None:  # noqa: ARG002 - a text does not say how many it has
+        self.settle()
         self._file.close()
         os.replace(draft_of(self._path), self._path)
 
     def close(self) -> None:
-        self._file.close()
+        with suppress(OSError):  # of a full disk, which was said when the rows were written
+            self._file.close()
 
 
 class NpySink(_FileSink):
@@ -132,30 +153,53 @@ class ParquetSink:
         self._arrow, self._parquet = pyarrow, parquet
         self._path, self._folder = path, draft_of(path)
         self._names, self._dtype, self._count = list(names), dtype, start
+        self._settled = start
         if not start and self._folder.exists():
             shutil.rmtree(self._folder)
         self._folder.mkdir(exist_ok=True)
 
+    @staticmethod
+    def reaches(draft: Path, place: int) -> bool:
+        return all((draft / _part(count)).is_file() for count in range(place))
+
     def append(self, table: Table) -> int:
-        self._parquet.write_table(self._as_arrow(table), self._part(self._count))
+        self._parquet.write_table(self._as_arrow(table), self._folder / _part(self._count))
         self._count += 1
         return self._count
+
+    def settle(self) -> None:
+        for count in range(self._settled, self._count):
+            to_disk(self._folder / _part(count))
+        to_disk(self._folder)
+        self._settled = self._count
 
     def _as_arrow(self, table: Table) -> Any:
         columns = [np.ascontiguousarray(column, self._dtype) for column in table.T]
         return self._arrow.table(dict(zip(self._names, columns, strict=True)))
-
-    def _part(self, place: int) -> Path:
-        return self._folder / f"{place:08d}.parquet"
 
     def finish(self, rows: int) -> None:  # noqa: ARG002 - the pieces know how many they are
         whole = self._folder / "whole.parquet"
         schema = self._as_arrow(np.empty((0, len(self._names)))).schema
         with self._parquet.ParquetWriter(whole, schema) as writer:
             for place in range(self._count):
-                writer.write_table(self._parquet.read_table(self._part(place)))
+                writer.write_table(self._parquet.read_table(self._folder / _part(place)))
+        to_disk(whole)
         os.replace(whole, self._path)
         shutil.rmtree(self._folder)
 
     def close(self) -> None:
         """Every piece is a file of its own: there is nothing to close."""
+
+
+def _part(count: int) -> str:
+    return f"{count:08d}.parquet"
+
+
+_KINDS: dict[str, type[NpySink] | type[TextSink] | type[ParquetSink]] = {
+    ".npy": NpySink,
+    ".csv": TextSink,
+    ".txt": TextSink,
+    ".parquet": ParquetSink,
+    ".pq": ParquetSink,
+}
+ENDINGS = tuple(_KINDS)
