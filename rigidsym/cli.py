@@ -31,6 +31,7 @@ from rigidsym.options import (
 )
 
 _INTERRUPTED = 130
+_POSITIVE = click.FloatRange(min=0, min_open=True)
 
 
 def main() -> None:
@@ -272,9 +273,9 @@ def identify(
 @commands.command()
 @click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
 @click.option("--columns", metavar="NAME,...", help="Of particles: m,x,y,z in your order.")
-@click.option("--mass", type=float, metavar="KG", help="Of a mesh, filled uniformly.")
-@click.option("--density", type=float, metavar="KG/M3", help="Of a mesh, filled uniformly.")
-@click.option("--scale", type=float, default=1.0, metavar="M", help="One unit of a mesh, in m.")
+@click.option("--mass", type=_POSITIVE, metavar="KG", help="Of a mesh, filled uniformly.")
+@click.option("--density", type=_POSITIVE, metavar="KG/M3", help="Of a mesh, filled uniformly.")
+@click.option("--scale", type=_POSITIVE, default=1.0, metavar="M", help="One unit of a mesh, in m.")
 @click.option("--scheduler", metavar="ADDRESS", help="A Dask cluster that sees the NPY file.")
 @click.option("--allow", is_flag=True, help="Take negative masses, open meshes.")
 @JSON
@@ -286,8 +287,8 @@ def inertia(file: Path, as_json: bool, **options: Any) -> None:
     """
     from rigidsym.measured.command import measure
 
-    found, counted = measure(file, **options)
-    click.echo(json.dumps(found.record(), indent=1) if as_json else found.text(counted))
+    found, noun = measure(file, **options)
+    click.echo(json.dumps(found.record(), indent=1) if as_json else found.text(noun))
 
 
 @commands.command("eval")

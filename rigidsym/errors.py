@@ -1,6 +1,8 @@
 """Every exception a user may see. Each says what was wrong, where, and what was expected.
 
-The class carries the exit code of the command line, so that no caller has to know a table.
+The class carries the exit code of the command line, so that no caller has to know a table: 1
+where what was asked failed, 2 where it was asked wrongly, 3 where a file does not hold what it
+should, 4 where something outside is missing.
 """
 
 from __future__ import annotations
@@ -34,7 +36,7 @@ class NotARotation(RigidsymError):
 class BodyError(RigidsymError):
     """A body that cannot be: no positive mass, an unphysical inertia tensor, an open mesh."""
 
-    exit_code: ClassVar[int] = 2
+    exit_code: ClassVar[int] = 3
 
 
 class DerivationError(RigidsymError):

@@ -198,7 +198,7 @@ def test_all_bad_samples_are_named_with_their_amounts():
     mirrored = good @ np.diag([1, 1, -1])
     with pytest.raises(SampleError) as error:
         rs.identify(angles, matrix=[good, good, stretched, mirrored, np.full((3, 3), np.inf)])
-    assert error.value.exit_code == 2
+    assert error.value.exit_code == 3
     assert str(error.value).splitlines() == [
         "bad samples",
         "  sample 2: angles: a number that is not finite",
@@ -267,8 +267,8 @@ def test_missing_columns_are_named_with_the_nearest_that_are_there():
 @pytest.mark.parametrize(
     ("text", "messages"),
     [
-        ("", ["no samples"]),
-        ("\n \n", ["no samples"]),
+        ("", ["no rows"]),
+        ("\n \n", ["no rows"]),
         ("HEADER\n", ["no samples"]),
         ("HEADER\n1,2,3\n", ["line 2: 3 fields, expected 12"]),
         ("HEADER\nx,0,0,1,0,0,0,1,0,0,0,1\n", ["line 2: field 1: 'x' is not a number"]),

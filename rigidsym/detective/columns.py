@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from itertools import product
 
 from rigidsym.detective.readings import ANGLE_NAMES
 from rigidsym.detective.samples import SampleError
-from rigidsym.rows.names import plain
+from rigidsym.rows.names import counted, plain
 
 Names = tuple[str, ...]
 
@@ -69,7 +70,10 @@ def by_width(width: int) -> Columns:
     if width not in _WITHOUT_HEADER:
         known = "; ".join(f"{number} ({parts})" for number, parts in _WITHOUT_HEADER.items())
         raise SampleError(
-            [f"{width} columns without names: expected {known}; or name them with --columns"]
+            [
+                f"{counted(width, 'column')} without names: expected {known}; "
+                "or name them with --columns"
+            ]
         )
     start = 3 + (9 if width in (12, 18) else 4)
     has_velocity = width > start
@@ -93,7 +97,7 @@ def by_name(header: Sequence[str]) -> Columns:
     rates, omega = _rates_of(angles, names), _nearest(OMEGAS, names)
     has_velocity = bool({*rates, *omega} & set(names))
     wanted = (*angles, *attitude, *((*rates, *omega) if has_velocity else ()))
-    faults = _missing([name for name in wanted if name not in names], header)
+    faults = _missing(wanted, header)
     if faults:
         faults.append("--columns names the columns in their order, for a file with other names")
     if {_share(_nearest(groups, names), names) for groups in (MATRICES, QUATERNIONS)} == {1.0}:
@@ -149,8 +153,19 @@ def _rates_of(angles: Names, names: Sequence[str]) -> Names:
     return _nearest([*groups, _NUMBERED_RATES], names)
 
 
-def _missing(names: Sequence[str], header: Sequence[str]) -> list[str]:
-    from rigidsym.names import offer  # which loads SymPy: only to say what is wrong
-
-    there = [name.strip() for name in header]
-    return [f"no column {name}: {offer(name, there)}" for name in names]
+def _missing(wanted: Sequence[str], header: Sequence[str]) -> list[str]:
+    """What to say of the columns that are not there: those that are nearly, then all others."""
+    there = {plain(name): name.strip() for name in header}
+    free = [name for name in there if name not in wanted]
+    lacking = [name for name in wanted if name not in there]
+    near = {name: get_close_matches(name, free, n=2) for name in lacking}
+    faults = [
+        f"no column {name}: did you mean {' or '.join(there[match] for match in found)}?"
+        for name, found in near.items()
+        if found
+    ]
+    rest = [name for name, found in near.items() if not found]
+    if rest:
+        said = ", ".join(rest).replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
+        faults.append(f"no column {said} among {', '.join(there.values())}")
+    return faults

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from rigidsym.detective.identify import Identification, identify_file, identify_source
 from rigidsym.detective.readings import ANGLE_NAMES
-from rigidsym.detective.samples import SampleError
+from rigidsym.detective.samples import OptionError, SampleError
 from rigidsym.detective.sources import from_arrays, parts_missing
 from rigidsym.progress import bar
 
@@ -25,14 +25,19 @@ def identified(
     columns: str | None = None,
     tolerance: float | None = None,
 ) -> Identification:
-    """What is in a file, or in the texts of the options; raises SampleError for neither and both.
+    """What is in a file, or in the texts of the options.
 
     `texts` has the samples of each part, in their order; `columns` names those of the file.
+    Raises OptionError for neither, for both and for texts that do not read, and SampleError for
+    a file that does not.
     """
     if path is None and any(texts.values()):
-        return _from_options(texts, tolerance)
+        try:
+            return _from_options(texts, tolerance)
+        except SampleError as error:
+            raise OptionError(error.faults, count=error.count) from None
     if path is None or any(texts.values()):
-        raise SampleError(["expected a file, or --angles with --matrix or --quaternion"])
+        raise OptionError(["expected a file, or --angles with --matrix or --quaternion"])
     return _from_path(path, columns, tolerance)
 
 
@@ -71,4 +76,7 @@ def _from_path(path: Path, columns: str | None, tolerance: float | None) -> Iden
     """Samples from a file, with a bar on standard error where that is a terminal."""
     names = None if columns is None else [name.strip() for name in columns.split(",")]
     with bar(path.name) as progress:
-        return identify_file(path, columns=names, tolerance=tolerance, progress=progress)
+        try:
+            return identify_file(path, columns=names, tolerance=tolerance, progress=progress)
+        except SampleError as error:
+            raise error.of(path) from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -20,13 +21,29 @@ _WIDTHS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
 class SampleError(RigidsymError):
     """Samples that cannot be read: all faults at once, each with its place."""
 
-    exit_code: ClassVar[int] = 2
+    exit_code: ClassVar[int] = 3
 
-    def __init__(self, faults: Sequence[str], *, count: int | None = None) -> None:
+    def __init__(
+        self, faults: Sequence[str], *, count: int | None = None, path: Path | None = None
+    ) -> None:
         self.faults = tuple(faults)
-        more = (count or len(faults)) - len(faults[:MOST_SHOWN])
+        self.count = count or len(faults)
+        more = self.count - len(faults[:MOST_SHOWN])
         shown = [*faults[:MOST_SHOWN], *([f"and {more} more"] if more else [])]
-        super().__init__(shown[0] if len(shown) == 1 else "\n  ".join(["bad samples", *shown]))
+        place = "" if path is None or str(path) in shown[0] else f"{path}: "
+        super().__init__(
+            place + (shown[0] if len(shown) == 1 else "\n  ".join(["bad samples", *shown]))
+        )
+
+    def of(self, path: Path) -> SampleError:
+        """The same, with the file that the samples are from."""
+        return SampleError(self.faults, count=self.count, path=path)
+
+
+class OptionError(SampleError):
+    """Samples among the options of a command that cannot be read, or none there."""
+
+    exit_code: ClassVar[int] = 2
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -15,6 +15,7 @@ from rigidsym.detective.readings import ANGLE_NAMES
 from rigidsym.detective.samples import Block, SampleError
 from rigidsym.detective.turns import Array
 from rigidsym.errors import DataError
+from rigidsym.rows.names import misnumbered
 from rigidsym.rows.npy import mapped
 from rigidsym.rows.text import TextRows, text_of
 
@@ -188,7 +189,7 @@ def _from_npy(path: Path, array: NDArray[Any], names: Sequence[str] | None) -> S
             [f"{path}: expected numbers, one sample a row, got {array.dtype} {array.shape}"]
         )
     if names and len(names) != array.shape[1]:
-        raise SampleError([f"{path}: {array.shape[1]} columns, but {len(names)} names"])
+        raise SampleError([misnumbered(path, array.shape[1], len(names))])
     found = by_name(names) if names else by_width(array.shape[1])
     attitude = "matrix" if len(found.attitude) == 9 else "quaternion"
     parts = {"angles": _Part(array, found.angles), attitude: _Part(array, found.attitude)}
@@ -203,12 +204,12 @@ class TextSource:
     def __init__(self, path: Path, names: Sequence[str] | None = None) -> None:
         try:
             self._text = TextRows(path)
-        except DataError:
-            raise SampleError([f"{path}: no samples"]) from None
+        except DataError as error:
+            raise SampleError([str(error)]) from None
         self.coarseness = 0.0
         width, header = self._text.width, self._text.names
         if names and len(names) != width:
-            raise SampleError([f"{path}: {width} columns, but {len(names)} names"])
+            raise SampleError([misnumbered(path, width, len(names))])
         named = names or header
         self._columns = by_name(named) if named else by_width(width)
         self.names = self._columns.names

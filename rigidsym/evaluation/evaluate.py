@@ -16,6 +16,7 @@ from rigidsym.evaluation.inputs import inputs_of
 from rigidsym.evaluation.outputs import columns_of
 from rigidsym.evaluation.work import Work
 from rigidsym.progress import Progress
+from rigidsym.rows.names import misnumbered
 from rigidsym.rows.piece import ROWS, Piece, Rows, Table
 from rigidsym.rows.sinks import Sink, check_ending, sink_for
 from rigidsym.rows.sources import rows_of
@@ -133,7 +134,7 @@ def evaluation(
     check_ending(path)
     rows = rows_of(source)
     if columns is not None and len(columns) != rows.width:
-        raise DataError(f"{source}: {rows.width} columns, but {len(columns)} names")
+        raise DataError(misnumbered(source, rows.width, len(columns)))
     if path.resolve() == source.resolve():
         raise RequestError(f"{path}: the result would take the place of what is read")
     chosen = motion.select(quantities)

@@ -10,7 +10,7 @@ import numpy as np
 from rigidsym.errors import DataError, RequestError
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.names import offer
-from rigidsym.rows.names import plain, unit_in
+from rigidsym.rows.names import counted, plain, unit_in
 from rigidsym.rows.piece import Table
 
 _RATES = ("{}_dot", "{}rate", "d{}")
@@ -111,8 +111,8 @@ def _by_order(arguments: Sequence[Argument], width: int) -> tuple[int, ...]:
     wanted = [name for argument in arguments for name in argument.names]
     if width != len(wanted):
         raise DataError(
-            f"{width} columns without names: expected {len(wanted)} ({', '.join(wanted)}); "
-            "or name them with --columns"
+            f"{counted(width, 'column')} without names: expected {len(wanted)} "
+            f"({', '.join(wanted)}); or name them with --columns"
         )
     return tuple(range(width))
 

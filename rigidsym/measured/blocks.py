@@ -9,7 +9,7 @@ Updating formulae and a pairwise algorithm for computing sample variances (1979)
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from math import fsum, inf
 
@@ -29,6 +29,7 @@ class Block:
     count: int
     mass: float
     lightest: float
+    lightest_at: int  # which particle that is, counted from 0
     about: Array  # c, (3,)
     first: Array  # Σ m (x − c), (3,)
     second: Array  # Σ m (x − c)(x − c)ᵀ, (3, 3)
@@ -44,10 +45,20 @@ class Cloud:
     inertia: Array  # (3, 3), about the centre, kg m²
 
 
-def block_of(masses: Array | None, places: Array, start: int = 0) -> Block:
+def named(row: int) -> str:
+    """What a particle is called in messages."""
+    return f"particle {row}, counted from 0"
+
+
+def block_of(
+    masses: Array | None,
+    places: Array,
+    start: int = 0,
+    name: Callable[[int], str] = named,
+) -> Block:
     """The sums of a block: masses (n,), ones where there are none, and places (3, n).
 
-    `start` is the number of its first particle, for messages. Raises BodyError for NaN.
+    `start` is the number of its first particle, `name` says it. Raises BodyError for NaN.
     """
     count = places.shape[1]
     if masses is None:
@@ -60,25 +71,29 @@ def block_of(masses: Array | None, places: Array, start: int = 0) -> Block:
         apart = places - about[:, None]
         weighted = apart * masses
         first, second = weighted.sum(axis=1), weighted @ apart.T
-    block = Block(count, mass, float(masses.min()), about, first, second)
+    block = Block(
+        count, mass, float(masses.min()), start + int(masses.argmin()), about, first, second
+    )
     if not np.isfinite(block.second).all():
-        raise BodyError(_not_finite(masses, places, start))
+        raise BodyError(_not_finite(masses, places, start, name))
     return block
 
 
-def _not_finite(masses: Array, places: Array, start: int) -> str:
+def _not_finite(masses: Array, places: Array, start: int, name: Callable[[int], str]) -> str:
     wrong = ~(np.isfinite(masses) & np.isfinite(places).all(axis=0))
     if not wrong.any():
         return f"particles from {start} on: their moments are too large for double precision"
     row = int(np.argmax(wrong))
     x, y, z = places[:, row]
     return (
-        f"particle {start + row}, counted from 0: expected finite numbers, got mass "
+        f"{name(start + row)}: expected finite numbers, got mass "
         f"{masses[row]:g} at ({x:g}, {y:g}, {z:g})"
     )
 
 
-def cloud_of(blocks: Iterable[Block], *, allow: bool = False) -> Cloud:
+def cloud_of(
+    blocks: Iterable[Block], name: Callable[[int], str] = named, *, allow: bool = False
+) -> Cloud:
     """All blocks as one body; their order does not matter.
 
     Raises BodyError for no particles, for a total mass that is not positive, and, unless they are
@@ -87,9 +102,12 @@ def cloud_of(blocks: Iterable[Block], *, allow: bool = False) -> Cloud:
     found = list(blocks)
     if not found:
         raise BodyError("expected at least one particle, got none")
-    lightest = min(block.lightest for block in found)
-    if lightest < 0 and not allow:
-        raise BodyError(f"a particle has the mass {lightest:g} kg; expected none that is negative")
+    lightest = min(found, key=lambda block: block.lightest)
+    if lightest.lightest < 0 and not allow:
+        raise BodyError(
+            f"{name(lightest.lightest_at)}: the mass is {lightest.lightest:g} kg; expected none "
+            "that is negative"
+        )
     mass = fsum(block.mass for block in found)
     if not 0 < mass < inf:
         raise BodyError(f"the total mass is {mass:g} kg; expected a positive mass")

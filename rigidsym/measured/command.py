@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from rigidsym.errors import BodyError
+import click
+
 from rigidsym.measured.inertia import inertia_of
 from rigidsym.measured.mesh import ENDINGS, mesh_inertia, read_mesh_file
 from rigidsym.measured.result import Measured
@@ -22,9 +23,9 @@ def measure(
     allow: bool = False,
     scheduler: str | None = None,
 ) -> tuple[Measured, str]:
-    """What a file holds as a body, and what was counted in it: particles, or faces.
+    """What a file holds as a body, and what was counted in it: particle or face.
 
-    Raises BodyError, for options too that are for the other of the two, and MissingExtra.
+    Raises UsageError for options that are for the other of the two, BodyError and MissingExtra.
     """
     is_mesh = path.suffix.lower() in ENDINGS
     of_mesh = {"--mass": mass, "--density": density, "--scale": None if scale == 1 else scale}
@@ -32,17 +33,19 @@ def measure(
     if is_mesh:
         _refuse(of_particles, f"{path} holds a mesh", "particles")
         if mass is None and density is None:
-            raise BodyError(f"{path} holds a mesh: expected --mass or --density")
+            raise click.UsageError(f"{path} holds a mesh: expected --mass or --density")
         mesh = read_mesh_file(path, scale=scale)
-        return mesh_inertia(mesh, mass=mass, density=density, allow=allow), "faces"
+        return mesh_inertia(mesh, mass=mass, density=density, allow=allow), "face"
     _refuse(of_mesh, f"{path} holds particles", "a mesh")
     names = None if columns is None else [name.strip() for name in columns.split(",")]
+    if scheduler is not None:
+        click.echo(f"rigidsym: connecting to {scheduler}", err=True)
     with bar(path.name) as progress:
         found = inertia_of(path, columns=names, allow=allow, scheduler=scheduler, progress=progress)
-    return found, "particles"
+    return found, "particle"
 
 
 def _refuse(options: Mapping[str, object], found: str, expected: str) -> None:
     for option, value in options.items():
         if value is not None:
-            raise BodyError(f"{found}; {option} is for {expected}")
+            raise click.UsageError(f"{found}; {option} is for {expected}")

@@ -45,7 +45,7 @@ def inertia_of(
         source: Source = source_of(Path(particles), columns)
     else:
         source = ArraySource(np.asarray(particles), columns)
-    return measured(cloud_of(_blocks(source, progress), allow=allow))
+    return measured(cloud_of(_blocks(source, progress), source.place, allow=allow))
 
 
 def measured(cloud: Cloud) -> Measured:
@@ -62,7 +62,7 @@ def measured(cloud: Cloud) -> Measured:
 def _blocks(source: Source, progress: Progress | None) -> Iterator[Block]:
     done = 0
     for piece in source.pieces():
-        yield block_of(piece.masses, piece.places, done)
+        yield block_of(piece.masses, piece.places, done, source.place)
         done += piece.places.shape[1]
         if progress is not None:
             progress(piece.share)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidsym.measured.axes import PrincipalAxes
+from rigidsym.rows.names import counted
 
 Array = NDArray[np.float64]
 
@@ -29,11 +30,11 @@ class Measured:
         """Radii of gyration about the principal axes, (3,), m: √(Iₖ/M)."""
         return np.sqrt(np.maximum(self.principal.moments, 0) / self.mass)
 
-    def text(self, counted: str = "particles") -> str:
-        """A few lines for a terminal."""
+    def text(self, noun: str = "particle") -> str:
+        """A few lines for a terminal; `noun` is what was counted."""
         principal = self.principal
         lines = [
-            f"{self.count} {counted}",
+            counted(self.count, noun),
             f"mass                 M = {_number(self.mass)} kg",
             f"centre of mass       c = ({_row(self.centre)}) m",
             "inertia tensor about the centre of mass, kg m²",

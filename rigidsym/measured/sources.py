@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidsym.errors import BodyError, DataError
-from rigidsym.measured.blocks import BLOCK, Array
+from rigidsym.measured.blocks import BLOCK, Array, named
 from rigidsym.names import offer
-from rigidsym.rows.names import plain, unit_in
+from rigidsym.rows.names import counted, plain, unit_in
 from rigidsym.rows.npy import mapped
 from rigidsym.rows.sources import rows_of
+from rigidsym.rows.text import TextRows
 
 DEFAULT = ("m", "x", "y", "z")
 _AXES = ("x", "y", "z")
@@ -73,7 +74,7 @@ class Columns:
                 )
             names = DEFAULT[4 - width :]
         if len(names) != width:
-            raise BodyError(f"{len(names)} names for {width} columns")
+            raise BodyError(f"{counted(len(names), 'name')} for {counted(width, 'column')}")
         return cls.named(names)
 
     def piece(self, columns: NDArray[Any], share: float) -> Piece:
@@ -107,6 +108,8 @@ class ArraySource:
     def __len__(self) -> int:
         return len(self._array)
 
+    place = staticmethod(named)
+
     def pieces(self, start: int = 0, stop: int | None = None) -> Iterator[Piece]:
         """Blocks of particles from a row on; the data are copied block by block."""
         end = len(self) if stop is None else min(stop, len(self))
@@ -135,6 +138,8 @@ class NpySource:
     def __len__(self) -> int:
         return len(self._source)
 
+    place = staticmethod(named)
+
     def pieces(self, start: int = 0, stop: int | None = None) -> Iterator[Piece]:
         """As those of an array, with the pages forgotten after every few megabytes."""
         unread = 0
@@ -162,6 +167,12 @@ class RowsSource:
         self.columns = Columns.of_width(
             self._rows.width, self._rows.names if names is None else names
         )
+
+    def place(self, row: int) -> str:
+        """What a particle is called in messages."""
+        if isinstance(self._rows, TextRows):
+            return f"{self._rows.path}, line {self._rows.line_of(row)}"
+        return named(row)
 
     def pieces(self) -> Iterator[Piece]:
         """Blocks of all rows."""

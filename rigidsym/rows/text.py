@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from rigidsym.errors import DataError
+from rigidsym.rows.names import counted
 from rigidsym.rows.piece import ROWS, Piece, Table
 
 _SEPARATORS = (",", ";", "\t", None)  # None: blanks
@@ -82,12 +83,20 @@ class TextRows:
         """Which fields of a line are missing or no numbers."""
         fields = line.split(self.separator)
         if len(fields) <= max(columns):
-            return [f"{len(fields)} fields, expected {self.width}"]
+            return [f"{counted(len(fields), 'field')}, expected {self.width}"]
         return [
             f"field {place + 1}: {fields[place].strip()!r} is not a number{_hint(fields[place])}"
             for place in columns
             if not is_number(fields[place])
         ]
+
+    def line_of(self, row: int) -> int:
+        """The number of the line in which a row stands, rows counted from 0."""
+        for lines in self.lines():
+            if row < len(lines.numbers):
+                return lines.numbers[row]
+            row -= len(lines.numbers)
+        raise IndexError(f"{self.path} has fewer rows")
 
     def _fault(self, columns: Sequence[int]) -> str:
         """The first line of the file that does not read, and why."""
