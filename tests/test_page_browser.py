@@ -18,6 +18,7 @@ from rigidsym.kernels.lower import MARGIN
 from rigidsym.page.functions import SHOWN
 from rigidsym.page.page import MOST_BYTES
 
+DRAWN = ("ZXZ", "YZY", "xyz", "z(phi) x(theta) z(psi) y(delta)", "axis_angle")
 LIVE = ("ZXZ", "zyx", *OTHERS)
 
 # --- a real browser ---
@@ -171,7 +172,7 @@ LINES = """
 """
 
 
-@pytest.mark.parametrize("rotation", ["ZXZ", "YZY", "xyz", "z(phi) x(theta) z(psi) y(delta)"])
+@pytest.mark.parametrize("rotation", DRAWN)
 def test_the_figure_begins_as_that_of_the_note(tab, rotation, tmp_path):
     opened(tab, page_of(rotation), tmp_path)
     live = [(kind, points) for kind, points in tab.run(f"({LINES})('#figure')") if points]
@@ -185,11 +186,66 @@ def test_the_figure_begins_as_that_of_the_note(tab, rotation, tmp_path):
         ), (kind, points)
 
 
+LABELS = """
+(root) => [...document.querySelectorAll(`${root} text`)].map((label) => label.textContent)
+"""
+
+
+@pytest.mark.parametrize("rotation", [*DRAWN, "rotation_vector", "unit_quaternion", "gibbs_vector"])
+def test_lines_have_the_names_that_they_have_in_the_note(tab, rotation, tmp_path):
+    opened(tab, page_of(rotation), tmp_path)
+    live = {tidy(label) for label in tab.run(f"({LABELS})('#figure')")}
+    assert live - {"Ω"} == {tidy(label) for label in tab.run(f"({LABELS})('figure svg')")}
+
+
+def tidy(label: str) -> str:
+    return "".join(label.split())
+
+
+def test_a_turn_of_more_than_half_is_drawn_about_its_vector(tab, tmp_path):
+    opened(tab, page_of("rotation_vector"), tmp_path)
+    tab.run(f"({SET_ALL})({json.dumps({'q-0': 0.0, 'q-1': 0.0, 'q-2': -4.5})})")
+    lines = tab.run(f"({LINES})('#figure')")
+    (arc,) = [points for kind, points in lines if kind == "turn"]
+    assert len(arc) == 2 * (45 + 1)  # a point for each tenth of a radian
+    (vector,) = [points for kind, points in lines if kind == "vector"]
+    assert vector[3] > 100  # downwards
+
+
+SIGHT = """
+(() => {
+  const [outer, inner] = ["#figure", "#figure g"].map((e) =>
+    document.querySelector(e).getBoundingClientRect());
+  return ["left", "top", "right", "bottom"].map((side) => Math.round(inner[side] - outer[side]));
+})()
+"""
+
+
+def test_the_figure_fills_its_place_and_stays_in_it(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    size = "document.getElementById('figure').getBoundingClientRect().height"
+    height = tab.run(size)
+    left, top, right, bottom = tab.run(SIGHT)
+    assert 0 <= top < 15
+    assert -15 < bottom <= 0
+    for angles in ((0, 150, 0), (90, 120, 45), (10, 179, 60)):
+        tab.run(f"({SET_ALL})({json.dumps({f'q-{k}': a for k, a in enumerate(angles)})})")
+        left, top, right, bottom = tab.run(SIGHT)
+        assert left >= 0
+        assert top >= 0
+        assert right <= 0
+        assert bottom <= 0
+        assert tab.run(size) == height
+    tab.click("#reset")
+    assert tab.run(SIGHT)[3] > -15
+
+
 def test_a_pole_is_shown_when_it_is_near(tab, tmp_path):
     opened(tab, page_of("ZXZ"), tmp_path)
     assert tab.run("document.getElementById('warning').innerHTML") == ""
     tab.run(f"({SET_ALL})({json.dumps({'q-1': 2.0})})")
     assert "θ = 0" in tab.run("document.getElementById('warning').innerHTML")
+    assert tab.run("document.getElementById('margin-label').textContent") == "Near the pole"
     tab.run(f"({SET_ALL})({json.dumps({'q-1': -179.0})})")
     assert "θ = π" in tab.run("document.getElementById('warning').innerHTML")
     tab.run(f"({SET_ALL})({json.dumps({'q-1': 60.0})})")

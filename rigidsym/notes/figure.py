@@ -29,7 +29,7 @@ def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
 
     None for any other, for more than MOST_TURNS, and for axes that are not numbers.
     """
-    turns = model.turns or _about_the_vector(model)
+    turns = turns_of(model)
     if not _can_be_drawn(turns):
         return None
     axes = tuple(map(_components, turns))
@@ -37,7 +37,7 @@ def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
     names = Names(
         angles=tuple(markup(turn.angle, notation) for turn in turns),
         body=tuple(map(notation.manner.symbol, BODY)),
-        between=None if model.turns else _name_of_the_vector(model),
+        between=None if model.turns else name_of_the_vector(model),
         is_vector=not model.turns,
     )
     scene = scene_of(axes, angles, names)
@@ -50,7 +50,13 @@ def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
 
 def view_of(model: RotationModel) -> tuple[tuple[float, ...], Camera] | None:
     """The angles of the turns, in radians, and the camera of the figure; None where it has none."""
-    return _view(model.turns) if _can_be_drawn(model.turns) else None
+    turns = turns_of(model)
+    return _view(turns) if _can_be_drawn(turns) else None
+
+
+def turns_of(model: RotationModel) -> tuple[Turn, ...]:
+    """The turns that the figure shows: those of the model, or the one about its vector."""
+    return model.turns or _about_the_vector(model)
 
 
 def _can_be_drawn(turns: Sequence[Turn]) -> bool:
@@ -67,7 +73,7 @@ def _about_the_vector(model: RotationModel) -> tuple[Turn, ...]:
     if not model.vector:
         return ()
     axis = tuple(sp.Rational(part, 3) for part in (1, 2, 2))
-    name = _name_of_the_vector(model).text
+    name = name_of_the_vector(model).text
     return (Turn(axis=name, angle=_angle_about(model), components=axis),)
 
 
@@ -83,7 +89,7 @@ def _angle_about(model: RotationModel) -> sp.Expr:
     return angles[0] if angles else sp.Symbol(next(letters))
 
 
-def _name_of_the_vector(model: RotationModel) -> Markup:
+def name_of_the_vector(model: RotationModel) -> Markup:
     """e where it is bound to be a unit vector, v where it is not."""
     square = sp.Add(*(part**2 for part in model.vector))
     return _UNIT if any(c - square == -1 for c in model.constraints) else VECTOR

@@ -16,11 +16,9 @@ from rigidsym.notes.words import unit_in_words
 
 _DEGREE = pi / 180
 _SECTIONS = {"q": "Coordinates", "q_dot": "Rates", "parameters": "Constants"}
-_VECTOR = (0.4, 0.8, 0.8)
-_NUMBERS = {  # by how many of the coordinates are no angles; a vector where nothing is said
-    4: (0.84, 0.2, 0.4, 0.4),  # a quaternion of about 65°
-    9: (0.5, -0.7, 0.5, 0.8, 0.6, 0.1, -0.4, 0.3, 0.8),  # by rows, not far from a rotation
-}
+_VECTOR = (0.4, 0.8, 0.8)  # along the axis in the figure of the note
+_SCALAR = 1.68  # beside a vector: the quaternion of about 65°, once it is a unit
+_MATRIX = (0.5, -0.7, 0.5, 0.8, 0.6, 0.1, -0.4, 0.3, 0.8)  # by rows, not far from a rotation
 _RATES = (0.4, 0.25, 0.7)
 _ANGLE = 40.0  # degrees, where no figure says better
 
@@ -84,10 +82,13 @@ def _coordinates(
     argument: Argument, model: RotationModel, shown: dict[sp.Expr, float]
 ) -> Iterator[Control]:
     periods = [period_of(coordinate, model) for coordinate in model.coordinates]
-    numbers = cycle(_NUMBERS.get(periods.count(0.0), _VECTOR))
+    numbers = cycle(_MATRIX if periods.count(0.0) == len(_MATRIX) else _VECTOR)
+    size = 0.5 if model.vector and periods.count(0.0) > len(model.vector) else 1.0
+    vector = {part: size * start for part, start in zip(model.vector, _VECTOR, strict=False)}
     for place, (coordinate, period) in enumerate(zip(model.coordinates, periods, strict=True)):
         angle = round(degrees(shown[coordinate])) if coordinate in shown else _ANGLE
-        start = angle if period else next(numbers)
+        number = size * _SCALAR if model.vector else next(numbers)
+        start = angle if period else vector.get(coordinate, number)
         yield _control(argument, place, start, period, _reach(argument.units[place], model))
 
 

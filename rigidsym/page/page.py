@@ -18,6 +18,7 @@ from rigidsym.mechanics.derivation import Derivation, Markup, Step
 from rigidsym.notes.document import Document, Equation, Paragraph
 from rigidsym.notes.html import escape, rendered
 from rigidsym.notes.mathml import mathml
+from rigidsym.notes.measure import ems
 from rigidsym.notes.singular_words import singular
 from rigidsym.notes.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
@@ -94,6 +95,7 @@ class _Page:
                 {"title": group.title, "controls": [*map(_shown, group.controls)]}
                 for group in self.groups
             ],
+            names=self._names_in_ems(),
             values=[self._value(step) for step in self.functions.steps],
             pole=self._pole(),
             stage=self._stage(),
@@ -116,6 +118,11 @@ class _Page:
             data=_json(data),
         )
         return text.replace("</", "<\\/").replace("<!--", "<\\!--")
+
+    def _names_in_ems(self) -> str:
+        """How wide the widest name of a slider is."""
+        controls = (control for group in self.groups for control in group.controls)
+        return f"{max(2.5, *(1.15 * ems(control.symbol.latex) for control in controls)):.2f}"
 
     def _stage(self) -> dict[str, Any]:
         model = self.derivation.model

@@ -12,14 +12,14 @@ from rigidsym.mechanics.derivation import Markup
 from rigidsym.mechanics.quantities import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import AXES
-from rigidsym.notes.figure import MOST_TURNS, view_of
+from rigidsym.notes.figure import MOST_TURNS, name_of_the_vector, turns_of, view_of
 from rigidsym.notes.formula import markup
 from rigidsym.notes.notation import Notation
 from rigidsym.notes.scene import BODY
 from rigidsym.notes.svg import as_in_formulas
 
 _AZIMUTH, _ELEVATION = 35, 22  # degrees, where no figure says better
-_LENGTH = Markup("n", "n")  # of a vector: the angle of the one turn, as in the figure of the note
+_AXIS = Markup(r"\mathbf{e}", "e")  # of the one turn that any rotation is
 
 
 def has_turns(model: RotationModel) -> bool:
@@ -31,30 +31,39 @@ def shown_angles(model: RotationModel) -> dict[sp.Expr, float]:
     """The coordinates that are angles of turns, as the figure of the note has them; radians."""
     view = view_of(model)
     angles = view[0] if view else ()
-    pairs = zip(model.turns, angles, strict=False)
+    pairs = zip(turns_of(model), angles, strict=False)
     return {turn.angle: angle for turn, angle in pairs if turn.angle in model.coordinates}
 
 
 def stage_of(model: RotationModel, notation: Notation) -> Mapping[str, Any]:
-    """Direction of the viewer in degrees, and the names of lines as plain text."""
+    """Direction of the viewer in degrees, the names of lines as plain text, and what is a vector.
+
+    `vector` are the places of its components among the coordinates, `angle` is the place of the
+    angle about it, where that is a coordinate.
+    """
     view = view_of(model)
     toward = view[1].toward if view else None
     named = notation.manner.symbol
+    shown = turns_of(model) if has_turns(model) or model.vector else ()
+    angles = {turn.angle for turn in shown} if model.vector else set()
     return {
         "azimuth": round(degrees(atan2(toward[1], toward[0]))) if toward else _AZIMUTH,
         "elevation": round(degrees(asin(toward[2]))) if toward else _ELEVATION,
         "space": list(AXES),
         "body": [_written(named(axis)) for axis in BODY],
-        "turns": [_written(name) for name in _names_of_turns(model, notation)],
-        "node": "N" if has_turns(model) else "e",
+        "turns": [_written(markup(turn.angle, notation)) for turn in shown],
+        "node": _written(_between(model)),
+        "vector": [*map(model.coordinates.index, model.vector)],
+        "angle": next((k for k, q in enumerate(model.coordinates) if q in angles), None),
         "omega": _written(named(SPACE.omega)),
     }
 
 
-def _names_of_turns(model: RotationModel, notation: Notation) -> list[Markup]:
+def _between(model: RotationModel) -> Markup:
+    """An axis that is neither of space nor of the body, as the note calls it."""
     if has_turns(model):
-        return [markup(turn.angle, notation) for turn in model.turns]
-    return [_LENGTH] if model.vector else []
+        return Markup("N", "N")
+    return name_of_the_vector(model) if model.vector else _AXIS
 
 
 def _written(symbol: Markup) -> str:
