@@ -154,7 +154,7 @@ def _preset(name: str, names: Sequence[str] | None, passive: bool) -> RotationMo
     return replace(
         model,
         name=name + ("_transposed" if passive else ""),
-        title=f"{model.title} ({preset.about})",
+        title=preset.about[0].upper() + preset.about[1:] + (", transposed" if passive else ""),
         source=preset.source,
     )
 

@@ -40,10 +40,7 @@ def applied(form: VectorForm, symbol: Markup, vector: Markup) -> VectorForm:
         VectorTerm(term.coefficient, fill(*_APPLIED[term.vector], vector)) for term in form.terms
     )
     claim = fill(
-        r"{0} = f\,{1} + g\,\mathbf{{v}}\times{1} + \cdots",
-        "{0} = f {1} + g v × {1} + …",
-        symbol,
-        vector,
+        r"{0}\text{{ in terms of }}\mathbf{{v}}, {1}", "{0} in terms of v, {1}", symbol, vector
     )
     return replace(form, terms=terms, proof=Proof(claim=claim, status="exact"))
 
@@ -60,8 +57,7 @@ def matrix_form(
         return None
     terms = min((_terms(work, form, below) for form in forms), key=length_of_form)
     claim = Markup(
-        rf"{symbol.latex} = f\,\mathbf{{1}} + g\,\mathbf{{C}}(\mathbf{{v}}) + \cdots",
-        f"{symbol.text} = f 1 + g C(v) + …",
+        rf"{symbol.latex}\text{{ in terms of }}\mathbf{{v}}", f"{symbol.text} in terms of v"
     )
     proof = Proof(claim=claim, status="exact")
     return VectorForm(terms=terms, components=model.vector, length=LENGTH, proof=proof)

@@ -146,12 +146,20 @@ class _Kinematics:
         )
         return self._matrix(
             self._shown(values.R),
-            "The turns are multiplied from left to right."
-            if self.model.turns
-            else "The rotation is given.",
+            self._given_as(),
             *proofs,
             symbol=symbol,
         )
+
+    def _given_as(self) -> str:
+        """Where the matrix that is shown comes from."""
+        turned_over = " and transposed" if self.model.passive else ""
+        match len(self.model.turns):
+            case 0:
+                return f"The rotation is given{turned_over}."
+            case 1:
+                return f"The matrix of the turn is written out{turned_over}."
+        return f"The turns are multiplied from left to right{turned_over}."
 
     def rotation_rate(self) -> _Found:
         spin = self._shown_spin
@@ -193,6 +201,11 @@ class _Kinematics:
             )
         else:
             because = "The vector of a skew matrix stands in its entries (3,2), (1,3) and (2,1)."
+            if self.model.passive:
+                because = (
+                    "The derivative of the transpose times the matrix is the operator of Ω, as "
+                    "the transpose is R. " + because
+                )
             claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
             proof = self.prove.vanishes(values.spin - hat(values.omega_space), claim)
         return self._vector(SPACE, values.omega_space, because, proof)
@@ -202,7 +215,8 @@ class _Kinematics:
         return self._vector(
             BODY,
             values.omega_body,
-            "The components along the axes of the body follow by the transposed rotation.",
+            "The components along the axes of the body follow by the "
+            + ("direction cosine matrix." if self.model.passive else "transposed rotation."),
             self.prove.vanishes(
                 values.R @ values.omega_body - values.omega_space,
                 claims.rotates(ROTATION, BODY.omega, SPACE.omega),
@@ -214,7 +228,9 @@ class _Kinematics:
         claim = claims.maps_rates(frame.matrix, RATES, frame.omega)
         return self._matrix(
             matrix,
-            "The angular velocity is linear in the rates; their coefficients are the columns.",
+            "The angular velocity is linear in the rates; their coefficients are the columns."
+            if len(self.model.coordinates) > 1
+            else "The angular velocity is the rate times the axis.",
             self.prove.vanishes(residual, claim),
             symbol=frame.matrix,
         )
@@ -232,12 +248,16 @@ class _Kinematics:
             above,
             "The adjugate is divided by the determinant."
             if matrix.shape == (3, 3)
-            else "Of all rates that give an angular velocity, these are the smallest, or those "
-            "that keep to the constraints.",
+            else self._of_all_rates(),
             proof,
             symbol=self._inverse_symbol(frame),
             below=below,
         )
+
+    def _of_all_rates(self) -> str:
+        is_bound = self.values.bound is not None
+        choice = "those that keep to the conditions" if is_bound else "the smallest"
+        return f"Of all rates that give an angular velocity, {choice} are taken."
 
     def rates(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> _Found | None:
         if inverse is None:

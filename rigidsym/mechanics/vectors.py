@@ -43,9 +43,8 @@ def vector_form(
         return None
     terms = min((work.terms(form) for form in forms), key=length_of_form)
     claim = Markup(
-        rf"{symbol.latex} = f\,\dot{{\mathbf{{v}}}} + g\,\mathbf{{v}}\times\dot{{\mathbf{{v}}}}"
-        r" + \cdots",
-        f"{symbol.text} = f v̇ + g v × v̇ + …",
+        rf"{symbol.latex}\text{{ in terms of }}\mathbf{{v}}, \dot{{\mathbf{{v}}}}",
+        f"{symbol.text} in terms of v, v̇",
     )
     return VectorForm(
         terms=terms,

@@ -11,6 +11,7 @@ from rigidsym.errors import ModelError
 from rigidsym.models.rotation import Citation, RotationModel, Turn, product_of
 from rigidsym.models.so3 import AXES
 
+_NUMBERS = ("Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
 _SOURCE = Citation(text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002), section 4.4")
 
 
@@ -42,7 +43,7 @@ def chain(
     product = " ".join(map(str, turns))
     return RotationModel(
         name=name or f"chain_{letters}" + ("_passive" if passive else ""),
-        title=title or f"Chain of turns {product}" + (", passive" if passive else ""),
+        title=title or f"{_counted(turns)} {product}" + (", passive" if passive else ""),
         convention=(_in_words(turns),),
         coordinates=coordinates,
         matrix=product_of(tuple(turns)),
@@ -82,10 +83,18 @@ def _in_words(turns: Sequence[Turn]) -> str:
     if len(steps) == 1:
         return f"One turn: {steps[0]}."
     return (
-        f"{len(steps)} turns, each about an axis that the turns before it have moved: first "
+        f"{_counted(turns)}, each about an axis that the turns before it have moved: first "
         + ", then ".join(steps)
         + "."
     )
+
+
+def _counted(turns: Sequence[Turn]) -> str:
+    """One turn, Two turns, ..., 11 turns."""
+    if len(turns) == 1:
+        return "One turn"
+    numbers = dict(enumerate(_NUMBERS, start=2))
+    return f"{numbers.get(len(turns), len(turns))} turns"
 
 
 def axis_turn(axis: Sequence[sp.Expr], angle: sp.Expr) -> Turn:

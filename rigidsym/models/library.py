@@ -110,7 +110,7 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
         ),
         "davenport": Preset(
             rotation="z(phi) x(theta) [0,b,c](psi)",
-            about="three turns, the second axis at right angles to the others",
+            about="Davenport's three turns, the second axis at right angles to the others",
             source=Citation(
                 text="P. Davenport, Rotations about nonorthogonal axes, AIAA Journal 11 (1973)"
             ),

@@ -15,7 +15,6 @@ from rigidsym.notes.document import (
     Text,
 )
 from rigidsym.notes.entries import RESIDUAL, indexed
-from rigidsym.notes.paging import paged
 from rigidsym.notes.prose import proofs_in_words
 
 Claim = tuple[str, Proof]  # the label of an equation, and what was claimed there
@@ -25,15 +24,12 @@ def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[Block]:
     """Each claim with the label of its equation; below, what is left over of those unproved."""
     unproved = [proof for _, proof in claims if not proof.is_exact]
     yield Paragraph(proofs_in_words(is_proved=not unproved))
-    yield from paged(
-        Table(
-            caption="What was claimed, and what became of it",
-            head=(("Equation",), ("Claim",), ("Status",)),
-            rows=tuple(
-                ((EquationReference(label),), (proof.claim,), _status(proof))
-                for label, proof in claims
-            ),
-        )
+    yield Table(
+        caption="What was claimed, and what became of it",
+        head=(("Equation",), ("Claim",), ("Status",)),
+        rows=tuple(
+            ((EquationReference(label),), (proof.claim,), _status(proof)) for label, proof in claims
+        ),
     )
     for proof in unproved:
         yield from _left_over(proof)

@@ -35,7 +35,6 @@ from rigidsym.notes.fitting import Fitter
 from rigidsym.notes.formula import markup
 from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.notation import notation_of
-from rigidsym.notes.paging import paged
 from rigidsym.notes.prose import motion, product, turn
 from rigidsym.notes.results import RESULTS
 from rigidsym.notes.rewriting import in_manner
@@ -123,7 +122,7 @@ class Composer:
             "The kinetic energy": self._steps(ENERGIES),
             "The angular momentum": self._steps(MOMENTA),
             "What was proved": self._proofs(),
-            "Symbols": paged(symbols(self.derivation, self.notation)),
+            "Symbols": iter([symbols(self.derivation, self.notation)]),
             "Functions": self._functions(),
         }
         filled = ((title, tuple(blocks)) for title, blocks in parts.items())
@@ -149,21 +148,22 @@ class Composer:
         yield from self._steps(("rotation_matrix",))
 
     def _product_of_turns(self) -> Iterator[Block]:
-        yield Paragraph(
-            words("The rotation is a product of turns\u00a0{}:", Cited(self.model.source))
-        )
         turns = [turn(t, self.notation) for t in self.model.turns]
+        kind = "a product of turns" if len(turns) > 1 else "one turn"
+        yield Paragraph(words(f"The rotation is {kind}\u00a0{{}}:", Cited(self.model.source)))
         yield Equation(sides=(ROTATION, product(turns)))
         yield from self._figure()
-        yield Paragraph(
-            (
-                "Read from left to right, they are about the axes as they have turned; read from "
-                "right to left, about the axes fixed in space. Right-handed turns by an angle ",
-                markup(self._turn_angle(), self.notation),
-                " are",
-            )
-        )
         by_axis = list(self._turns_by_axis())
+        angle = markup(self._turn_angle(), self.notation)
+        if len(turns) == 1:
+            yield Paragraph(words("The right-handed turn by an angle {} is", angle))
+        else:
+            read = (
+                "Read from left to right, they are about the axes as they have turned; read from "
+                "right to left, about the axes fixed in space. Right-handed turns by an angle {} "
+                "are"
+            )
+            yield Paragraph(words(read, angle))
         short = tuple(self._elementary(t) for t in by_axis if not t.components)
         if short:
             yield EquationRow(short)

@@ -9,7 +9,7 @@ import sympy as sp
 
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.rotation import RotationModel, Turn
-from rigidsym.notes.document import Figure, Span, Text
+from rigidsym.notes.document import Figure, Text
 from rigidsym.notes.drawing import Kind
 from rigidsym.notes.formula import markup
 from rigidsym.notes.lengths import length_of
@@ -142,10 +142,11 @@ def _in_words(scene: Scene) -> Iterator[Text]:
         about = scene.named(arc.axis)
         axis = about.name if about else "its axis"
         start, end = (_called(scene, arc, v) for v in (arc.start, arc.end))
-        yield words("The turn by {} about {} takes {} to {}.", arc.name, axis, start, end)
+        head = words("The turn by {} about {} takes ", arc.name, axis)
+        yield (*head, *start, " to ", *end, ".")
 
 
-def _called(scene: Scene, arc: Arc, direction: Vector) -> Span:
+def _called(scene: Scene, arc: Arc, direction: Vector) -> Text:
     """The name of the ray in a direction; a line that has none is named after its axis."""
     ray = scene.named(direction)
-    return ray.name if ray else f"the turned {arc.start_name}"
+    return (ray.name,) if ray else ("the turned ", arc.start_name)

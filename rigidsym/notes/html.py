@@ -33,6 +33,7 @@ from rigidsym.notes.document import (
 from rigidsym.notes.formula import text
 from rigidsym.notes.layout import Display, display
 from rigidsym.notes.mathml import mathml
+from rigidsym.notes.measure import ems
 from rigidsym.notes.plain import cleaned
 from rigidsym.notes.prose import announcement
 from rigidsym.notes.svg import svg
@@ -42,9 +43,15 @@ TEMPLATE = "note.html.jinja"
 _PAGE = 39.5  # ems of a display on a page, some less than there are: browsers differ in fonts
 _IN_WORDS = 0.75  # of a display's ems: what a formula among words may take
 _PHONE = 19.0  # ems of a display on a screen 360 pixels wide
+_SAFE = 1.08  # fonts differ
+_SMALLER = 1.45  # times as many on a phone in smaller type, which can still be read
+_INLINE = 15.0  # ems of a formula between words on such a screen
 # a formula with the brackets, commas and stops that no line may part from it
 _MATH = r"<math(?:(?!</math>).)*</math>"
 _WITH_POINTS = re.compile(rf"\({_MATH}[.,;:)]*|{_MATH}[.,;:)]+")
+
+_SIGNS = re.compile(r" (?=[=+−-] )")
+_PAIRS = (("{", "}"), ("(", ")"), (r"\left", r"\right"))
 
 
 def print_html(document: Document) -> str:
@@ -142,17 +149,15 @@ class Printer:
     def display(self, equation: Equation, shown: Display, kind: str) -> str:
         room = _PAGE if "page" in kind else _PHONE
         lead = self._lead(equation, shown, room)
-        formula = mathml(shown.latex, self._spoken(equation), is_display=True)
-        # what may have to be scrolled must be within reach of the keyboard
-        reach = ' tabindex="0" role="group" aria-label="wide formula"' if shown.width > room else ""
-        return f'<div class="{kind}">{lead}<div class="formula"{reach}>{formula}</div></div>'
+        formula = _fitted(mathml(shown.latex, self._spoken(equation), is_display=True), shown, room)
+        return f'<div class="{kind}">{lead}{formula}</div>'
 
     def _lead(self, equation: Equation, shown: Display, room: float) -> str:
         """What is said before a display; sides too long for a line of words are set apart."""
         sides = display(Equation(sides=equation.sides), self.document.notation, room)
         if shown.done == "listed" and (sides.lines > 1 or sides.width > _IN_WORDS * room):
             formula = mathml(sides.latex, equal(*equation.sides).text, is_display=True)
-            return f'<div class="formula">{formula}</div><p>Its entries are</p>'
+            return f"{_fitted(formula, sides, room)}<p>Its entries are</p>"
         announced = self._text(announcement(equation, shown.done))
         return f"<p>{announced}</p>" if announced else ""
 
@@ -213,7 +218,7 @@ class Printer:
             case str():
                 return escape(span)
             case Markup():
-                return mathml(_tall(span.latex), span.text)
+                return " ".join(mathml(_tall(part.latex), part.text) for part in _parts(span))
             case Code():
                 return f"<code>{_breakable(escape(span.text))}</code>"
             case Strong():
@@ -227,6 +232,39 @@ class Printer:
         number = self.document.source_number(cited)
         place = f", {escape(cited.place)}" if cited.place else ""
         return f'[<a href="#source-{number}">{number}</a>{place}]'
+
+
+def _fitted(formula: str, shown: Display, room: float) -> str:
+    """A formula in smaller type where it is too wide for a phone, as far as that can be read."""
+    if shown.width <= room:
+        return f'<div class="formula">{formula}</div>'
+    if shown.width <= _SMALLER * room:
+        size = f"min(1em, calc((100vw - 2rem) / {_SAFE * shown.width:.1f}))"
+        return f'<div class="formula" style="font-size: {size}">{formula}</div>'
+    # what has to be scrolled must be within reach of the keyboard
+    reach = ' tabindex="0" role="group" aria-label="wide formula"'
+    return f'<div class="formula"{reach}>{formula}</div>'
+
+
+def _parts(formula: Markup) -> list[Markup]:
+    """A formula too wide for a line on a phone, in parts that may stand on several."""
+    if ems(formula.latex) <= _INLINE:
+        return [formula]
+    latex, text = _terms(formula.latex), _terms(formula.text)
+    whole = len(latex) != len(text)
+    return [formula] if whole else [Markup(*part) for part in zip(latex, text, strict=True)]
+
+
+def _terms(formula: str) -> list[str]:
+    """A formula cut before each sign outside all brackets."""
+    terms: list[str] = []
+    for term in _SIGNS.split(formula):
+        is_open = bool(terms) and any(terms[-1].count(a) != terms[-1].count(b) for a, b in _PAIRS)
+        if is_open:
+            terms[-1] += f" {term}"
+        else:
+            terms.append(term)
+    return terms
 
 
 def _breakable(name: str) -> str:

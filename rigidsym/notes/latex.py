@@ -25,6 +25,7 @@ from rigidsym.notes.document import (
 )
 from rigidsym.notes.escape import escape
 from rigidsym.notes.layout import PAGE, display, pack
+from rigidsym.notes.paging import paged
 from rigidsym.notes.plain import cleaned
 from rigidsym.notes.prose import announcement
 from rigidsym.notes.tikz import tikz
@@ -102,7 +103,7 @@ class _Printer:
                 packed = pack(block.equations, self.document.notation, _LINE)
                 return f"\\[\n{packed}\n\\]"
             case Table():
-                return self._table(block)
+                return "\n".join(map(self._table, paged(block)))
             case Figure():
                 return self._figure(block)
             case Program():

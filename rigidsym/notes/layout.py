@@ -151,15 +151,19 @@ def _one(name: Markup) -> Equation:
 def broken(formula: str, width: float) -> list[Line]:
     """The lines of a formula in LaTeX; no line can end between \\left and \\right."""
     lines = break_lines(formula, width, ems, _QUAD)
-    if len(lines) > 1 or ems(formula) <= width:
+    if _widest(lines) <= width:
         return lines
     loose = formula.replace(r"\left(", r"\Bigl(").replace(r"\right)", r"\Bigr)")
-    return break_lines(loose, width, ems, _QUAD)
+    return min(lines, break_lines(loose, width, ems, _QUAD), key=_widest)
 
 
 def broken_ems(formula: str, width: float) -> float:
     """The width of the widest line of a formula that is broken to fit into `width` ems."""
-    first, *others = broken(formula, width)
+    return _widest(broken(formula, width))
+
+
+def _widest(lines: Sequence[Line]) -> float:
+    first, *others = lines
     return max(ems(first.text), *(_QUAD * (1 + o.depth) + ems(o.text) for o in others), 0.0)
 
 

@@ -25,6 +25,8 @@ _CLASSES = {  # for the style sheet
     '<menclose notation="box">': '<mrow class="boxed">',
     "</menclose>": "</mrow>",
 }
+# browsers centre a dot over the foot of a slanted letter
+_DOTTED = re.compile(r'(<mover accent="true"><mi>[A-Za-zα-ωϕϵ]</mi><mo)(>[˙¨])')
 _ROW_SPACE = re.compile(r"\\\\\[\d+pt\]")  # the style sheet sets the distance of rows
 
 
@@ -47,4 +49,4 @@ def _converted(latex: str, is_display: bool) -> str:
         raise AlgebraError(f"no MathML for {latex}: {error}") from error
     for plain, classed in _CLASSES.items():
         element = element.replace(plain, classed)
-    return element
+    return _DOTTED.sub(r'\1 class="dot"\2', element)

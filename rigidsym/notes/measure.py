@@ -11,6 +11,8 @@ import unicodedata
 from collections.abc import Sequence
 from functools import lru_cache
 
+_MATRIX = re.compile(r"\\begin\{pmatrix\}(.*?)\\end\{pmatrix\}", re.DOTALL)
+_ROW_END = re.compile(r"\\\\(?:\[\w+\])?")
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|[^\s]")
 _SCRIPT = 0.8  # size of indices and exponents
 _OPERATOR_SPACE = 0.34  # thin spaces on both sides of \sin
@@ -84,7 +86,12 @@ def _character_columns(character: str) -> int:
 @lru_cache(maxsize=8192)
 def ems(latex: str) -> float:
     """Estimated width of a formula in LaTeX, in ems; rather too wide than too narrow."""
-    return _Ruler(_TOKEN.findall(latex)).until("")
+    matrices = sum(map(_whole_matrix, _MATRIX.findall(latex)))
+    return _Ruler(_TOKEN.findall(_MATRIX.sub("", latex))).until("") + matrices
+
+
+def _whole_matrix(inside: str) -> float:
+    return matrix_ems([row.split("&") for row in _ROW_END.split(inside)])
 
 
 def matrix_ems(rows: Sequence[Sequence[str]]) -> float:

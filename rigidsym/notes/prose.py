@@ -79,7 +79,7 @@ def _active_motion() -> Iterator[Block]:
 def _passive_motion() -> Iterator[Block]:
     spinning = spin_of(COSINES)
     yield Paragraph(
-        words("A vector at rest in space has the body components {}, which change by", PASSIVE)
+        words("A point at rest in space has the body components {}, which change by", PASSIVE)
     )
     yield Equation(
         sides=(

@@ -43,7 +43,7 @@ class Arc:
     angle: float  # radians
     radius: float
     name: Markup
-    start_name: str  # of the axis that is taken along
+    start_name: Markup | str  # of the axis that is taken along
     end: Vector
 
     def path(self, scale: float) -> Iterator[Vector]:
@@ -114,9 +114,9 @@ def _frames(axes: Sequence[Vector], angles: Sequence[float]) -> Iterator[Frame]:
         yield frame
 
 
-def _name_of(axis: Vector) -> str:
+def _name_of(axis: Vector) -> Markup | str:
     """The letter of a coordinate axis; any other is an axis."""
-    names = (name for name, other in zip(AXES, STANDARD, strict=True) if is_same(axis, other))
+    names = (name for name, other in zip(_SPACE, STANDARD, strict=True) if is_same(axis, other))
     return next(names, "axis")
 
 

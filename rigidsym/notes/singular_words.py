@@ -25,7 +25,7 @@ from rigidsym.notes.words import equal, listed, vector, words
 
 _MOST_POINTS = 8  # that are told of one by one
 _FRAMES = (SPACE.matrix, BODY.matrix)
-_WITH_CONDITIONS = Markup(r"\mathbf{J}", "J")
+WITH_CONDITIONS = Markup(r"\mathbf{J}", "J")
 _WHOLE_TURN = 2 * sp.pi
 _COUNTED = Markup(r"k = 1, 2, \ldots", "k = 1, 2, …")
 
@@ -37,7 +37,7 @@ def measured(found: Singularities) -> tuple[Markup, ...]:
             return tuple(fill(r"\det {0}", "det {0}", matrix) for matrix in _FRAMES)
         case "det [W, J]":
             stacked = r"\det\begin{{pmatrix}}{0}\\{1}\end{{pmatrix}}"
-            return tuple(fill(stacked, "det [{0}; {1}]", m, _WITH_CONDITIONS) for m in _FRAMES)
+            return tuple(fill(stacked, "det [{0}; {1}]", m, WITH_CONDITIONS) for m in _FRAMES)
         case "det W Wᵀ":
             product = (r"\det\left({0}{1}\right)", "det({0} {1})")
             return tuple(fill(*product, matrix, transpose_of(matrix)) for matrix in _FRAMES)
@@ -54,15 +54,15 @@ def meaning(found: Singularities) -> Text:
         "det [W, J]": words(
             "Below the rate matrix stand the rows {} by which the conditions bind the rates; the "
             "determinant of the whole is",
-            _WITH_CONDITIONS,
+            WITH_CONDITIONS,
         ),
         "det W Wᵀ": (
-            "The rate matrix is wider than it is high; its rank falls where all its minors "
-            "vanish, the squares of which add up to",
+            "The rate matrix is wider than it is high; its rank falls where all its largest "
+            "minors vanish, the squares of which add up to",
         ),
         "det Wᵀ W": (
-            "The rate matrix is higher than it is wide; its rank falls where all its minors "
-            "vanish, the squares of which add up to",
+            "The rate matrix is higher than it is wide; its rank falls where all its largest "
+            "minors vanish, the squares of which add up to",
         ),
         "minors": (
             f"The squares of the minors of rank {found.rank} of the rate matrix, and of the rows "
@@ -89,8 +89,9 @@ def _zeros(found: Singularities, notation: Notation) -> Text:
     points = [point for point in found.points if point.places]
     if points:
         where, period = _where(points, notation), _period(points, notation)
-        unknown = "; where else it vanishes was not decided."
-        return (*where, *period, ", and nowhere else." if found.is_solved else unknown)
+        unknown = "; where else it vanishes was not decided"
+        only = ", and nowhere else" if found.is_solved else unknown
+        return (*where, *period, only, *_not_at_zero(points, notation), ".")
     if not found.rank:
         return ("The rates of the coordinates turn nothing.",)
     if not found.is_solved:
@@ -151,8 +152,7 @@ def _period(points: Sequence[Singularity], notation: Notation) -> Text:
     """Up to whole turns, or up to how many of them."""
     periods = {p.coordinate: p.period for point in points for p in point.places if not p.is_length}
     if not periods:
-        (length,) = {place.coordinate for point in points for place in point.places}
-        return (", not at ", equal(markup(length, notation), Markup("0", "0")))
+        return ()
     longer = {q: period for q, period in periods.items() if period != _WHOLE_TURN}
     if not longer:
         return (", up to whole turns",)
@@ -162,6 +162,13 @@ def _period(points: Sequence[Singularity], notation: Notation) -> Text:
     ]
     others: list[Text] = [("whole turns",)] if len(longer) < len(periods) else []
     return (", up to ", *listed([*others, *multiples]))
+
+
+def _not_at_zero(points: Sequence[Singularity], notation: Notation) -> Text:
+    """Of a length, which could be taken to be such a place where it is nothing."""
+    lengths = {p.coordinate for point in points for p in point.places if p.is_length}
+    zero = [equal(markup(length, notation), Markup("0", "0")) for length in lengths]
+    return words("; at {} it does not", *zero) if zero else ()
 
 
 def singular(point: Singularity, derivation: Derivation) -> Text:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
+from itertools import chain, repeat
 
-from rigidsym.mechanics.derivation import Argument, Derivation, Step
+from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Step
 from rigidsym.mechanics.quantities import RATES
 from rigidsym.notes.document import (
     Block,
@@ -16,6 +18,7 @@ from rigidsym.notes.document import (
     Text,
 )
 from rigidsym.notes.notation import Notation
+from rigidsym.notes.singular_words import WITH_CONDITIONS
 from rigidsym.notes.words import (
     BODY_POSITION,
     POSITION,
@@ -26,15 +29,21 @@ from rigidsym.notes.words import (
     words,
 )
 
+_PLACES = ("centre", "point", "direction")
 _MOST_SYMBOLS = 6  # in one cell
 _CODE_WIDTH = 76  # columns of typewriter type on a page
 
 
 def symbols(derivation: Derivation, notation: Notation) -> Table:
     """Every symbol with what it means and its unit."""
-    known: dict[str, tuple[Text, ...]] = {}
-    for row in (*_arguments(derivation), *_length(derivation, notation), *_points()):
+    known: dict[str, Row] = {}
+    named = (_arguments, _constants, _of_the_body, partial(_length, notation), _points)
+    for row in chain.from_iterable(rows(derivation) for rows in named):
         known.setdefault(str(row[0]), row)
+    found = derivation.singularities
+    if found is not None and found.measure == "det [W, J]":
+        bound = "rows by which the conditions bind the rates"
+        known["J"] = (WITH_CONDITIONS,), (bound,), ("1",), ()
     for step in derivation.steps:
         quantity = step.quantity
         about = "rates of the coordinates" if quantity.symbol == RATES else quantity.about
@@ -49,18 +58,58 @@ def symbols(derivation: Derivation, notation: Notation) -> Table:
     )
 
 
-def _arguments(derivation: Derivation) -> Iterator[tuple[Text, ...]]:
-    """Coordinates and constants; those of one unit share a row."""
+Row = tuple[Text, ...]
+
+
+def _arguments(derivation: Derivation) -> Iterator[Row]:
+    """Coordinates; those of one unit share a row."""
+    q = derivation.argument("q")
+    yield from _rows(zip(q.notation, repeat("coordinates"), q.units))
+
+
+def _constants(derivation: Derivation) -> Iterator[Row]:
+    """Constants with what is known of each; those of one kind share a row."""
+    if not any(argument.name == "parameters" for argument in derivation.arguments):
+        return
+    constants = derivation.argument("parameters")
+    of_body = {p.symbol: p for p in derivation.body.parameters} if derivation.body else {}
+    axes = {s for turn in derivation.model.turns for c in turn.components for s in c.free_symbols}
+    angles = {symbol for turn in derivation.model.turns for symbol in turn.angle.free_symbols}
+    named = []
+    for symbol, name, unit in zip(
+        constants.symbols, constants.notation, constants.units, strict=True
+    ):
+        if symbol in of_body:
+            named.append((name, of_body[symbol].about or "constant of the body", unit))
+        elif symbol in axes:
+            named.append((name, "components of an axis at rest", unit))
+        elif symbol in angles:
+            named.append((name, "constant angle", "rad"))
+        else:
+            named.append((name, "constant", unit))
+    yield from _rows(named)
+
+
+def _of_the_body(derivation: Derivation) -> Iterator[Row]:
+    """Where the centre of mass is; the point and the line that moments are taken about."""
+    used = {name for step in derivation.steps for name in step.quantity.inputs}
     for argument in derivation.arguments:
-        if argument.name in ("q", "parameters"):
-            about = "coordinates" if argument.name == "q" else argument.about
-            for unit in dict.fromkeys(argument.units):
-                chosen = [
-                    (name,)
-                    for name, own in zip(argument.notation, argument.units, strict=True)
-                    if own == unit
-                ]
-                yield _in_a_row(chosen), (about,), (unit_in_words(unit),), ()
+        if argument.name in used and argument.name in _PLACES:
+            yield (
+                _in_a_row([(name,) for name in argument.notation]),
+                (argument.about,),
+                (unit_in_words(argument.units[0]),),
+                (),
+            )
+
+
+def _rows(named: Iterable[tuple[Markup, str, str]]) -> Iterator[Row]:
+    """A row for all names that have the meaning and the unit in common."""
+    kinds: dict[tuple[str, str], list[Text]] = {}
+    for name, about, unit in named:
+        kinds.setdefault((about, unit), []).append((name,))
+    for (about, unit), names in kinds.items():
+        yield _in_a_row(names), (about,), (unit_in_words(unit),), ()
 
 
 def _in_a_row(symbols: Sequence[Text]) -> Text:
@@ -70,15 +119,16 @@ def _in_a_row(symbols: Sequence[Text]) -> Text:
     return listed(symbols, ", ")
 
 
-def _length(derivation: Derivation, notation: Notation) -> Iterator[tuple[Text, ...]]:
+def _length(notation: Notation, derivation: Derivation) -> Iterator[Row]:
     if notation.length is not None:
         unit = unit_in_words(derivation.argument("q").units[0])
         symbol = notation.names[notation.length.symbol]
         yield (symbol,), ("length of the vector",), (unit,), ()
 
 
-def _points() -> Iterator[tuple[Text, ...]]:
-    yield (POSITION,), ("position of a point of the body, space components",), ("m",), ()
+def _points(derivation: Derivation) -> Iterator[Row]:
+    whose = "at rest in space" if derivation.model.passive else "of the body"
+    yield (POSITION,), (f"position of a point {whose}, space components",), ("m",), ()
     yield (BODY_POSITION,), ("the same, body components",), ("m",), ()
 
 

@@ -176,13 +176,15 @@ def _coordinates(argument: Argument, *, has_dots: bool) -> Text:
     names = listed([(name,) for name in argument.notation], ", ")
     units = sorted(set(argument.units))
     measured = f", in {unit_in_words(units[0])}" if len(units) == 1 and units[0] else ""
-    head = words("The coordinates are {} = (", COORDINATES)
+    several = len(argument.notation) > 1
+    head = words(f"The coordinate{'s are' if several else ' is'} {{}} = (", COORDINATES)
     dots = "; a dot is the derivative with respect to time" if has_dots else ""
     return (*head, *names, f"){measured}{dots}.")
 
 
 def unit_in_words(unit: str) -> str:
     """rad/s² for rad/s^2; a pure number has the unit 1."""
+    unit = re.sub(r"\((.+)\)\^\(-1/2\)", r"1/√(\1)", unit)
     return re.sub(r"\^(-?\d+)", lambda m: m[1].translate(_SUPERSCRIPTS), unit) or "1"
 
 
