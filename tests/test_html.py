@@ -25,10 +25,14 @@ from rigidsym.notes.html import escape
 from rigidsym.notes.mathml import mathml
 from rigidsym.notes.note import note
 from rigidsym.notes.plain import cleaned
+from rigidsym.pipeline import product
+from rigidsym.spec import DerivationSpec, read_file
 
 NAME = "euler_zxz_intrinsic"
 ODD = "</title></script><script>document.title='owned'</script><img src=x onerror=alert(1)> & \"'"
 WORDS = ("heading", "elevation", "bank")
+KINDS = ("axis_angle", "gibbs_vector", "unit_quaternion", "davenport", "z(phi)")
+SHIPPED = ("lecture", "solid_cone", "yaw_pitch_roll")
 PHONES = (320, 360, 390)
 SCREENS = (*PHONES, 768, 1280)
 
@@ -48,6 +52,10 @@ def odd_note() -> str:
         source=Citation(text=ODD, equation=ODD),
     )
     return html(derive(model))
+
+
+def printed_page(single: DerivationSpec) -> str:
+    return product(replace(single, note=("html",))).files[f"{single.name}.html"]
 
 
 class Elements(HTMLParser):
@@ -204,6 +212,17 @@ def test_no_page_has_to_be_scrolled_sideways(tmp_path: Path, angles, sequences):
         assert page.page_width <= page.width
         assert page.formulas > 20
         assert angles == WORDS or not page.wide
+
+
+@pytest.mark.usefixtures("chromium")
+def test_notes_of_every_kind_fit_a_phone_and_a_screen(tmp_path: Path):
+    kinds = [html(rs.derive(kind)) for kind in KINDS]
+    shipped = [printed_page(single) for name in SHIPPED for single in read_file(name).singles()]
+    seen = look_at([(page, width) for page in kinds + shipped for width in (360, 1280)], tmp_path)
+    for page in seen:
+        assert page.page_width <= page.width
+        # on a phone, what cannot break is scrolled within its own box
+        assert page.width == 360 or not page.wide
 
 
 @pytest.mark.usefixtures("chromium")
