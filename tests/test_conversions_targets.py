@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from types import ModuleType
 
@@ -10,11 +11,25 @@ import pytest
 from test_kernel_jax import double  # noqa: F401  (a fixture)
 
 import rigidsym as rs
+from rigidsym.kernels.targets import TARGETS
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.rotations import rotation_from
 
 CHAIN = "z(phi) x(alpha) [0,3,4](beta)"
 CONSTANTS = "z(gamma) x(phi) y(alpha0) z(beta)"
+TEXTS = (
+    *("ZXZ", "YZX", *PARAMETRISATIONS, CHAIN, CONSTANTS, "z(phi) x(b) [0,-1,0](c)"),
+    *("z(2*phi - psi) x(phi)", "z(a) x(b) z(c) y(d)", "davenport"),
+)
 JAX = ("ZXZ", "rotation_vector", "modified_rodrigues", CONSTANTS)
+
+
+CATALOGUE = (*rs.EULER_SEQUENCES[::6], *PARAMETRISATIONS, *PRESETS, CHAIN, CONSTANTS)
+EXPORTED = {
+    "c": re.compile(r"^void \w+?_(\w+)_array\(", re.MULTILINE),
+    "javascript": re.compile(r"^export function (\w+)\(", re.MULTILINE),
+}
+PYTHON = re.compile(r"^    \"(\w+)\",$", re.MULTILINE)  # lines of __all__
 
 
 @cache
@@ -46,16 +61,50 @@ def given(text: str) -> dict[str, list[np.ndarray]]:
     return {name: arrays for name, arrays in found.items() if hasattr(known, name)}
 
 
+def offered(text: str, target: str) -> tuple[set[str], str]:
+    """The functions of a target's file, and the words on it."""
+    files = motion(text).kernels(target, conversions=True).files
+    texts = "\n".join(t for name, t in files.items() if not name.endswith(("_c.py", "_module.c")))
+    names = EXPORTED.get(target, PYTHON).findall(texts)
+    if target == "c":
+        names = [name.removeprefix(f"{motion(text).name}_") for name in names]
+    words = " ".join(re.sub(r"^ \* ?", "", line) for line in texts.split("\n"))
+    return set(names), " ".join(words.split())
+
+
+@pytest.mark.parametrize("target", [name for name in TARGETS if name != "numpy"])
+def test_every_function_is_in_every_target_or_named_as_missing(target):
+    for text in CATALOGUE:
+        known, _ = offered(text, "numpy")
+        names, words = offered(text, target)
+        lacking = known - names
+        if any(name.endswith("_scalar") for name in lacking):  # in C every function has one
+            assert target == "c" or "scalar twins, since" in words
+            lacking = {name for name in lacking if not name.endswith("_scalar")}
+        assert target == "c" or not lacking, text
+        for name in lacking:
+            assert re.search(rf"In the Python module alone[^.]*\b{name}\b", words), (text, name)
+
+
 def assert_as_in_numpy(text: str, target: str) -> None:
     for name, arrays in given(text).items():
         expected = getattr(module(text, "numpy"), name)(*arrays)
-        found = getattr(module(text, target), name)(*arrays)
+        function = getattr(module(text, target), name)
+        if target == "javascript" and name == "unwrap":  # there, arrays are flat
+            arrays[0] = arrays[0].ravel()
+            expected = expected.ravel()
+        found = function(*arrays)
         np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-13, err_msg=name)
 
 
 @pytest.mark.parametrize("text", JAX)
 def test_jax(text):
     assert_as_in_numpy(text, "jax")
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_javascript(text):
+    assert_as_in_numpy(text, "javascript")
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7])

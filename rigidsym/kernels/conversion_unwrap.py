@@ -38,6 +38,7 @@ class Unwrapping:
 class ChainUnwrapping:
     """The angles of turns in terms of samples, and the samples in terms of the angles."""
 
+    size: int  # how many coordinates there are
     constants: tuple[str, ...]  # the components of "parameters"
     used: tuple[tuple[str, int], ...]  # those that are needed, and where they stand
     samples: tuple[tuple[str, int], ...]  # the same of the coordinates
@@ -119,6 +120,7 @@ def _of_chain(model: RotationModel, rule: ChainTurns, reserved: Iterable[str]) -
         kind="chain",
         remarks=tuple(t for t in (_TWO_SETS if is_triangle else _WHOLE_TURNS, kept_too) if t),
         chain=ChainUnwrapping(
+            size=len(samples),
             constants=tuple(names.values()),
             used=_found(names.values(), texts),
             samples=_found(samples.values(), texts),

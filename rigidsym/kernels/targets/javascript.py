@@ -1,21 +1,44 @@
-"""Kernels as an ES module without dependencies, for pages and for node."""
+"""Kernels as an ES module without dependencies, for pages and for node.
+
+Each has its arithmetic once, from one place of flat arrays to another; a function of one
+orientation and one of many call it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from math import prod
 from types import ModuleType
 
 from rigidsym import __version__, resources
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.conversions import ConversionProgram
 from rigidsym.kernels.infix import infix
-from rigidsym.kernels.ir import FUNCTIONS, Argument, Call, Guarded, Kernel, Name, Number, Program
-from rigidsym.kernels.layout import filled
+from rigidsym.kernels.ir import (
+    FUNCTIONS,
+    Argument,
+    Call,
+    Guarded,
+    Kernel,
+    Name,
+    Number,
+    Program,
+    names_in,
+)
 from rigidsym.kernels.naming import Names
 from rigidsym.kernels.narrow import narrowed
 from rigidsym.kernels.targets import numpy_singular as singular
+from rigidsym.kernels.targets.javascript_function import (
+    WIDTH,
+    Function,
+    Paragraph,
+    Vector,
+    comment,
+    placed,
+    taken_from,
+)
 
 TEMPLATE = "kernels_javascript.mjs.jinja"
 _WORDS = (
@@ -23,33 +46,19 @@ _WORDS = (
     "enum eval export extends false finally for function if implements import in instanceof "
     "interface let new null package private protected public return static super switch this "
     "throw true try typeof undefined var void while with yield Infinity Math NaN RangeError "
+    "Float64Array Array atan2 hypot out at "
 )
 RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS, "tan"})
 
-_WIDTH = 88
 _show = partial(infix, functions={name: name for name in FUNCTIONS})
 
 
-Paragraph = str | Sequence[str]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Function:
-    """One kernel, in the pieces that the template places."""
-
-    name: str
-    about: str  # lines of its comment
-    parameters: str
-    body: str
-
-
 def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
-    """The module; of the conversions, those that are kernels."""
+    """The module, with the conversions where they are asked for."""
     converting = conversions.kernels if conversions else ()
     kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
-    remarks = singular.remarks(kernels)
-    about = _about(program, [*remarks, *_without(conversions)])
-    return {f"{program.name}.mjs": _module(about, kernels)}
+    about = _about(program, [*singular.remarks(kernels)])
+    return {f"{program.name}.mjs": _module(about, kernels, _converted(program, conversions))}
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
@@ -65,24 +74,48 @@ def bare(kernels: Sequence[Kernel]) -> str:
     return _module([], [_fitted(kernel) for kernel in kernels])
 
 
-def _module(about: Sequence[Paragraph], kernels: Sequence[Kernel]) -> str:
+def _module(
+    about: Sequence[Paragraph], kernels: Sequence[Kernel], added: Converted | None = None
+) -> str:
     last = max((c.order for c in _calls(kernels) if c.order is not None), default=-1)
+    added = added or Converted()
     template = resources.environment().get_template(TEMPLATE)
     return template.render(
-        about=_comment(about),
-        functions=[*map(_function, kernels)],
-        imports=", ".join(sorted(_of_math(kernels))),
+        about=comment([*about, *added.remarks] if about else []),
+        functions=[*map(_function, kernels), *added.functions],
+        imports=", ".join(sorted(_of_math(kernels) | added.imports)),
         series=[_entry(order) for order in range(FIRST_SERIES, last + 1)],
         has_series=last >= 0,
         has_divisors=any(map(singular.guards_of, kernels)),
+        has_batches=bool(about),
+        has_matrices=any(len(shape) > 1 for k in kernels for shape in k.parts or (k.shape,)),
+        conversions=added.helpers,
     )
 
 
-def _without(conversions: ConversionProgram | None) -> Iterator[str]:
-    """What is not here of what was asked for."""
-    if conversions is not None and conversions.formulas:
-        names = ", ".join(formula.name for formula in conversions.formulas)
-        yield f"Not in this module, but in the one for NumPy: {names}, unwrap."
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Converted:
+    """What conversions add to a module."""
+
+    functions: Sequence[Function] = ()
+    imports: frozenset[str] = frozenset()
+    helpers: str = ""
+    remarks: Sequence[str] = ()
+
+
+def _converted(program: Program, conversions: ConversionProgram | None) -> Converted:
+    vectors = {argument.name: argument.components for argument in program.arguments}
+    if conversions is None or "q" not in vectors:
+        return Converted()
+    from rigidsym.kernels.targets import javascript_conversions as converting
+
+    vectors |= {argument.name: argument.components for argument in conversions.arguments}
+    return Converted(
+        functions=[converting.function(formula, vectors) for formula in conversions.formulas],
+        imports=converting.imports(conversions),
+        helpers=converting.helpers(conversions),
+        remarks=conversions.remarks,
+    )
 
 
 def _calls(kernels: Sequence[Kernel]) -> Iterator[Call]:
@@ -99,25 +132,44 @@ def _of_math(kernels: Sequence[Kernel]) -> set[str]:
 
 def _fitted(kernel: Kernel) -> Kernel:
     """The kernel in lines that fit."""
-    return narrowed(kernel, _show, line=_WIDTH - len("  const ;"), output=_WIDTH - 6 - len(","))
+    room = WIDTH - len("  out[at + 10] = ;")
+    return narrowed(kernel, _show, line=WIDTH - len("  const ;"), output=room)
 
 
 def _function(kernel: Kernel) -> Function:
-    names = Names([*kernel.components, *(a.name for a in kernel.assignments)])
-    vectors = {names.fresh(argument.name): argument for argument in kernel.arguments}
-    taken = [_taken(name, argument) for name, argument in vectors.items()]
+    names = Names([*kernel.components, *(a.name for a in kernel.assignments), "out", "at"])
+    vectors = tuple(_vector(names.fresh(a.name), a) for a in kernel.arguments)
+    places = tuple(names.fresh(f"{vector.name}_at") for vector in vectors)
+    wholes = [*(assignment.value for assignment in kernel.assignments), *kernel.outputs]
+    used = {name for whole in wholes for name in names_in(whole)}
+    taken = [
+        line
+        for vector, place in zip(vectors, places, strict=True)
+        for name, line in taken_from(vector, place)
+        if name in used
+    ]
+    given = [f"  out[{placed('at', k)}] = {_show(e)};" for k, e in enumerate(kernel.outputs)]
     return Function(
         name=kernel.name,
-        about=_comment(_about_kernel(kernel, vectors)),
-        parameters=", ".join(vectors),
-        body="\n".join([*taken, *_lines(kernel), _returned(kernel)]),
+        about=comment(_about_kernel(kernel, vectors)),
+        vectors=vectors,
+        places=places,
+        body="\n".join([*taken, *_lines(kernel), *given]),
+        returned=_returned(kernel),
+        count=len(kernel.outputs),
     )
 
 
-def _taken(name: str, argument: Argument) -> str:
-    """const [phi, theta, psi] = _taken("q", q, 3);"""
-    tail = f'] = _taken("{argument.name}", {name}, {len(argument.components)});'
-    return _listed(2, "const [", argument.components, tail)
+def _vector(name: str, argument: Argument) -> Vector:
+    distinct = list(dict.fromkeys(unit or "1" for unit in argument.units))
+    units = distinct[0] if len(distinct) == 1 else ", ".join(u or "1" for u in argument.units)
+    unit = f" in {units}" if any(argument.units) else ""
+    return Vector(
+        name=name,
+        given=argument.name,
+        components=argument.components,
+        about=f"{', '.join(argument.components)}{unit}",
+    )
 
 
 def _lines(kernel: Kernel) -> Iterator[str]:
@@ -150,21 +202,26 @@ def _guard(guard: Guarded) -> Iterator[str]:
 
 
 def _returned(kernel: Kernel) -> str:
-    outputs = [_show(output) for output in kernel.outputs]
-    if not kernel.shape:
-        return f"  return {outputs[0]};"
-    if len(kernel.shape) == 1:
-        return _listed(2, "return [", outputs, "];")
-    columns = kernel.shape[1]
-    rows = [outputs[start : start + columns] for start in range(0, len(outputs), columns)]
-    return "\n".join(["  return [", *(_listed(4, "[", row, "],") for row in rows), "  ];"])
+    """The result in the shape of the quantity, or both results of a derivative."""
+    if not kernel.parts:
+        return _shaped("values", kernel.shape)
+    first, second = kernel.parts
+    place = prod(first)
+    value = _shaped(f"values.slice(0, {place})", first) if first else "values[0]"
+    return f"[{value}, {_shaped(f'values.slice({place})', second)}]"
+
+
+def _shaped(values: str, shape: Sequence[int]) -> str:
+    if not shape:
+        return f"{values}[0]"
+    return values if len(shape) == 1 else f"_rows({values}, {shape[1]})"
 
 
 def _listed(indent: int, head: str, items: Sequence[str], tail: str) -> str:
     """Items between brackets: in one line where it fits, else each in one."""
     margin = " " * indent
     line = f"{margin}{head}{', '.join(items)}{tail}"
-    if len(line) <= _WIDTH:
+    if len(line) <= WIDTH:
         return line
     inside = "".join(f"{margin}  {item},\n" for item in items)
     return f"{margin}{head}\n{inside}{margin}{tail}"
@@ -175,14 +232,6 @@ def _entry(order: int) -> str:
     series = series_of(order)
     numbers = [series.switch, taylor(order - 2)[0], *series.coefficients]
     return _listed(2, f"{order}: [", [repr(float(number)) for number in numbers], "],")
-
-
-def _comment(paragraphs: Sequence[Paragraph]) -> str:
-    """The lines of a JSDoc comment; no text can end it."""
-    margin = " * "
-    blocks = (filled(paragraph, _WIDTH - len(margin)) for paragraph in paragraphs)
-    text = "\n\n".join("\n".join(block) for block in blocks).replace("*/", "*\u200b/")
-    return "\n".join(f"{margin}{line}".rstrip() for line in text.split("\n"))
 
 
 def _about(program: Program, remarks: Sequence[str]) -> list[Paragraph]:
@@ -196,13 +245,19 @@ def _about(program: Program, remarks: Sequence[str]) -> list[Paragraph]:
         _table(rows),
         "Vectors are arrays, matrices arrays of rows. NaN stays NaN, and so does the sine of "
         "infinity.",
+        "Beside each function stands one of many orientations, ..._batch: its arguments and its "
+        "result are flat arrays, one row after the other, matrices row by row; an argument of one "
+        "row serves all. It fills and returns `out`, a Float64Array where none is given, which "
+        "may not share memory with an argument. What the NumPy module has beside is not here: "
+        "scalar twins, since a function of one orientation is that, float32, which JavaScript "
+        "does not compute in, and `threads`, which workers are for.",
         *remarks,
         f"Generated by rigidsym {__version__}; do not edit. The equations are those of the note "
         "of the same name.",
     ]
 
 
-def _about_kernel(kernel: Kernel, vectors: Mapping[str, Argument]) -> list[Paragraph]:
+def _about_kernel(kernel: Kernel, vectors: Sequence[Vector]) -> list[Paragraph]:
     """The paragraphs of a function's comment."""
     is_named = kernel.definition and kernel.definition != kernel.symbol
     definition = f" = {kernel.definition}" if is_named else ""
@@ -211,22 +266,16 @@ def _about_kernel(kernel: Kernel, vectors: Mapping[str, Argument]) -> list[Parag
         f"{kernel.symbol}{definition}: {kernel.about}.",
         f"{place}{kernel.operations}.",
         *singular.poles(kernel),
-        [*(_parameter(name, a) for name, a in vectors.items()), _returns(kernel)],
+        [*(f"@param {{number[]}} {v.name} {v.about}" for v in vectors), _returns(kernel)],
     ]
 
 
-def _parameter(name: str, argument: Argument) -> str:
-    distinct = list(dict.fromkeys(unit or "1" for unit in argument.units))
-    units = distinct[0] if len(distinct) == 1 else ", ".join(u or "1" for u in argument.units)
-    unit = f" in {units}" if any(argument.units) else ""
-    return f"@param {{number[]}} {name} {', '.join(argument.components)}{unit}"
-
-
 def _returns(kernel: Kernel) -> str:
-    kind = "number" + "[]" * len(kernel.shape)
-    shape = f" ({', '.join(map(str, kernel.shape))})" if kernel.shape else ""
     unit = f" in {kernel.unit}" if kernel.unit else ""
-    return f"@returns {{{kind}}}{shape}{unit}"
+    kinds = ["number" + "[]" * len(shape) for shape in kernel.parts or (kernel.shape,)]
+    shapes = [f"({', '.join(map(str, s))})" for s in kernel.parts or (kernel.shape,) if s]
+    kind = f"[{', '.join(kinds)}]" if kernel.parts else kinds[0]
+    return " ".join([f"@returns {{{kind}}}", *filter(None, [" and ".join(shapes)])]) + unit
 
 
 def _table(rows: Sequence[tuple[str, str, str]]) -> list[str]:

@@ -7,6 +7,8 @@ import re
 import shutil
 import subprocess
 from collections.abc import Callable
+from functools import partial
+from math import prod
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import ModuleType
@@ -17,64 +19,84 @@ from numpy.typing import ArrayLike, NDArray
 
 from rigidsym.errors import MissingTool
 
-_EXPORTED = re.compile(r"^export function (\w+)\(", re.MULTILINE)
+_EXPORTED = re.compile(
+    r"^export function (\w+)\((\w*).*\n(?:  const values = .*\n  return (\[))?", re.MULTILINE
+)  # name, first parameter, and whether two results are returned
 _RUN = """
 import { readFileSync } from "node:fs";
 import * as kernels from "./kernels.mjs";
 
-const [name, ...sizes] = process.argv.slice(2);
+const [name, parted, ...sizes] = process.argv.slice(2);
 const numbers = new Float64Array(Uint8Array.from(readFileSync(0)).buffer);
 const count = sizes.reduce((sum, size) => sum + Number(size), 0);
 const results = [];
-for (let start = 0; start < numbers.length; start += count) {
+for (let start = 0; start < Math.max(numbers.length, 1); start += Math.max(count, 1)) {
   let place = start;
   const vectors = sizes.map((size) => numbers.subarray(place, (place += Number(size))));
   results.push(kernels[name](...vectors));
 }
 const shape = (value) => (Array.isArray(value) ? [value.length, ...shape(value[0])] : []);
-process.stdout.write(JSON.stringify(shape(results[0])) + "\\n");
-process.stdout.write(new Uint8Array(Float64Array.from(results.flat(2)).buffer));
+const plain = (value) => (ArrayBuffer.isView(value) ? Array.from(value) : value);
+const first = plain(results[0]);
+const shapes = parted ? first.map(shape) : [shape(first)];
+process.stdout.write(JSON.stringify(shapes) + "\\n");
+const flat = results.map(plain).flat(3);
+process.stdout.write(new Uint8Array(Float64Array.from(flat).buffer));
 """
+
+Numbers = NDArray[np.float64]
+Run = Callable[[list[Numbers]], list[Numbers]]
 
 
 def module(name: str, source: str) -> ModuleType:
     """The functions of a module on arrays with components last; their other axes broadcast.
 
-    Raises MissingTool where node is not installed.
+    Those of many orientations, ..._batch and unwrap, take and give flat arrays as they do in
+    JavaScript. Raises MissingTool where node is not installed.
     """
     if shutil.which("node") is None:
         raise MissingTool(
             "no program `node` (on Debian: apt install nodejs) to run JavaScript with"
         )
     made = ModuleType(name)
-    for function in _EXPORTED.findall(source):
-        setattr(made, function, _caller(source, function))
+    for function, first, parted in _EXPORTED.findall(source):
+        run = partial(_run, source, function, parted)
+        is_flat = function.endswith("_batch") or function == "unwrap"
+        setattr(made, function, _flat(run) if is_flat else _caller(run, first))
     return made
 
 
-def _caller(source: str, function: str) -> Callable[..., NDArray[np.float64]]:
-    def call(*vectors: ArrayLike) -> Any:
-        arrays = [np.asarray(vector, float) for vector in vectors]
-        leading = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
-        rows = [
-            np.broadcast_to(a, (*leading, a.shape[-1])).reshape(-1, a.shape[-1]) for a in arrays
-        ]
-        shape, values = _run(source, function, rows)
-        return values.reshape((*leading, *shape))
+def _flat(run: Run) -> Callable[..., Numbers]:
+    def call(*vectors: ArrayLike) -> Numbers:
+        arrays = [np.asarray(vector, float).reshape(1, -1) for vector in vectors]
+        return run(arrays)[0][0]
 
     return call
 
 
-def _run(
-    source: str, function: str, rows: list[NDArray[np.float64]]
-) -> tuple[list[int], NDArray[np.float64]]:
-    """Shape and values of the results for all rows, in one run."""
+def _caller(run: Run, first: str) -> Callable[..., Any]:
+    def call(*vectors: ArrayLike) -> Any:
+        arrays = [np.asarray(vector, float) for vector in vectors]
+        if first == "matrix":
+            arrays[0] = arrays[0].reshape(*arrays[0].shape[:-2], 9)
+        leading = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
+        rows = [
+            np.broadcast_to(a, (*leading, a.shape[-1])).reshape(-1, a.shape[-1]) for a in arrays
+        ]
+        found = [p.reshape((*leading, *p.shape[1:])) for p in run(rows)]
+        return found[0] if len(found) == 1 else tuple(found)
+
+    return call
+
+
+def _run(source: str, function: str, parted: str, rows: list[Numbers]) -> list[Numbers]:
+    """The results for all rows, in one run: of a function that gives several, all of them."""
     sizes = [str(array.shape[-1]) for array in rows]
     with TemporaryDirectory(prefix="rigidsym-") as folder:
         (Path(folder) / "kernels.mjs").write_text(source, encoding="utf-8")
         (Path(folder) / "run.mjs").write_text(_RUN, encoding="utf-8")
         done = subprocess.run(
-            ["node", "run.mjs", function, *sizes],
+            ["node", "run.mjs", function, parted, *sizes],
             cwd=folder,
             input=np.hstack(rows).astype("<f8").tobytes(),
             capture_output=True,
@@ -83,4 +105,8 @@ def _run(
     if done.returncode:
         raise ValueError(f"{function}: {done.stderr.decode('utf-8', 'replace').strip()}")
     head, _, values = done.stdout.partition(b"\n")
-    return json.loads(head), np.frombuffer(values, "<f8")
+    shapes = json.loads(head)
+    each = np.frombuffer(values, "<f8").reshape(len(rows[0]), sum(map(prod, shapes)))
+    ends = np.cumsum([prod(shape) for shape in shapes])[:-1]
+    parts = zip(np.split(each, ends, axis=1), shapes, strict=True)
+    return [part.reshape(-1, *shape) for part, shape in parts]
