@@ -315,6 +315,13 @@ def test_no_line_ends_between_left_and_right():
 
 def test_the_root_of_a_number_stands_above_the_line():
     half = sp.sqrt(2) / 2
+    for expression, as_latex, as_text in (
+        (half * A, r"\frac{\sqrt{2}}{2}\,A", "(√2/2) A"),
+        (3 * sp.sqrt(2) * sin(theta) * A, r"3 \sqrt{2}\,A \sin\theta", "3√2 A sin θ"),
+        (half * A / m, r"\frac{\sqrt{2}\,A}{2 m_{1}}", "√2 A/(2m₁)"),
+        (sp.sqrt(m) * A / 2, r"\frac{1}{2}\,A\,\sqrt{m_{1}}", "½A √m₁"),
+    ):
+        assert (latex(expression, NOTATION), text(expression, NOTATION)) == (as_latex, as_text)
     assert text(half, NOTATION) == "√2/2"
     assert latex(half, NOTATION) == r"\frac{\sqrt{2}}{2}"
     assert text(-half, NOTATION) == "−√2/2"

@@ -106,7 +106,9 @@ class _Walk:
         above = [factor for factor in factors if not _is_reciprocal(factor)]
         if below or (len(above) == 1 and self._stands_above(above[0])):
             return self._quotient(_scaled(coefficient.p, above), _scaled(coefficient.q, below))
-        return self._many(_scaled(coefficient, above))
+        roots = [factor for factor in above if _is_root(factor)]
+        others = [factor for factor in above if not _is_root(factor)]
+        return self._many(_scaled(sp.Mul(coefficient, *roots), others))  # √2/2 is one number
 
     def _stands_above(self, factor: sp.Expr) -> bool:
         """Whether θ/2 and √2/2 are written so; ½ dθ/dt and ½ sin θ are not."""

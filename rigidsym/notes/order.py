@@ -1,8 +1,8 @@
 """The order of factors in a product and of terms in a sum.
 
-Factors: numbers, constants, coordinates, rates and accelerations, trigonometric functions in the
-order of the coordinates (the sine of an angle before its cosine), roots, and bracketed sums last;
-so no rate can be read as part of the argument of a sine.
+Factors: numbers and their roots, constants, coordinates, rates and accelerations, trigonometric
+functions in the order of the coordinates (the sine of an angle before its cosine), other roots, and
+bracketed sums last; so no rate can be read as part of the argument of a sine.
 
 Terms: bracketed sums last, the highest derivative first, then in the order of the coordinates of
 their rates, the short before the long; and a sum starts with a term that has no minus sign, if
@@ -69,6 +69,8 @@ def _factor_key(factor: sp.Expr, notation: Notation) -> Key:
     base, exponent = power_of(factor)
     if base.is_Add:
         return (Rank.SUM, len(base.args), base.sort_key())
+    if base.is_Number:
+        return (Rank.NUMBER, 1, base.sort_key())
     if not exponent.is_Integer:
         return (Rank.ROOT, 0, base.sort_key())
     return (*_base_key(base, notation), exponent)
