@@ -17,6 +17,7 @@ from rigidsym.notes.formula import text
 from rigidsym.notes.latex import print_latex
 from rigidsym.notes.layout import PAGE, display
 from rigidsym.notes.lengths import length_of
+from rigidsym.notes.markdown import print_markdown
 from rigidsym.notes.naming import Namer
 from rigidsym.notes.notation import notation_of
 from rigidsym.notes.vector_rates import rate_of_form
@@ -41,6 +42,9 @@ def documents() -> list[Document]:
     """A note of each, and of the passive form of some; no two of one name."""
     motions = [rs.derive(rotation_from(text)) for text in EVERYTHING]
     motions += [rs.derive(rotation_from(text, passive=True)) for text in PASSIVE]
+    moments = rs.principal_moments(*sp.symbols("A B C"))
+    motions += [rs.derive("rotation_vector", body=moments)]
+    motions += [rs.derive("ZXZ", body=rs.general_inertia())]
     return [
         replace(motion.note().document, name=f"note_{place}")
         for place, motion in enumerate(motions)
@@ -76,6 +80,57 @@ def test_no_display_is_wider_than_a_page(documents):
                 if isinstance(block, Equation):
                     shown = display(block, document.notation, PAGE)
                     assert shown.width <= PAGE, (document.title, section.title, block.label)
+
+
+# --- the order: names, breaking, shorthand
+
+
+def _given(document: Document, label: str) -> tuple[Equation, Equation | None]:
+    """The equation with a label, and the names that are given before it."""
+    blocks = [block for section in document.sections for block in section.blocks]
+    place = next(k for k, b in enumerate(blocks) if isinstance(b, Equation) and b.label == label)
+    before = blocks[place - 1]
+    return blocks[place], before if isinstance(before, Equation) and not before.sides else None
+
+
+@pytest.mark.parametrize(
+    ("rotation", "label", "done", "names"),
+    [
+        ("ZXZ", "rotation_matrix", "", 0),  # as it stands
+        ("axis_angle", "rotation_matrix", "", 1),  # 1 − cos φ: a matrix with a name
+        ("z(yaw) y(pitch) x(roll)", "rotation_matrix", "abbreviated", 0),  # products: shorthand
+        ("z(yaw) y(pitch) x(roll)", "spin_matrix", "", 3),  # entries of Ω: a matrix, not a list
+        ("ZXZ", "rotation_rate", "listed", 0),  # an entry a line, and none broken
+    ],
+)
+def test_names_come_before_breaking_and_shorthand(rotation, label, done, names):
+    document = rs.derive(rotation).note().document
+    equation, given = _given(document, label)
+    assert display(equation, document.notation, PAGE).done == done
+    assert len(given.entries if given else ()) == names
+
+
+def test_what_has_a_name_keeps_it_and_is_explained_once(documents):
+    for document in documents:
+        explained = [
+            name.text
+            for section in document.sections
+            for block in section.blocks
+            if isinstance(block, Equation) and not block.sides
+            for name in block.entries
+        ]
+        assert len(explained) == len(set(explained)), document.title
+
+
+def test_an_energy_that_no_line_can_break_gets_names_first(documents):
+    document = documents[-2]
+    energy, given = _given(document, "rotational_energy")
+    assert given is not None
+    assert len(given.entries) == 3
+    total, again = _given(document, "kinetic_energy")
+    assert again is None  # it refers to them
+    assert energy.scalar.free_symbols < total.scalar.free_symbols
+    assert "are those of (23)" in print_markdown(document)
 
 
 # --- lengths

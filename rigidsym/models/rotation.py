@@ -23,11 +23,13 @@ _NUMBERS = (sp.NumberSymbol, type(sp.I))
 class Citation:
     """Where a formula comes from."""
 
-    text: str  # author, title, section
+    text: str  # author, title
     equation: str = ""  # its number there, where it has one
+    section: str = ""  # where in the source, if it is not in the text
 
     def __str__(self) -> str:
-        return f"{self.text}, eq. {self.equation}" if self.equation else self.text
+        equation = f"eq. {self.equation}" if self.equation else ""
+        return ", ".join(filter(None, (self.text, self.section, equation)))
 
 
 LECTURE = "Lecture notes on rigid body motion"
@@ -35,7 +37,7 @@ LECTURE = "Lecture notes on rigid body motion"
 
 def lecture(equation: str = "", section: str = "") -> Citation:
     """A place in the lecture notes."""
-    return Citation(text=f"{LECTURE}, {section}" if section else LECTURE, equation=equation)
+    return Citation(text=LECTURE, equation=equation, section=section)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -227,8 +227,15 @@ class Composer:
     def _steps(self, names: Sequence[str]) -> Iterator[Block]:
         for step in self.derivation.steps:
             if step.quantity.name in names:
-                yield Paragraph(self._lead(step))
-                yield from self.fitter.fitted(self._equation(step), step)
+                first, *others = self.fitter.fitted(self._equation(step), step)
+                lead = self._lead(step)
+                if isinstance(first, Paragraph):  # on abbreviations
+                    *said, end = lead
+                    end = end.replace(":", ".") if isinstance(end, str) else end
+                    yield Paragraph((*said, end, " ", *first.text))
+                else:
+                    yield from (Paragraph(lead), first)
+                yield from others
 
     def _lead(self, step: Step) -> Text:
         """How the quantity follows; what has been said once is not said again."""

@@ -46,9 +46,9 @@ class Cited:
 
     @property
     def place(self) -> str:
-        """Where in the source; nothing where it is the whole."""
-        equation = self.citation.equation
-        return f"eq.\u00a0{equation}" if equation else ""
+        """Where in the source: the equation, or else the section; nothing where it is the whole."""
+        equation, section = self.citation.equation, self.citation.section
+        return f"eq.\u00a0{equation}" if equation else section.replace(" ", "\u00a0")
 
 
 Span = str | Markup | Code | Strong | EquationReference | Cited

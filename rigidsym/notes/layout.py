@@ -27,6 +27,7 @@ Done = Literal["", "abbreviated", "listed"]
 
 _EQUAL = ems("=")
 _QUAD = ems(r"\quad")
+_MOST_INDENTS = 5
 _ROW = r" \\[2pt]" + "\n"  # dots above the letters want some air
 _HIGH_ROW = r" \\[7pt]" + "\n"  # so do fractions
 
@@ -163,8 +164,18 @@ def broken_ems(formula: str, width: float) -> float:
 
 
 def _widest(lines: Sequence[Line]) -> float:
+    """The width of the widest line; those after the first are indented."""
     first, *others = lines
     return max(ems(first.text), *(_QUAD * (1 + o.depth) + ems(o.text) for o in others), 0.0)
+
+
+def _hung(formula: str, room: float) -> list[Line]:
+    """The lines of a formula that fit with their indents, as far as they can be broken."""
+    for indents in range(1, _MOST_INDENTS):
+        lines = broken(formula, room - indents * _QUAD)
+        if _widest(lines) <= room:
+            break
+    return lines
 
 
 def _listing(equation: Equation, rows: Rows, width: float) -> tuple[list[str], float]:
@@ -212,12 +223,10 @@ def _hanging(sign: str, formulas: Sequence[str], room: float) -> tuple[list[str]
     lines: list[str] = []
     widest = 0.0
     for formula in formulas:
-        first, *others = broken(formula, room - _QUAD)
+        first, *others = hung = _hung(formula, room)
         lines.append(f" &{sign} {first.text}")
         lines += ["&" + r"\quad" * (1 + line.depth) + f" {{}}{line.text}" for line in others]
-        depths = [0, *(1 + line.depth for line in others)]
-        texts = [line.text for line in (first, *others)]
-        widest = max(widest, *(_QUAD * d + ems(t) for d, t in zip(depths, texts, strict=True)))
+        widest = max(widest, _widest(hung))
     return lines, widest
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -40,9 +41,11 @@ class Namer:
         self.notation = notation
         self._letter = _free_letter(notation)
         self._known: dict[sp.Expr, sp.Symbol] = {}
+        self._known_before = 0
 
     def named(self, matrix: sp.ImmutableMatrix, room: float) -> Named:
         """The matrix with parts of it named, so that every line is at most `room` ems wide."""
+        self._known_before = len(self._known)
         entries = [self.notation.shortened(entry) for entry in matrix]
         moving = sp.Tuple(*entries).atoms(AppliedUndef, sp.Derivative)
         as_symbols = {part: sp.Symbol(f"at_{k}") for k, part in enumerate(sorted(moving, key=str))}
@@ -52,11 +55,9 @@ class Namer:
         parts = [(symbol, value.xreplace(back)) for symbol, value in found]
         return self._of(parts, [e.xreplace(back) for e in short], matrix.shape, room)
 
-    def forget(self, named: Named) -> None:
+    def forget(self) -> None:
         """Free the names that were given last, where they come to stand nowhere."""
-        for symbol, value in reversed(named.parts):
-            if symbol.name == f"{self._letter}_{len(self._known)}":
-                del self._known[value]
+        self._known = dict(islice(self._known.items(), self._known_before))
 
     def _of(
         self, found: list[Part], entries: list[sp.Expr], shape: tuple[int, int], room: float

@@ -10,7 +10,7 @@ from rigidsym.mechanics.derivation import Markup
 from rigidsym.notes.document import Table, Text
 from rigidsym.notes.words import plain
 
-_ROWS = 34  # on a page, beside a heading
+_ROWS = 40  # on a page, beside a heading
 _WORDS = 44  # letters of a column of words
 
 Row = tuple[Text, ...]

@@ -9,6 +9,17 @@ from rigidsym.notes.notation import Notation
 from rigidsym.notes.vector_rates import rate_of_form
 from rigidsym.notes.vector_words import sum_of_vectors
 
+_DEFINED = frozenset(  # by other quantities, and so are rates from an angular velocity
+    {
+        "spin_matrix",
+        "inertia_tensor_space",
+        "rotational_energy",
+        "kinetic_energy",
+        "angular_momentum_rotation_body",
+        "angular_momentum_rotation",
+        "angular_momentum",
+    }
+)
 _ACCELERATIONS = Markup(r"\ddot{\mathbf{q}}", "q\u0308")
 _FRAMES = {frame.name: frame for frame in (SPACE, BODY)}
 
@@ -16,15 +27,12 @@ _FRAMES = {frame.name: frame for frame in (SPACE, BODY)}
 def in_short(step: Step, derivation: Derivation, notation: Notation) -> tuple[Markup, ...] | None:
     """What a quantity is equal to, by other quantities; None where it is known by itself alone."""
     kind, _, frame = step.quantity.name.rpartition("_")
-    match step.quantity.name:
-        case "rotation_rate":
-            return (_poisson(passive=derivation.model.passive),)
-        case "spin_matrix":
-            return ()  # its definition says it
+    if step.quantity.name == "rotation_rate":
+        return (_poisson(passive=derivation.model.passive),)
+    if step.quantity.name in _DEFINED or kind == "rates_from_angular_velocity":
+        return ()
     if kind == "inverse_rate_matrix" and _is_least(derivation):
         return (_least(_FRAMES[frame]),)
-    if kind == "rates_from_angular_velocity":
-        return ()
     if kind == "angular_acceleration":
         return (_acceleration(derivation, _FRAMES[frame], notation),)
     return None

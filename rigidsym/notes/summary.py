@@ -60,13 +60,15 @@ def _blocks(
         there = [equations[label] for label in labels if label in equations]
         if not there:
             continue
-        results = [_result(equation) for equation in there if _is_whole(equation, derivation)]
-        short = [result for result in results if _fits(result, notation)]
-        needed = _height(short, notation)
+        results = {e: _result(e) for e in there if _is_whole(e, derivation)}
+        short = {e: result for e, result in results.items() if _fits(result, notation)}
+        needed = _height(list(short.values()), notation)
         if short and needed <= room:
             room -= needed
-            yield Paragraph((f"{title} ", *_numbers(there), ":"))
-            yield EquationRow(tuple(short))
+            others = [equation for equation in there if equation not in short]
+            also = ("; see also ", *_numbers(others)) if others else ()
+            yield Paragraph((f"{title} ", *_numbers(list(short)), *also, ":"))
+            yield EquationRow(tuple(short.values()))
         else:
             yield Paragraph((f"{title}: see ", *_numbers(there), "."))
     yield from _where_it_fails(derivation, notation)
@@ -94,8 +96,10 @@ def _result(equation: Equation) -> Equation:
 
 def _is_whole(equation: Equation, derivation: Derivation) -> bool:
     """Whether it needs no abbreviations that were explained beside it."""
-    expression = derivation.step(equation.label).expression
-    return equation.matrix is None or equation.matrix == expression
+    value = derivation.step(equation.label).expression
+    if equation.scalar is not None:
+        return bool(equation.scalar == value[0])
+    return equation.matrix is None or equation.matrix == value
 
 
 def _fits(equation: Equation, notation: Notation) -> bool:
