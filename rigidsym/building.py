@@ -1,4 +1,4 @@
-"""From a rotation, a derivation file or C that is there, to Python modules that are compiled."""
+"""From a rotation or a derivation file to one thing alone: a compiled module, or a page."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from rigidsym.kernels.targets.c_build import build
-from rigidsym.pipeline import product
+from rigidsym.options import as_chosen
+from rigidsym.pipeline import PAGE, page_name, product
 from rigidsym.spec import DerivationSpec, spec_of
 from rigidsym.writing import write_text
 
@@ -22,12 +23,20 @@ def built(asked: str, out: Path, *, portable: bool = False) -> Iterator[Path]:
         yield build(source, portable=portable)
         return
     for single in spec_of(asked).singles():
-        yield build(_written(single, out), portable=portable)
+        folder = _written(replace(single, kernels=("c",)), out)
+        yield build(folder / f"{single.name}.c", portable=portable)
+
+
+def paged(asked: str, out: Path) -> Iterator[Path]:
+    """The page of each rotation of what was asked for, in out/NAME/ beside its record."""
+    for single in as_chosen(spec_of(asked)).singles():
+        folder = _written(replace(single, kernels=(), note=(PAGE,)), out)
+        yield folder / page_name(single.name)
 
 
 def _written(spec: DerivationSpec, out: Path) -> Path:
-    """Where the C source of a rotation is, once its files are written."""
-    made = product(replace(spec, kernels=("c",)))
+    """The folder of a rotation, once its files are written."""
+    made = product(spec)
     for name, text in made.files.items():
         write_text(out / made.name / name, text)
-    return out / made.name / f"{made.name}.c"
+    return out / made.name

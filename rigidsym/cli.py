@@ -25,7 +25,6 @@ from rigidsym.options import (
     TEMPLATES,
     WITH_CONVERSIONS,
     WITH_DERIVATIVES,
-    as_chosen,
     in_notation,
     names_of,
 )
@@ -163,15 +162,12 @@ def page(source: str, out: Path) -> None:
     """Write a page for a browser: the note, and a figure with sliders that moves.
 
     ROTATION is what `derive` takes, FILE what `run` takes. One file, DIR/NAME/NAME_page.html,
-    which loads nothing from anywhere.
+    which loads nothing from anywhere; beside it the record that `check` reads.
     """
-    from rigidsym.pipeline import page as printed
-    from rigidsym.spec import spec_of
-    from rigidsym.writing import write_text
+    from rigidsym.building import paged
 
-    for single in as_chosen(spec_of(source)).singles():
-        name, text = printed(single)
-        click.echo(write_text(out / single.name / name, text))
+    for each in paged(source, out):
+        click.echo(each)
 
 
 @commands.command("list")

@@ -66,12 +66,6 @@ def product(spec: DerivationSpec) -> Product:
     )
 
 
-def page(spec: DerivationSpec) -> tuple[str, str]:
-    """Name and content of the page of a specification that names one rotation."""
-    motion = _motion(spec)
-    return page_name(spec.name), motion.page(with_kernels="numpy" in spec.kernels)
-
-
 def _motion(spec: DerivationSpec) -> Motion:
     (model,) = spec.models
     motion = derive(model, only=spec.quantities, body=spec.body, theory=spec.theory)

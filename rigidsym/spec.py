@@ -288,7 +288,10 @@ def _check_notation(manner: Manner, model: RotationModel, faults: Faults, place:
 
 
 def _read_output(table: Table) -> dict[str, Any]:
-    chosen: dict[str, Any] = {key: table.choices(key, known) for key, known in _OUTPUT.items()}
+    chosen: dict[str, Any] = {
+        key: table.choices(key, known, may_be_empty=key == "kernels")
+        for key, known in _OUTPUT.items()
+    }
     chosen["conversions"] = table.flag("conversions")
     chosen["derivatives"] = _read_derivatives(table, chosen["quantities"] or QUANTITIES)
     return {key: choice for key, choice in chosen.items() if choice is not None}

@@ -121,7 +121,9 @@ class Table:
         self.fault(f"expected {expected}", key)
         return []
 
-    def texts(self, key: str, expected: str) -> list[str | None] | None:
+    def texts(
+        self, key: str, expected: str, *, may_be_empty: bool = False
+    ) -> list[str | None] | None:
         """A list of texts, with None in the place of what is no text."""
         value = self.value(key)
         if value is None:
@@ -129,16 +131,19 @@ class Table:
         if not isinstance(value, list):
             self.mistyped(value, expected, key)
             return None
-        if not value:
+        if not value and not may_be_empty:
             self.fault(f"the list is empty; expected {expected}", key)
         for place, entry in enumerate(value):
             if not isinstance(entry, str):
                 self.mistyped(entry, "a text in quotes", key, place)
         return [entry if isinstance(entry, str) else None for entry in value]
 
-    def choices(self, key: str, known: Sequence[str]) -> tuple[str, ...] | None:
+    def choices(
+        self, key: str, known: Sequence[str], *, may_be_empty: bool = False
+    ) -> tuple[str, ...] | None:
         """A list of different names, out of those that are known."""
-        texts = self.texts(key, f'a list of names such as ["{known[0]}"]')
+        expected = f'a list of names such as ["{known[0]}"]'
+        texts = self.texts(key, expected, may_be_empty=may_be_empty)
         if texts is None:
             return None
         for place, text in enumerate(texts):

@@ -70,10 +70,10 @@ ORDER = (
     "detective",
     "inventory",
     "pipeline",
-    "building",
     "checking",
     "typeset",
     "options",
+    "building",
     "production",
     "cli",
 )

@@ -22,7 +22,6 @@ from rigidsym.api import derive
 from rigidsym.cli import commands
 from rigidsym.page.functions import SHOWN
 from rigidsym.page.page import MOST_BYTES
-from rigidsym.pipeline import page as printed
 from rigidsym.pipeline import product
 from rigidsym.spec import read_spec
 
@@ -101,7 +100,7 @@ def test_a_page_of_a_body_moves_what_turns_it():
         source="top.toml",
         name="top",
     )
-    _, page = printed(spec)
+    page = product(replace(spec, note=("page",))).files["top_page.html"]
     assert len(page.encode()) <= MOST_BYTES
     assert 'id="parameters-0"' in page
     assert 'id="parameters-1"' not in page  # the moment turns nothing
@@ -122,12 +121,19 @@ def test_the_notation_is_that_of_the_motion():
     assert "Ω" not in re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
 
 
-def test_the_command_writes_one_file(tmp_path: Path):
-    done = CliRunner().invoke(commands, ["page", "ZXZ", "--out", str(tmp_path)])
+def test_the_command_writes_one_page_which_check_knows(tmp_path: Path):
+    runner = CliRunner()
+    done = runner.invoke(commands, ["page", "ZXZ", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output
     path = tmp_path / NAME / f"{NAME}_page.html"
     assert done.output.strip() == str(path)
-    assert path.read_text(encoding="utf-8") == page_of("ZXZ")
+    assert path.read_text(encoding="utf-8") == derive("ZXZ").page(with_kernels=False)
+    assert {file.suffix for file in path.parent.iterdir()} == {".html", ".json"}
+    assert runner.invoke(commands, ["check", str(tmp_path)]).exit_code == 0
+    path.write_text(path.read_text(encoding="utf-8") + "\n", encoding="utf-8")
+    changed = runner.invoke(commands, ["check", str(tmp_path)])
+    assert changed.exit_code == 1
+    assert f"{NAME}_page.html: differs" in changed.output
 
 
 def test_the_command_takes_derivation_files(tmp_path: Path):
@@ -138,17 +144,13 @@ def test_the_command_takes_derivation_files(tmp_path: Path):
     assert '"omega":"ω"' in (tmp_path / "mine" / "mine_page.html").read_text(encoding="utf-8")
 
 
-def test_run_and_check_know_the_page(tmp_path: Path):
+def test_run_writes_a_page_where_a_file_asks_for_it(tmp_path: Path):
     file = tmp_path / "mine.toml"
     file.write_text('[rotation]\nsequence = "z(phi)"\n[output]\nnote = ["page"]\n')
     runner = CliRunner()
     assert runner.invoke(commands, ["run", str(file), "--out", str(tmp_path)]).exit_code == 0
-    page = tmp_path / "mine" / "mine_page.html"
+    assert (tmp_path / "mine" / "mine_page.html").is_file()
     assert runner.invoke(commands, ["check", str(tmp_path / "mine")]).exit_code == 0
-    page.write_text(page.read_text(encoding="utf-8") + "\n", encoding="utf-8")
-    changed = runner.invoke(commands, ["check", str(tmp_path / "mine")])
-    assert changed.exit_code == 1
-    assert "mine_page.html: differs" in changed.output
 
 
 # --- a real validator ---

@@ -193,11 +193,11 @@ def test_a_specification_checks_itself():
             title="\n",
             models=(model, replace(model, passive=True)),
             quantities=("weight",),
-            kernels=(),
+            note=(),
         )
     assert [str(fault) for fault in caught.value.faults] == [
-        'kernels: the list is empty; expected a list of names such as ["numpy"]',
         "models: writes the folder euler_zxz_intrinsic, as entry 0 does",
+        'note: the list is empty; expected a list of names such as ["tex"]',
         f'quantities[0]: unknown name "weight"; known: {", ".join(QUANTITIES)}',
         "title: an empty text; expected a title, or no such key",
     ]

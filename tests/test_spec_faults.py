@@ -51,7 +51,7 @@ principal_moments = ["A", "A"]
 """
 
 ALL_OF_THEM = """\
-many.toml: 22 faults, nothing written
+many.toml: 21 faults, nothing written
   line 1: title: an empty text; expected a title, or no such key
   line 2: sequence: unknown key; it belongs in [rotation]
   line 3: rotaton: unknown key; did you mean rotation or notation?
@@ -75,7 +75,6 @@ rate
   line 16: output.quantities[0]: unknown name "angular_velocity_bdy"; did you mean \
 angular_velocity_body or angular_velocity_space?
   line 16: output.quantities[2]: rotation_matrix is named twice
-  line 17: output.kernels: the list is empty; expected a list of names such as ["numpy"]
   line 18: output.note: expected a list of names such as ["tex"], got the text "tex"
   line 19: output.title: unknown key; it belongs at the top of the file, outside the tables
   line 21: body.principal_moments: expected three moments of inertia, got a list"""
