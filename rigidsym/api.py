@@ -133,10 +133,14 @@ def derive(
     its kinetic energy and angular momentum follow, in the principal axes or any others. `theory`
     puts before it what holds for every body and rotation, equations 1 to 16 of the lecture.
 
-    Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over, and
-    AlgebraError for expressions that the ring cannot hold.
+    Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over,
+    AlgebraError for expressions that the ring cannot hold, and TypeError for what is no model.
     """
     rotation = rotation_from(model) if isinstance(model, str) else model
+    if not isinstance(rotation, RotationModel):
+        raise TypeError(
+            f"expected a rotation, such as 'ZXZ' or rs.EulerAngles('ZXZ'), got {model!r}"
+        )
     derivation = _derivation(rotation, only, body, has_theory=theory)
     steps = tuple(
         MotionStep(**_values(step), arguments=derivation.arguments, model=rotation)

@@ -49,10 +49,6 @@ def main() -> None:
     except (KeyboardInterrupt, click.Abort):
         click.echo("rigidsym: interrupted", err=True)
         status = _INTERRUPTED
-    except BrokenPipeError:
-        # The reader of a pipe (`| head`) has had enough; nothing is wrong.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        status = 0
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
         click.echo(f"rigidsym: {place}{error.strerror or error}", err=True)
@@ -60,7 +56,18 @@ def main() -> None:
     sys.exit(status if isinstance(status, int) else 0)
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+class _Commands(click.Group):
+    """Commands whose reader (`| head`) may have had enough: nothing is wrong then."""
+
+    def invoke(self, context: click.Context) -> Any:
+        try:
+            return super().invoke(context)
+        except BrokenPipeError:  # of which click makes exit code 1
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise click.exceptions.Exit(0) from None
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="rigidsym")
 @click.pass_context
 def commands(context: click.Context) -> None:

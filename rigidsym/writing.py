@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 
@@ -18,6 +20,12 @@ def write_bytes(path: Path, content: bytes, *, is_lasting: bool = False) -> Path
     `is_lasting` waits until the bytes would outlast a power cut.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
+    with naming(path):
+        _write(path, content, is_lasting=is_lasting)
+    return path
+
+
+def _write(path: Path, content: bytes, *, is_lasting: bool) -> None:
     descriptor, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(descriptor, "wb") as file:
@@ -30,7 +38,18 @@ def write_bytes(path: Path, content: bytes, *, is_lasting: bool = False) -> Path
     except BaseException:
         Path(draft).unlink(missing_ok=True)
         raise
-    return path
+
+
+@contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Errors of the system that name no file, or its draft, name the file that is to be."""
+    try:
+        yield
+    except OSError as error:
+        named = Path(error.filename).name if error.filename else ""
+        if error.errno is None or (named and not named.startswith(f".{path.name}.")):
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def to_disk(path: Path) -> None:

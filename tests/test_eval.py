@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+
 import numpy as np
 import pytest
 from log_files import COUNT, NAMES, VELOCITY, WRITERS, logged, read, run
@@ -129,7 +131,7 @@ def test_a_fault_of_the_file_is_exit_code_3_and_leaves_nothing(tmp_path):
     (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
     done = run("ZXZ", tmp_path / "log.csv", "--out", tmp_path / "result.npy")
     assert done.returncode == 3
-    assert done.stderr.startswith("rigidsym: 3 columns without names")
+    assert done.stderr.startswith(f"rigidsym: {tmp_path / 'log.csv'}: 3 columns without names")
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
 
 
@@ -141,6 +143,22 @@ def test_what_is_no_table_of_numbers_is_refused(tmp_path):
     for path in sorted(tmp_path.iterdir()):
         with pytest.raises(DataError, match=path.name):
             rows_of(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "found"),
+    [
+        (gzip.compress(b"1,2,3"), r"compressed by gzip \(gunzip unpacks them\)"),
+        (b"PK\3\4", "a ZIP archive or a spreadsheet"),
+        ("phi,theta".encode("utf-16"), "text in UTF-16"),
+        (b"\x93NUMPY", "NPY, but its name does not end in .npy"),
+        (b"\7\0\7", "no text"),
+    ],
+)
+def test_a_file_that_is_no_text_is_named_for_what_it_is(tmp_path, content, found):
+    (tmp_path / "log.csv").write_bytes(content)
+    with pytest.raises(DataError, match=rf"log\.csv holds .*{found}; expected text in UTF-8"):
+        rows_of(tmp_path / "log.csv")
 
 
 @pytest.mark.parametrize(("content", "found"), [(b"x", "another kind of file"), (b"", "an empty")])

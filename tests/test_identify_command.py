@@ -138,7 +138,7 @@ def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
 )
 def test_bad_input_is_told_at_once(tmp_path, words, messages):
     (tmp_path / "log.csv").write_text("rol,pitch,yaw\n1,2,3\n")
-    done = call("identify", *words, cwd=tmp_path, status=3 if "log.csv" in words else 2)
+    done = call("identify", *words, cwd=tmp_path, status=3 if words == ("log.csv",) else 2)
     for message in messages:
         assert message in done.stderr
     assert "Traceback" not in done.stderr

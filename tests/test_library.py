@@ -363,6 +363,12 @@ def test_derive_reads_text_as_the_command_line_does():
     assert derive("ZXZ").angular_velocity_body == motion_of("ZXZ").angular_velocity_body
 
 
+@pytest.mark.parametrize("model", [3, None, ("Z", "X", "Z")])
+def test_what_is_no_model_is_said_in_one_line(model):
+    with pytest.raises(TypeError, match=r"expected a rotation, such as 'ZXZ' or .*, got "):
+        derive(model)
+
+
 def test_zero_names_a_constant_and_ten_does_not():
     model = rotation_from("z(a_9) x(alpha0) y(a_10) x(b_0)")
     assert [symbol.name for symbol in model.constants] == ["alpha0", "b_0"]

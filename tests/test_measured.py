@@ -171,7 +171,7 @@ def test_an_engineer_may_insist_on_a_negative_mass():
     [
         ("m,x,y,z\n1,0,0,0\n1,0,zero,0\n", "line 3"),
         ("m,x,y,z\n1,0,0,0\n1,0,0\n", "line 3"),
-        ("m,x,y\n1,0,0\n", "no column z among m, x, y"),
+        ("m,x,y\n1,0,0\n", r"cloud\.csv: no column z among m, x, y"),
         ("m,x,y,z\n1,0,0,0\n\n# -\n-2,0,0,0\n", r"csv, line 5: the mass is -2 kg; expected none"),
         ("m,x,y,z\n1,0,0,0\n\n1,0,nan,0\n", r"csv, line 4: expected finite numbers, got mass 1"),
         ("m,x,y,z,z\n1,0,0,0,0\n", "two columns are named z"),

@@ -13,7 +13,6 @@ from rigidsym.evaluation.evaluate import Evaluated, Evaluation, evaluation
 from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel
 from rigidsym.progress import Progress, bar
-from rigidsym.rotations import rotation_from
 from rigidsym.rows.sinks import draft_of
 
 
@@ -63,11 +62,9 @@ def _run(work: Evaluation, progress: Progress | None) -> Evaluated:
 
 def _subject(rotation: str) -> tuple[RotationModel, RigidBody | None]:
     """The rotation, and the body that turns so where a derivation file has one."""
-    if not rotation.endswith(".toml"):
-        return rotation_from(rotation), None
-    from rigidsym.spec import read_file
+    from rigidsym.spec import spec_of
 
-    spec = read_file(rotation)
+    spec = spec_of(rotation)
     if len(spec.models) != 1:
         raise ModelError(f"{rotation} has {len(spec.models)} rotations; expected one")
     return spec.models[0], spec.body

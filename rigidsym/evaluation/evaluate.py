@@ -20,6 +20,7 @@ from rigidsym.rows.names import misnumbered
 from rigidsym.rows.piece import ROWS, Piece, Rows, Table
 from rigidsym.rows.sinks import Sink, check_ending, sink_for
 from rigidsym.rows.sources import rows_of
+from rigidsym.writing import naming
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -52,7 +53,7 @@ class Evaluation:
         DraftInUse while another process writes the same result. Stopped otherwise, it leaves a
         draft with marks to go on from, unless nothing was done.
         """
-        with claimed(self.path):
+        with naming(self.path), claimed(self.path):
             return self._run(progress)
 
     def _run(self, progress: Progress | None) -> Evaluated:
@@ -141,14 +142,19 @@ def evaluation(
     for name in quantities:
         if not chosen.step(name).quantity.inputs:
             raise RequestError(f"{name} takes no input: it is the same for every row")
-    inputs = inputs_of(
-        chosen,
-        quantities,
-        columns or rows.names,
-        rows.width,
-        given=given or {},
-        degrees=degrees,
-    )
+    try:
+        inputs = inputs_of(
+            chosen,
+            quantities,
+            columns or rows.names,
+            rows.width,
+            given=given or {},
+            degrees=degrees,
+        )
+    except RequestError:
+        raise
+    except DataError as error:
+        raise DataError(f"{source}: {error}") from None
     if not inputs.columns:
         raise RequestError(
             f"{source}: nothing of it is used; the results are the same for every row"

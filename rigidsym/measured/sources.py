@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from rigidsym.errors import BodyError, DataError
 from rigidsym.measured.blocks import BLOCK, Array, named
-from rigidsym.names import offer
 from rigidsym.rows.names import counted, plain, unit_in
 from rigidsym.rows.npy import mapped
 from rigidsym.rows.sources import rows_of
@@ -54,7 +53,11 @@ class Columns:
                 raise BodyError(f"two columns are named {name}")
         for name in _AXES:
             if name not in bare:
-                raise BodyError(f"no column {name} among {', '.join(names)}; {offer(name, bare)}")
+                near = get_close_matches(name, [n for n in bare if n not in DEFAULT], n=1)
+                raise BodyError(
+                    f"no column {name} among {', '.join(names)}; "
+                    + (f"did you mean {near[0]}?" if near else "--columns says which is which")
+                )
         if "m" not in bare and (near := get_close_matches("mass", bare, n=1)):
             raise BodyError(f"no column m or mass among {', '.join(names)}; is {near[0]} the mass?")
         for name, short in zip(names, bare, strict=True):
@@ -70,7 +73,8 @@ class Columns:
         if names is None:
             if width not in (3, 4):
                 raise BodyError(
-                    f"expected 3 columns (x, y, z) or 4 (m, x, y, z), got {width}; name them"
+                    f"expected 3 columns (x, y, z) or 4 (m, x, y, z), got {width}; "
+                    "--columns names them"
                 )
             names = DEFAULT[4 - width :]
         if len(names) != width:
@@ -193,4 +197,9 @@ def source_of(path: Path, names: Sequence[str] | None = None) -> Source:
     """The particles of a file, by its ending; anything but NPY and Parquet is text."""
     if not path.is_file():
         raise BodyError(f"{path}: no such file of particles")
-    return (NpySource if path.suffix.lower() == ".npy" else RowsSource)(path, names)
+    try:
+        return (NpySource if path.suffix.lower() == ".npy" else RowsSource)(path, names)
+    except BodyError as error:
+        if str(path) in str(error):
+            raise
+        raise BodyError(f"{path}: {error}") from None

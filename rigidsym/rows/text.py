@@ -13,6 +13,16 @@ from rigidsym.errors import DataError
 from rigidsym.rows.names import counted
 from rigidsym.rows.piece import ROWS, Piece, Table
 
+_PROBED = 4096  # bytes at the beginning that tell text from other files
+_KINDS = {
+    b"\x1f\x8b": "data compressed by gzip (gunzip unpacks them)",
+    b"PK": "a ZIP archive or a spreadsheet",
+    b"\xff\xfe": "text in UTF-16",
+    b"\xfe\xff": "text in UTF-16",
+    b"\x93NUMPY": "NPY, but its name does not end in .npy",
+    b"PAR1": "Parquet, but its name does not end in .parquet",
+    b"\x89HDF": "HDF5",
+}
 _SEPARATORS = (",", ";", "\t", None)  # None: blanks
 
 
@@ -37,6 +47,8 @@ class TextRows:
         self.path = path
         self.size = path.stat().st_size
         with path.open("rb") as file:
+            check_text(path, file.read(_PROBED))
+            file.seek(0)
             first = next((line for line in map(text_of, file) if line), "")
         if not first:
             raise DataError(f"{path}: no rows")
@@ -105,6 +117,15 @@ class TextRows:
                 for why in self.wrong_with(line, columns):
                     return f"{self.path}, line {number}: {why}"
         return ""
+
+
+def check_text(path: Path, begin: bytes) -> None:
+    """Raise DataError where a file begins as no text in UTF-8 does."""
+    kind = next((kind for magic, kind in _KINDS.items() if begin.startswith(magic)), None)
+    if kind is None and b"\0" in begin:
+        kind = "no text"
+    if kind is not None:
+        raise DataError(f"{path} holds {kind}; expected text in UTF-8, or an NPY or Parquet file")
 
 
 def text_of(line: bytes) -> str:
