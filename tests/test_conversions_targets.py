@@ -26,7 +26,7 @@ JAX = ("ZXZ", "rotation_vector", "modified_rodrigues", CONSTANTS)
 
 CATALOGUE = (*rs.EULER_SEQUENCES[::6], *PARAMETRISATIONS, *PRESETS, CHAIN, CONSTANTS)
 EXPORTED = {
-    "c": re.compile(r"^void \w+?_(\w+)_array\(", re.MULTILINE),
+    "c": re.compile(r"^void (\w+)_array\(", re.MULTILINE),
     "javascript": re.compile(r"^export function (\w+)\(", re.MULTILINE),
 }
 PYTHON = re.compile(r"^    \"(\w+)\",$", re.MULTILINE)  # lines of __all__

@@ -95,6 +95,20 @@ def test_types_are_those_of_jax():
     assert_allclose(matrix(q), module().rotation_matrix(q), atol=4 * EPS * 2**29)
 
 
+@pytest.mark.parametrize("leading", [(), (0,), (1,), (7,), (2, 0, 3)])
+def test_every_shape_and_stride_is_taken(leading):
+    (q,) = inputs("rotation_matrix", leading)
+    found = functions().rotation_matrix(q)
+    assert found.shape == (*leading, 3, 3)
+    assert_allclose(found, module().rotation_matrix(q), atol=4 * EPS)
+    wide = np.zeros((*leading, 7))
+    wide[..., 5::-2] = q
+    apart = wide[..., 5::-2]
+    apart.flags.writeable = False
+    assert_array_equal(functions().rotation_matrix(apart), found)
+    assert functions().angular_velocity_body.signature == "(3),(3)->(3)"
+
+
 def test_poles_and_what_is_not_finite_give_nan():
     found = functions().rates_from_angular_velocity_body(np.zeros(3), np.ones(3))
     assert_array_equal(np.isnan(found), [True, False, True])  # the rate of theta has no pole
@@ -110,6 +124,11 @@ def test_arguments_that_are_refused():
         functions().rotation_matrix(np.zeros(4))
     with pytest.raises(TypeError, match=r"^q: got dtype complex128; expected floats$"):
         functions().rotation_matrix(np.zeros(3, complex))
+    foreign = np.dtype(float).newbyteorder()
+    with pytest.raises(TypeError, match=f"^q: JAX takes no array of {foreign}"):
+        functions().rotation_matrix(np.zeros(3, foreign))
+    with pytest.raises(TypeError, match=r"^q: JAX takes no array of str$"):
+        functions().rotation_matrix("abc")
 
 
 def test_ruff_would_leave_the_modules_as_they_are(tmp_path):

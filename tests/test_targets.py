@@ -7,6 +7,7 @@ digits, of the very floats that the functions are given.
 from __future__ import annotations
 
 import pickle
+import sys
 from functools import cache
 from types import ModuleType
 
@@ -15,7 +16,8 @@ import pytest
 from witness import evaluate, mp
 
 import rigidsym as rs
-from rigidsym.errors import MissingExtra
+from rigidsym.errors import MissingExtra, RigidsymError
+from rigidsym.inventory import inventory
 from rigidsym.kernels.targets import TARGETS
 
 ARRAYS = ("numpy", "c", "numba")
@@ -166,8 +168,7 @@ def test_any_strides_broadcasts_and_byte_orders_give_the_same(target, dtype):
     one = body(q[:, np.newaxis], q_dot[np.newaxis])
     for k in (0, 77, 199):
         assert np.allclose(one[k, k], expected[k], rtol=0, atol=MOST * EPS[dtype] * 10)
-    if dtype is np.float64:
-        assert np.array_equal(body(swapped, q_dot), expected)
+    assert np.array_equal(body(swapped, q_dot), expected)
 
 
 @pytest.mark.parametrize("target", PRESENT)
@@ -238,6 +239,26 @@ def test_what_is_written_is_data_with_names_of_its_own(target, tmp_path):
 
 def _files(target):
     return motion("ZXZ").kernels(target).files
+
+
+@pytest.mark.parametrize(
+    ("target", "hidden"),
+    [("c", None), ("javascript", None), ("jax", "jax.numpy"), ("numba", "numba")],
+)
+def test_without_its_tools_a_target_is_written_and_loading_ends_in_code_4(
+    target, hidden, monkeypatch
+):
+    monkeypatch.setenv("PATH", "/nowhere")
+    monkeypatch.delenv("CC", raising=False)
+    if hidden is not None:
+        monkeypatch.setitem(sys.modules, hidden, None)
+    monkeypatch.setattr("rigidsym.kernels.targets.find_spec", lambda _: None)
+    kernels = motion("ZXZ").kernels(target)
+    with pytest.raises(RigidsymError) as raised:
+        kernels.load()
+    assert raised.value.exit_code == 4
+    assert TARGETS[target].missing
+    assert f"{TARGETS[target].missing} is missing here" in inventory()
 
 
 def test_a_missing_package_is_named_with_its_extra(monkeypatch):
