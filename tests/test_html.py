@@ -17,11 +17,12 @@ from conftest import derived
 
 import rigidsym as rs
 from rigidsym.errors import AlgebraError
+from rigidsym.mechanics.derivation import Markup
 from rigidsym.mechanics.kinematics import derive
 from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.rotation import Citation
 from rigidsym.models.so3 import elementary, time_function
-from rigidsym.notes.html import escape
+from rigidsym.notes.html import _parts, escape
 from rigidsym.notes.mathml import mathml
 from rigidsym.notes.note import note
 from rigidsym.notes.plain import cleaned
@@ -154,6 +155,24 @@ def test_characters_that_are_not_printed_are_blanks(text, expected):
 def test_a_macro_without_mathml_is_an_error():
     with pytest.raises(AlgebraError, match=r"no MathML for \\nosuchmacro"):
         mathml(r"\nosuchmacro", "x")
+
+
+def test_a_power_stands_above_the_whole_of_a_large_bracket():
+    power = mathml(r"\Bigl(a\,\Bigl(b + c\Bigr)^{2}\Bigr)^{3}", "x")
+    assert power.count("<msup><mrow>") == 2
+    assert "</mrow><mn>2</mn></msup>" in power
+    assert "</mrow><mn>3</mn></msup>" in power
+
+
+def test_a_long_formula_among_words_is_cut_at_its_signs_outside_brackets():
+    left, right = r"\mathbf{a}\times\left(\mathbf{b} + \mathbf{c}\right)", r"\mathbf{d}(e - f)"
+    whole = Markup(f"{left} = {right} + {right}", "a × (b + c) = d(e − f) + d(e − f)")
+    assert _parts(whole) == [
+        Markup(left, "a × (b + c)"),
+        Markup(f"= {right}", "= d(e − f)"),
+        Markup(f"+ {right}", "+ d(e − f)"),
+    ]
+    assert _parts(Markup("a = b", "a = b")) == [Markup("a = b", "a = b")]
 
 
 def test_an_unproved_claim_stands_out():

@@ -13,14 +13,14 @@ from conftest import derived
 from test_typeset import tex  # noqa: F401
 
 import rigidsym as rs
-from rigidsym import cli, options
+from rigidsym import cli, options, pipeline
 from rigidsym.errors import ModelError, SpecError
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.catalogue import EulerAngles
 from rigidsym.notes.manner import CHOICES, DEFAULT, Manner
 from rigidsym.notes.measure import columns
 from rigidsym.notes.terminal import show
-from rigidsym.spec import DerivationSpec, read_spec
+from rigidsym.spec import DerivationSpec, read_file, read_spec
 from rigidsym.typeset import typeset
 
 OTHER = {
@@ -65,6 +65,11 @@ FILE = '[rotation]\nsequence = "ZXZ"\n'
             {"body": "superscript"},
             (r"\mathbf{W}'^{-1}", "W′⁻¹"),
             (r"\bigl(\mathbf{W}^{\mathrm{B}}\bigr)^{-1}", "(Wᴮ)⁻¹"),
+        ),
+        (
+            {"body": "superscript"},
+            (r"\mathbf{W}'^{+}", "W′⁺"),
+            (r"\bigl(\mathbf{W}^{\mathrm{B}}\bigr)^{+}", "(Wᴮ)⁺"),
         ),
         ({"body": "superscript"}, (r"\Omega'_{1}", "Ω′₁"), (r"\Omega^{\mathrm{B}}_{1}", "Ωᴮ₁")),
         ({"angular_velocity": "omega"}, (r"\Omega_{2}", "Ω₂"), (r"\omega_{2}", "ω₂")),
@@ -191,6 +196,20 @@ def test_the_command_line_offers_every_choice():
         )
 
 
+@pytest.mark.parametrize("rotation", ["unit_quaternion", "axis_angle", "z(phi)", "lecture"])
+def test_every_kind_of_note_is_printed_in_every_format(rotation):
+    if rotation == "lecture":
+        (single,) = read_file(rotation).singles()
+        motion = pipeline.product(single).motion.written(**OTHER)
+    else:
+        motion = rs.derive(rotation).written(**OTHER)
+    note = motion.note()
+    for printed in (note.latex(), note.html(), note.markdown(), show(motion, manner=motion.manner)):
+        assert printed
+    for equation in note.document.equations:
+        assert len(set(equation.sides)) == len(equation.sides)
+
+
 # --- the names of the frames
 
 
@@ -203,6 +222,9 @@ def test_the_command_line_offers_every_choice():
         ("angular velocity, body components", "angular velocity, B components"),
         ("in space, that is", "in the A frame, that is"),
         ("turn the body about", "turn the body about"),
+        ("the operator in space components", "the operator in A components"),
+        ("the momentum of the body", "the momentum of the body"),
+        ("the principal axes of the body", "the principal axes of the body"),
     ],
 )
 def test_frames_have_the_names_of_the_user(text, expected):

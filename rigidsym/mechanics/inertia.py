@@ -237,7 +237,7 @@ class _Inertia:
         )
         return Found(
             sp.ImmutableMatrix(semi_axes),
-            "The ellipsoid is that of all x′ for which x′ᵀ I′ x′ = 1.",
+            "The ellipsoid is that of all x′ for which x′·I′ x′ = 1.",
             (_vanishes(rest, claims.ELLIPSOID, self.body.name),),
         )
 

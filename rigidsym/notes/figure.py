@@ -37,7 +37,7 @@ def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
     names = Names(
         angles=tuple(markup(turn.angle, notation) for turn in turns),
         body=tuple(map(notation.manner.symbol, BODY)),
-        between=None if model.turns else name_of_the_vector(model),
+        between=None if model.turns else notation.manner.symbol(name_of_the_vector(model)),
         is_vector=not model.turns,
     )
     scene = scene_of(axes, angles, names)

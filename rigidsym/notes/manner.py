@@ -30,14 +30,26 @@ CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
 FRAMES = ("space", "body")
 
 _A_FRAME_NAME = re.compile(r"\w(?:[\w .-]{0,28}\w)?")
+# what is the body's own, and not that of its frame
+_NOT_A_FRAME = "".join(
+    f"(?<!{noun} )"
+    for noun in ("momentum", "energy", "tensor", "principal axes", "point", "constant", "else")
+)
 # the name before what it qualifies, or after a preposition, where it becomes "the ... frame"
 _FRAME_WORDS = (
-    re.compile(r"\b(?:(?P<before>of|in|from) space|space(?P<after> components| to\b))"),
-    re.compile(r"\b(?:(?P<before>of|in|from) the body|body(?P<after> components| to\b))"),
+    re.compile(
+        r"\b(?:(?P<before>of|in|from) space(?! components)|space(?P<after> components| to\b))"
+    ),
+    re.compile(
+        _NOT_A_FRAME + r"\b(?:(?P<before>of|in|from) the body|body(?P<after> components| to\b))"
+    ),
 )
 _BODY = r"^{\mathrm{B}}"
-_POWER_OF_BODY = re.compile(r"((?:\\[A-Za-z]+\{[^{}]*\}|\\[A-Za-z]+|\w))'\^\{(-?\d+|\\mathsf T)\}")
-_BOLD = re.compile(r"\\(?:mathbf\{([uxrLe])\}|boldsymbol\{(\\[Oo]mega)\})")
+_POWER_OF_BODY = re.compile(
+    r"((?:\\[A-Za-z]+\{[^{}]*\}|\\[A-Za-z]+|\w))'\^\{(-?\d+|\+|\\mathsf T)\}"
+)
+# vectors; bold matrices and columns of coordinates stay so
+_BOLD = re.compile(r"\\(?:mathbf\{([uvwxyrpncdLe])\}|boldsymbol\{(\\[Oo]mega)\})")
 _VECTORS = re.compile(r"([Ωω])(?![₀-₉]|[′ᴮ][₀-₉])")
 _DOT = re.compile(
     r"\\(d?dot)"
@@ -91,7 +103,7 @@ class Manner:
         if self.angular_velocity == "omega":
             text = text.replace("Ω", "ω")
         if self.body == "superscript":
-            text = re.sub("(\\w)′⁻¹", "(\\1ᴮ)⁻¹", text).replace("′", "ᴮ")
+            text = re.sub("(\\w)′(⁻¹|⁺)", "(\\1ᴮ)\\2", text).replace("′", "ᴮ")
         if self.rates == "fraction":
             text = re.sub(r"∂(d\w/dt)", r"∂(\1)", _without_dots(text))
         if self.vectors == "arrow":

@@ -27,6 +27,7 @@ _CLASSES = {  # for the style sheet
 }
 # browsers centre a dot over the foot of a slanted letter
 _DOTTED = re.compile(r'(<mover accent="true"><mi>[A-Za-zα-ωϕϵ]</mi><mo)(>[˙¨])')
+_LARGE = re.compile(r"\\[bB]ig([lr])[()]")
 _ROW_SPACE = re.compile(r"\\\\\[\d+pt\]")  # the style sheet sets the distance of rows
 
 
@@ -39,11 +40,27 @@ def mathml(latex: str, text: str, *, is_display: bool = False) -> str:
     return element.replace("<math", f'<math alttext="{escape(text)}"', 1)
 
 
+def _with_whole_bases(latex: str) -> str:
+    """A power of what stands in large brackets is raised above all of it, not above its bracket."""
+    opened: list[int] = []
+    braces: list[tuple[int, str]] = []
+    for bracket in _LARGE.finditer(latex):
+        if bracket[1] == "l":
+            opened.append(bracket.start())
+        elif opened:
+            start, end = opened.pop(), bracket.end()
+            if latex.startswith("^", end) and "&" not in latex[start:end]:  # on one line
+                braces += [(start, "{"), (end, "}")]
+    for place, brace in sorted(braces, reverse=True):
+        latex = latex[:place] + brace + latex[place:]
+    return latex
+
+
 @lru_cache(maxsize=4096)
 def _converted(latex: str, is_display: bool) -> str:
     try:
         element = _CONVERTER.convert_with_local_state(
-            _ROW_SPACE.sub(r"\\\\", latex), displaystyle=is_display
+            _ROW_SPACE.sub(r"\\\\", _with_whole_bases(latex)), displaystyle=is_display
         )
     except LatexError as error:
         raise AlgebraError(f"no MathML for {latex}: {error}") from error

@@ -38,7 +38,7 @@ def equation_in_manner(equation: Equation, manner: Manner) -> Equation:
 
     return replace(
         equation,
-        sides=rewritten(equation.sides),
+        sides=tuple(dict.fromkeys(rewritten(equation.sides))),  # a rate may be its definition
         entries=rewritten(equation.entries),
         proved=rewritten(equation.proved),
         unproved=rewritten(equation.unproved),

@@ -11,6 +11,7 @@ import sympy as sp
 from rigidsym.mechanics.claims import fill
 from rigidsym.mechanics.derivation import Argument, Derivation, Markup
 from rigidsym.mechanics.energy_quantities import CENTRE
+from rigidsym.mechanics.inertia_quantities import DIRECTION, POINT
 from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.document import Cited, Code, EquationReference, Span, Strong, Text
@@ -65,11 +66,13 @@ def _plain(span: Span) -> str:
 def symbols_of(derivation: Derivation) -> dict[str, Markup]:
     """The symbols that may occur in a sentence about a derivation, by their plain text."""
     named = chain(
-        (Markup(axis, axis) for axis in AXES),
+        (ROTATION, *(Markup(axis, axis) for axis in AXES)),
         chain.from_iterable(argument.notation for argument in derivation.arguments),
         (step.quantity.symbol for step in derivation.steps),
         (SPACE.omega, BODY.omega, RATES),
     )
+    if derivation.body is not None:
+        named = chain(named, (BODY_POSITION, POINT, DIRECTION))
     if derivation.model.vector:
         length = length_of(derivation.model)
         named = chain(named, (VECTOR,), (length.names[length.symbol],) if length else ())
