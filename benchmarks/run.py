@@ -80,7 +80,11 @@ def _settings(given: argparse.Namespace) -> Settings:
     from benchmarks.measure import Settings
 
     return Settings(
-        repeats=given.repeats, size=given.size, samples=given.samples, fresh=given.fresh
+        repeats=given.repeats,
+        size=given.size,
+        samples=given.samples,
+        fresh=given.fresh,
+        write=given.write,
     )
 
 
@@ -99,6 +103,12 @@ def _parser() -> argparse.ArgumentParser:
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)
     parser.add_argument("--readme", action="store_true", help="put the tables into README.md")
     parser.add_argument("--fresh", action="store_true", help="survey SymPy's forms anew (minutes)")
+    parser.add_argument(
+        "--write",
+        action="store_true",
+        help="of accuracy: measure all shipped kernels that have no row in the package's table of "
+        "errors, or with --fresh all of them (half an hour), and write it",
+    )
     return parser
 
 

@@ -55,7 +55,7 @@ class Product:
 
 def product(spec: DerivationSpec) -> Product:
     """The product of a specification that names one rotation."""
-    motion = _motion(spec)
+    motion = motion_of(spec)
     conversions = motion.conversions if spec.conversions else None
     texts = _texts(motion, conversions, spec)
     return Product(
@@ -66,7 +66,8 @@ def product(spec: DerivationSpec) -> Product:
     )
 
 
-def _motion(spec: DerivationSpec) -> Motion:
+def motion_of(spec: DerivationSpec) -> Motion:
+    """The derivation of a specification that names one rotation."""
     (model,) = spec.models
     motion = derive(model, only=spec.quantities, body=spec.body, theory=spec.theory)
     motion = replace(motion, name=spec.name, title=spec.title or motion.title)

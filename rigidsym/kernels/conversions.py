@@ -75,11 +75,8 @@ def lower_conversions(
     derivation: Derivation, conversions: Conversions, reserved: Iterable[str] = ()
 ) -> ConversionProgram:
     """The conversions as kernels and formulas; what cannot be computed is left out and said."""
-    steps, formulas, missing = _forward(derivation, conversions)
-    names = {step.quantity.name for step in derivation.steps}
-    variants = (v for v in conversions.variants if v.quantity.name.removesuffix(UNIT) in names)
-    chosen = replace(derivation, steps=(*steps, *variants), singularities=None)
-    program = lower(chosen, tuple(reserved))
+    _, formulas, missing = _forward(derivation, conversions)
+    program = lower(in_closed_form(derivation, conversions), tuple(reserved))
     backward, unwrapping = conversions.backward, None
     if backward is not None:
         given = _given(derivation.model, backward.rule, reserved)
@@ -92,6 +89,14 @@ def lower_conversions(
         unwrapping=unwrapping,
         remarks=tuple(text for text in (missing, conversions.without) if text),
     )
+
+
+def in_closed_form(derivation: Derivation, conversions: Conversions) -> Derivation:
+    """The conversions that are quantities like others, as the steps of a derivation."""
+    steps, _, _ = _forward(derivation, conversions)
+    names = {step.quantity.name for step in derivation.steps}
+    variants = (v for v in conversions.variants if v.quantity.name.removesuffix(UNIT) in names)
+    return replace(derivation, steps=(*steps, *variants), singularities=None)
 
 
 def _with_parameters(

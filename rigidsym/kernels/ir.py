@@ -210,6 +210,7 @@ class Kernel:
     about: str = ""  # words
     unit: str = ""  # SI; "" for a pure number
     parts: tuple[tuple[int, ...], ...] = ()  # shapes of the results that the outputs are, in order
+    measured: str = ""  # a sentence: its largest error; empty where that is not known
 
     def __post_init__(self) -> None:
         if len(self.outputs) != prod(self.shape):

@@ -68,6 +68,16 @@ def lower(
     )
 
 
+def rewritten(derivation: Derivation, entries: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """Expressions in the form that kernels evaluate them in."""
+    return _Lowering(derivation, Names()).rewritten(entries)
+
+
+def margins_of(derivation: Derivation) -> tuple[sp.Expr, sp.Expr] | None:
+    """What `singularity_margin` is, exactly and as evaluated; None where there is none."""
+    return _Lowering(derivation, Names()).margins()
+
+
 def _convention(model: RotationModel) -> tuple[str, ...]:
     """The convention in sentences, the frames of R among them."""
     presented = (
@@ -106,7 +116,7 @@ class _Lowering:
     def of_step(self, step: Step) -> ir.Kernel:
         """The kernel of one quantity."""
         quantity = step.quantity
-        entries = self._rewritten(map(self._over_squares, step.expression))
+        entries = self.rewritten(map(self._over_squares, step.expression))
         kernel = self._kernel(quantity.name, quantity.inputs, entries, step.shape)
         return replace(
             kernel,
@@ -125,7 +135,7 @@ class _Lowering:
                 self.arguments[vector.name] = _named(vector, self._names)
         step = derivative.step
         count = len(step.expression)
-        entries = self._rewritten([*step.expression, *derivative.jacobian()])
+        entries = self.rewritten([*step.expression, *derivative.jacobian()])
         entries = [*entries[:count], *derivative.results(entries[count:])]
         inputs = [vector.name for vector in derivative.vectors]
         kernel = self._kernel(derivative.request.name, inputs, entries, (len(entries),))
@@ -139,16 +149,30 @@ class _Lowering:
 
     def margin(self) -> Iterator[ir.Kernel]:
         """How far the rate matrix is from failing, where it is among the quantities and may."""
-        found = self.derivation.singularities
-        if found is None or not _can_fail(found):
+        found = self._failing
+        if found is None:
             return
-        minors = self._rewritten(found.minors)
+        minors = self.rewritten(found.minors)
         scale, about = _scaled(minors, found)
         value = _size(minors, scale)
         is_free = value.free_symbols.isdisjoint(self.derivation.model.constants)
         inputs = ("q",) if is_free else ("q", "parameters")
         kernel = self._kernel(MARGIN, inputs, [value], ())
         yield replace(kernel, symbol=_symbol(found.measure) + _over(scale), about=about)
+
+    def margins(self) -> tuple[sp.Expr, sp.Expr] | None:
+        """The same in the derivation's own minors, and as the kernel evaluates it."""
+        found = self._failing
+        if found is None:
+            return None
+        minors = self.rewritten(found.minors)
+        scale, _ = _scaled(minors, found)
+        return _size(found.minors, scale), _size(minors, scale)
+
+    @property
+    def _failing(self) -> Singularities | None:
+        found = self.derivation.singularities
+        return found if found is not None and _can_fail(found) else None
 
     def _over_squares(self, entry: sp.Expr) -> sp.Expr:
         """The entry with the minors squared in place of the determinant that divides.
@@ -171,7 +195,7 @@ class _Lowering:
         squares = sp.Add(*(minor**2 for minor in found.minors)) / number
         return {base: squares, -base: -squares}
 
-    def _rewritten(self, entries: Iterable[sp.Expr]) -> list[sp.Expr]:
+    def rewritten(self, entries: Iterable[sp.Expr]) -> list[sp.Expr]:
         """The entries in forms that keep their digits where they can: see `algebra`."""
         plain = list(entries)
         if self._rewriter is None:

@@ -13,12 +13,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
-from math import ceil, factorial
+from math import ceil, factorial, frexp
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of
 from rigidsym.kernels.ir import (
     Call,
     Expression,
+    Guarded,
     Kernel,
     Name,
     Negative,
@@ -64,10 +65,13 @@ class Rounding:
 
 def rounding(kernel: Kernel) -> Rounding | None:
     """The bound of a kernel; None where there is none: it divides, or takes roots."""
-    plain = _used_plainly(kernel)
-    values = {name: _Bounded(1.0, 0.0) for name in plain}
+    plain = used_plainly(kernel)
+    halves = _halves(kernel)
+    values = {name: _Bounded(1.0, 0.0) for name in plain.intersection(kernel.components)}
     try:
         for assignment in kernel.assignments:
+            if assignment.name in halves and assignment.name not in plain:
+                continue  # as exact as the angle that it is a half of
             values[assignment.name] = _bounded(assignment.value, values)
         error = max(_bounded(output, values).error for output in kernel.outputs)
     except _NoBound:
@@ -90,11 +94,35 @@ def _expressions(kernel: Kernel) -> Iterator[Expression]:
     yield from kernel.outputs
 
 
-def _used_plainly(kernel: Kernel) -> set[str]:
-    """The inputs that more is taken of than a sine or a cosine."""
-    inputs = set(kernel.components)
-    values = (value for value in _expressions(kernel) if not _is_sine(value))
-    return {name for value in values for name in names_in(value)} & inputs
+def used_plainly(kernel: Kernel) -> set[str]:
+    """The inputs that more is taken of than a sine or a cosine, of them or of a half of them.
+
+    That a guard compares with an angle does not count.
+    """
+    halves = _halves(kernel)
+    others = [a.value for a in kernel.assignments if a.name not in halves]
+    values = [v for v in (*others, *kernel.outputs) if not (_is_sine(v) or isinstance(v, Guarded))]
+    plain = {name for value in values for name in names_in(value)}
+    for name, source in reversed(halves.items()):
+        if name in plain:
+            plain.add(source)
+    return plain.intersection((*kernel.components, *halves))
+
+
+def _halves(kernel: Kernel) -> dict[str, str]:
+    """name: what it is a half of, or another power of two times, and so exact."""
+    found = {}
+    for assignment in kernel.assignments:
+        match assignment.value:
+            case Product((Name(source),), (Number(value),)) if _is_power_of_two(value):
+                found[assignment.name] = source
+            case Product((Number(value), Name(source)), ()) if _is_power_of_two(value):
+                found[assignment.name] = source
+    return found
+
+
+def _is_power_of_two(value: Fraction | float) -> bool:
+    return frexp(float(value))[0] in (0.5, -0.5)
 
 
 def _is_sine(value: Expression) -> bool:

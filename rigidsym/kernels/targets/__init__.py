@@ -29,6 +29,7 @@ class Target:
     about: str
     package: str = ""  # of Python, which the extra of the target's name brings
     programs: tuple[str, ...] = ()  # of which one will do
+    has_single: bool = True  # whether its functions know single precision
 
     @property
     def missing(self) -> str:
@@ -51,7 +52,9 @@ TARGETS: Mapping[str, Target] = MappingProxyType(
             about="NAME_numba.py: a Python module that Numba compiles", package="numba"
         ),
         "javascript": Target(
-            about="NAME.mjs: an ES module without dependencies", programs=("node",)
+            about="NAME.mjs: an ES module without dependencies",
+            programs=("node",),
+            has_single=False,
         ),
         "jax": Target(about="NAME_jax.py: a Python module for JAX; jit, vmap, grad", package="jax"),
     }

@@ -129,11 +129,11 @@ def remarks(kernels: Sequence[Kernel]) -> Iterator[str]:
     if last >= FIRST_SERIES:
         bounds = (_bound(series_of(order)) for order in range(FIRST_SERIES, last + 1))
         yield f"Below a switch c_k is its Taylor polynomial in n²: {'; '.join(bounds)}."
-    kinds = {kind for kernel in kernels for kind in _kinds(kernel)}
-    yield from (text for kind, text in _GUARDED.items() if kind in kinds)
+    found = {kind for kernel in kernels for kind in kinds(kernel)}
+    yield from (text for kind, text in _GUARDED.items() if kind in found)
 
 
-def _kinds(kernel: Kernel) -> Iterator[str]:
+def kinds(kernel: Kernel) -> Iterator[str]:
     """What kinds of divisors are guarded."""
     calls = calls_of(kernel)
     for guard in guards_of(kernel).values():

@@ -1,0 +1,108 @@
+"""Largest errors of all shipped kernels in all targets: the table that the package carries.
+
+Rows that the table has already stay, unless all are asked for anew.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+
+from benchmarks.measure import Settings, progress
+from benchmarks.report import Cell, Column, Report, Table
+from rigidsym import resources
+from rigidsym.api import Motion
+from rigidsym.kernels.accuracy.digest import digest
+from rigidsym.kernels.accuracy.measure import kernels_of, measure
+from rigidsym.kernels.accuracy.table import SHIPPED, Measured, Row, shipped
+from rigidsym.kernels.targets import TARGETS
+from rigidsym.models.catalogue import EULER_SEQUENCES
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.pipeline import motion_of
+from rigidsym.spec import spec_for, spec_of
+from rigidsym.writing import write_text
+
+COUNT = 10_000
+FILES = ("composite_body", "lecture", "solid_cone", "yaw_pitch_roll")  # the others are conventions
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """A rotation by name, or the name of a shipped derivation file."""
+
+    text: str
+    passive: bool = False
+
+    def motion(self) -> Motion:
+        is_file = self.text in resources.names("derivations", ".toml")
+        spec = spec_of(self.text) if is_file else spec_for(self.text, passive=self.passive)
+        return motion_of(spec)
+
+
+def subjects() -> Iterator[Subject]:
+    """Every convention, active and passive, every preset, and the shipped derivations."""
+    for text in (*EULER_SEQUENCES, *PARAMETRISATIONS, *PRESETS):
+        yield Subject(text)
+        yield Subject(text, passive=True)
+    yield from map(Subject, FILES)
+
+
+def run(settings: Settings) -> Report:
+    """Measure what the table lacks, or all that is shipped, and write the table."""
+    before = Measured() if settings.fresh else shipped()
+    rows = {name: row for name, row in before.rows.items() if set(row.errors) == set(TARGETS)}
+    tools = dict(before.tools)
+    for found in _measured(_shares(rows)):
+        rows |= found.rows
+        tools |= found.tools
+    progress()
+    whole = Measured(tools=tools, rows=dict(sorted(rows.items(), key=lambda r: r[1].function)))
+    write_text(SHIPPED, "\n".join(whole.lines()) + "\n")
+    return report(whole)
+
+
+def _shares(known: Collection[str]) -> list[tuple[Subject, frozenset[str]]]:
+    """Each subject with the digests that are measured already, or with a subject before it."""
+    shares, seen = [], set(known)
+    for subject in subjects():
+        progress(f"reading {subject.text}")
+        own = {digest(kernel) for kernel in kernels_of(subject.motion(), conversions=True)}
+        if not own <= seen:
+            shares.append((subject, frozenset(seen)))
+        seen |= own
+    return shares
+
+
+def _measured(shares: Collection[tuple[Subject, frozenset[str]]]) -> Iterator[Measured]:
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        waiting = [pool.submit(_of_one, *share) for share in shares]
+        for done, future in enumerate(as_completed(waiting), start=1):
+            progress(f"measured {done} of {len(shares)}")
+            yield future.result()
+
+
+def _of_one(subject: Subject, known: frozenset[str]) -> Measured:
+    return measure(subject.motion(), TARGETS, conversions=True, count=COUNT, known=known)
+
+
+def report(found: Measured) -> Report:
+    """The largest error of each function over all rotations, and how many kernels there are."""
+    groups: dict[str, list[Row]] = {}
+    for row in found.rows.values():
+        groups.setdefault(row.function.split()[-1], []).append(row)
+    rows = tuple(_line(name, group) for name, group in sorted(groups.items()))
+    columns = (Column("function"), Column("kernels"), *(Column(t, ".2f") for t in TARGETS))
+    return Report(
+        title=f"Measured errors: {len(found.rows)} kernels against 50 digits, {SHIPPED.name}",
+        tables=(Table("Largest, in eps of the type", columns, rows),),
+        figures=(),
+        notes=tuple(f"{target}: {tool}." for target, tool in found.tools.items()),
+    )
+
+
+def _line(name: str, rows: Collection[Row]) -> tuple[Cell, ...]:
+    errors: list[Mapping[str, tuple[float, ...]]] = [row.errors for row in rows]
+    largest = (max((max(e[t]) for e in errors if t in e), default=None) for t in TARGETS)
+    return (name, len(rows), *largest)

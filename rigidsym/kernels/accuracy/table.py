@@ -1,0 +1,121 @@
+"""Largest errors as they were measured: rows by the digest of a kernel, and the words for them.
+
+A file of them is text: lines that begin with # say what each target was measured with, and a row
+a kernel follows, commas between what it holds. `benchmarks/run.py accuracy --write` writes the
+one that this package carries.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from pathlib import Path
+
+from rigidsym.errors import CheckError
+from rigidsym.kernels.accuracy.digest import digest
+from rigidsym.kernels.ir import Kernel
+
+SHIPPED = Path(__file__).with_name("measured.csv")
+SMALL, LARGE, LARGEST = 3.0, 1e4, 1e15  # sizes of coordinates that points are taken from
+_SIZES = ("1e4", "1e6", "1e15")
+_FIXED = ("digest", "points", "reach", "nearest", "function")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Row:
+    """The largest errors of one kernel, in eps of the type, of the largest entry of the result."""
+
+    digest: str
+    points: int
+    reach: float  # the largest size of a coordinate; all else is at most one
+    nearest: float  # how near to a pole; 0 where no point was put near one
+    function: str  # one that has it: "euler_zxz_intrinsic rotation_matrix"
+    errors: Mapping[str, tuple[float, ...]]  # target: in double precision, and in single
+
+    def words(self, kernel: Kernel, target: str) -> str:
+        """The sentence of a docstring."""
+        double, *single = (f"{error:.3g} eps" for error in self.errors[target])
+        also = "".join(f", {error} in single precision" for error in single)
+        return (
+            f"Measured: at most {double} of the largest entry{also}; {self.points} points, "
+            f"{', '.join(self._ranges(kernel))}."
+        )
+
+    def _ranges(self, kernel: Kernel) -> Iterator[str]:
+        names = [argument.name for argument in kernel.arguments]
+        if "q" in names:
+            yield f"q up to {', '.join(_SIZES) if self.reach > SMALL else f'{SMALL:g}'}"
+        others = [name for name in names if name != "q"]
+        if others:
+            yield f"{' and '.join(others)} up to 1"
+        if self.nearest:
+            yield f"as near to poles as {self.nearest:.0e}"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Measured:
+    """Rows by their digests, and what each target was measured with."""
+
+    tools: Mapping[str, str] = field(default_factory=dict)  # target: "NumPy 2.4.6, x86-64"
+    rows: Mapping[str, Row] = field(default_factory=dict)
+
+    def stated(self, kernel: Kernel, target: str) -> Kernel:
+        """The kernel with its measured error in words, where it is known."""
+        row = self.rows.get(digest(kernel))
+        if row is None or target not in row.errors:
+            return kernel
+        return replace(kernel, measured=row.words(kernel, target))
+
+    def lines(self) -> list[str]:
+        """The text of a file, line by line."""
+        columns = (*_FIXED, *self.tools)
+        return [
+            *(f"# {target}: {tool}" for target, tool in self.tools.items()),
+            ",".join(columns),
+            *(_line(row, tuple(self.tools)) for row in self.rows.values()),
+        ]
+
+
+def _line(row: Row, targets: tuple[str, ...]) -> str:
+    fixed = (row.digest, f"{row.points}", f"{row.reach:g}", f"{row.nearest:g}", row.function)
+    errors = ("/".join(f"{e:g}" for e in row.errors.get(target, ())) for target in targets)
+    return ",".join((*fixed, *errors))
+
+
+def read(lines: Iterable[str]) -> Measured:
+    """What `Measured.lines` wrote; raises CheckError, naming the line, for anything else."""
+    tools: dict[str, str] = {}
+    rows: dict[str, Row] = {}
+    for place, line in enumerate(lines, start=1):
+        try:
+            if line.startswith("# "):
+                target, tool = line.removeprefix("# ").split(": ", 1)
+                tools[target] = tool
+            elif line != ",".join((*_FIXED, *tools)):
+                row = _row(line.split(","), tuple(tools))
+                rows[row.digest] = row
+        except ValueError as error:
+            raise CheckError(f"measured errors, line {place}: {line!r} is none: {error}") from None
+    return Measured(tools=tools, rows=rows)
+
+
+def _row(cells: list[str], targets: tuple[str, ...]) -> Row:
+    name, points, reach, nearest, function, *errors = cells
+    found = zip(targets, errors, strict=True)
+    return Row(
+        digest=name,
+        points=int(points),
+        reach=float(reach),
+        nearest=float(nearest),
+        function=function,
+        errors={target: tuple(map(float, cell.split("/"))) for target, cell in found if cell},
+    )
+
+
+@cache
+def shipped() -> Measured:
+    """What was measured for the rotations of the catalogue, when the package was made."""
+    if not SHIPPED.is_file():
+        return Measured()
+    return read(SHIPPED.read_text(encoding="utf-8").splitlines())
