@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from rigidsym.errors import CheckError
 from rigidsym.kernels.targets.c_build import build
-from rigidsym.options import as_chosen
+from rigidsym.options import as_chosen, measures
 from rigidsym.pipeline import PAGE, page_name, product
 from rigidsym.spec import DerivationSpec, spec_of
 from rigidsym.writing import write_text
@@ -20,11 +21,20 @@ def built(asked: str, out: Path, *, portable: bool = False) -> Iterator[Path]:
     """
     source = Path(asked)
     if source.suffix == ".c":
+        if measures():
+            raise CheckError(f"{asked}: --measure needs the rotation, or the file it comes from")
         yield build(source, portable=portable)
         return
     for single in spec_of(asked).singles():
-        folder = _written(replace(single, kernels=("c",)), out)
+        wanted = replace(single, kernels=("c",))
+        folder = _written(_measured(wanted) if measures() else wanted, out)
         yield build(folder / f"{single.name}.c", portable=portable)
+
+
+def _measured(spec: DerivationSpec) -> DerivationSpec:
+    from rigidsym.measuring import measured
+
+    return measured(spec)[0]  # without a compiler, building fails
 
 
 def paged(asked: str, out: Path) -> Iterator[Path]:

@@ -20,6 +20,7 @@ from rigidsym.errors import RigidsymError
 from rigidsym.options import (
     FOR_TARGETS,
     JSON,
+    MEASURE,
     OUT,
     PDF,
     TEMPLATES,
@@ -87,6 +88,7 @@ def commands(context: click.Context) -> None:
 @WITH_CONVERSIONS
 @WITH_DERIVATIVES
 @FOR_TARGETS
+@MEASURE
 @in_notation
 @TEMPLATES
 @OUT
@@ -125,6 +127,7 @@ def derive(
 @WITH_CONVERSIONS
 @WITH_DERIVATIVES
 @FOR_TARGETS
+@MEASURE
 @in_notation
 @TEMPLATES
 @OUT

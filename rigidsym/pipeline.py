@@ -80,7 +80,10 @@ def _texts(
     """(name, content) of each text file, the record last, since it speaks for the others."""
     for target in spec.kernels:
         yield from motion.kernels(
-            target, conversions=spec.conversions, derivatives=spec.derivatives
+            target,
+            conversions=spec.conversions,
+            derivatives=spec.derivatives,
+            measure=spec.measured or False,
         ).files.items()
     note = motion.note(with_kernels="numpy" in spec.kernels, conversions=spec.conversions)
     for ending, printed in _PRINTERS.items():

@@ -13,7 +13,7 @@ import click
 
 from rigidsym.errors import RigidsymError, SpecError
 from rigidsym.notes.terminal import show
-from rigidsym.options import as_chosen
+from rigidsym.options import as_chosen, measures
 from rigidsym.pipeline import PDF, Product, product
 from rigidsym.spec import DerivationSpec, read_file
 from rigidsym.writing import write_bytes, write_text
@@ -43,6 +43,8 @@ def produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool)
     _check_folders(singles)
     shown_in_full = len(singles) == 1
     missing: RigidsymError | None = None
+    if measures():
+        singles, missing = _measured(singles)
     for made in _with_progress(singles):
         written, problem = _write(made, out)
         missing = missing or problem
@@ -54,6 +56,17 @@ def produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool)
             click.echo(_summary(made, written))
     if missing:
         raise missing
+
+
+def _measured(
+    singles: Iterable[DerivationSpec],
+) -> tuple[list[DerivationSpec], RigidsymError | None]:
+    """With the errors of their functions, and what first could not be measured with."""
+    from rigidsym.measuring import measured
+
+    found = [measured(single) for single in singles]
+    problems = (problem for _, problem in found if problem)
+    return [single for single, _ in found], next(problems, None)
 
 
 def _check_folders(singles: Iterable[DerivationSpec]) -> None:

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rigidsym import resources
-from rigidsym.errors import Fault, KernelError, ModelError, SpecError
+from rigidsym.errors import CheckError, Fault, KernelError, ModelError, SpecError
+from rigidsym.kernels.accuracy.table import Measured, read
 from rigidsym.kernels.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.energy_quantities import ENERGY_QUANTITIES
@@ -68,6 +69,7 @@ class DerivationSpec:
     conversions: bool = False  # whether to and from quaternion and matrix, too
     derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
     manner: Manner = DEFAULT  # the notation of notes and terminal
+    measured: Measured | None = None  # errors to state, in place of those of the catalogue
 
     def __post_init__(self) -> None:
         faults = Faults(self.name)
@@ -115,6 +117,7 @@ class DerivationSpec:
             **({"conversions": True} if self.conversions else {}),
             **({"derivatives": list(self.derivatives)} if self.derivatives else {}),
             **({"notation": asdict(self.manner)} if self.manner != DEFAULT else {}),
+            **({"measured": self.measured.lines()} if self.measured else {}),
         }
 
     @classmethod
@@ -124,7 +127,7 @@ class DerivationSpec:
             raise SpecError(source, [Fault(line=0, path="", message="expected an object")])
         faults = Faults(source)
         table = Table(data, (), faults)
-        own = ("name", "title", "theory", "rotations", "parameters", "body", "notation")
+        own = ("name", "title", "theory", "rotations", "parameters", "body", "notation", "measured")
         table.refuse_others((*own, *_OUTPUT, *_MORE_OUTPUT))
         rotations = table.tables("rotations", "a list of objects with sequence and angles")
         name, title, output = table.text("name"), _read_title(table), _read_output(table)
@@ -133,6 +136,7 @@ class DerivationSpec:
             table.fault("missing; expected the name of the derivation", "name")
         manner, body = _read_notation(table), _read_body(table, name or "", Path())
         output["theory"] = _read_theory(table, models)
+        output["measured"] = _read_measured(table)
         faults.raise_if_any()
         return cls(
             name=name or "", title=title, models=tuple(models), body=body, manner=manner, **output
@@ -295,6 +299,15 @@ def _read_output(table: Table) -> dict[str, Any]:
     chosen["conversions"] = table.flag("conversions")
     chosen["derivatives"] = _read_derivatives(table, chosen["quantities"] or QUANTITIES)
     return {key: choice for key, choice in chosen.items() if choice is not None}
+
+
+def _read_measured(table: Table) -> Measured | None:
+    lines = table.texts("measured", "the lines of a table of measured errors")
+    try:
+        return None if lines is None else read(line or "" for line in lines)
+    except CheckError as error:
+        table.fault(str(error), "measured")
+    return None
 
 
 def _read_derivatives(table: Table, quantities: Sequence[str]) -> tuple[str, ...] | None:

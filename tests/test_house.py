@@ -72,6 +72,7 @@ ORDER = (
     "pipeline",
     "checking",
     "typeset",
+    "measuring",
     "options",
     "building",
     "production",

@@ -287,3 +287,4 @@ class Program:
     source: str  # where the rotation comes from
     arguments: tuple[Argument, ...]  # all that occur, in the order of a signature
     kernels: tuple[Kernel, ...]
+    measured_with: str = ""  # the program, its version and the processor, of measured errors

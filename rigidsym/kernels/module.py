@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 
+from rigidsym.kernels.accuracy.table import Measured, shipped
 from rigidsym.kernels.derivatives import Asked, derivatives_of, read_requests
 from rigidsym.kernels.lower import lower
 from rigidsym.kernels.targets import printer
@@ -59,12 +60,14 @@ def generate(
     *,
     conversions: bool = False,
     derivatives: Asked = (),
+    measured: Measured | None = None,
 ) -> KernelModule:
     """The kernels of all quantities of a derivation, for one target.
 
     `conversions` adds those between the coordinates, the unit quaternion and the matrix,
-    `derivatives` those that are asked for: ["angular_velocity_body by q"]. Raises KernelError for
-    an unknown target or derivative, and for an expression that kernels cannot hold.
+    `derivatives` those that are asked for: ["angular_velocity_body by q"]; `measured` are errors
+    to state, in place of those that are known of the catalogue. Raises KernelError for an unknown
+    target or derivative, and for an expression that kernels cannot hold.
     """
     chosen = printer(target)
     wanted = derivatives_of(derivation, read_requests(derivatives))
@@ -77,5 +80,10 @@ def generate(
         converting = lower_conversions(
             derivation, conversions_of(derivation.model), chosen.RESERVED
         )
+    known = measured if measured is not None and target in measured.tools else shipped()
+    program = known.stated(program, target)
+    if converting is not None:
+        kernels = known.of_kernels(converting.kernels, target)
+        converting = replace(converting, kernels=kernels)
     files = chosen.render(program, converting)
     return KernelModule(name=derivation.name, target=target, files=files)

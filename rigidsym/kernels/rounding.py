@@ -109,6 +109,13 @@ def used_plainly(kernel: Kernel) -> set[str]:
     return plain.intersection((*kernel.components, *halves))
 
 
+def adds_angles(kernel: Kernel) -> bool:
+    """Whether a sine or a cosine is taken of what was rounded: a sum or a multiple of angles."""
+    exact = {*kernel.components, *_halves(kernel)}
+    calls = [a.value for a in kernel.assignments if isinstance(a.value, Call)]
+    return any(_is_sine(call) and call.argument.text not in exact for call in calls)
+
+
 def _halves(kernel: Kernel) -> dict[str, str]:
     """name: what it is a half of, or another power of two times, and so exact."""
     found = {}

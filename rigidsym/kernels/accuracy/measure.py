@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidsym.errors import CheckError
+from rigidsym.errors import CheckError, MissingExtra, MissingTool, RigidsymError, ToolFailed
 from rigidsym.kernels.accuracy.digest import digest
 from rigidsym.kernels.accuracy.exact import Exact, exact_functions
 from rigidsym.kernels.accuracy.points import NEAREST, Points
@@ -33,7 +33,8 @@ _CHUNK = 500  # points whose numbers of 50 digits are held at once
 _FIGURES = 3  # of an error that is stated
 
 Array = NDArray[Any]
-Report = Callable[[float], object]  # takes the share that is done
+Report = Callable[[float], object]  # takes the share of the true values that is there
+Missing = Callable[[str, RigidsymError], object]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -95,28 +96,32 @@ def measure(
     count: int = POINTS,
     known: Collection[str] = (),
     report: Report | None = None,
+    missing: Missing | None = None,
 ) -> Measured:
     """The largest errors of all functions but those with a digest that is known.
 
-    Raises MissingTool or MissingExtra where a target cannot be loaded here, and CheckError for a
-    function that gives NaN where it should give a number.
+    Where a target cannot be loaded here, raises MissingTool, MissingExtra or ToolFailed, or hands
+    it to `missing` and leaves the target out. Raises CheckError for a function that gives NaN
+    where it should give a number.
     """
     parts = _parts(derivation, derivatives, conversions=conversions)
     subjects = [s for part in parts for s in _subjects(*part, count, known, report)]
     found: dict[str, dict[str, tuple[float, ...]]] = {s.kernel.name: {} for s in subjects}
-    for target in targets if subjects else ():
-        module = generate(
-            derivation, target, derivatives=derivatives, conversions=conversions
-        ).load()
+    tools = {}
+    for target in targets:
+        made = generate(derivation, target, derivatives=derivatives, conversions=conversions)
+        try:
+            module, tools[target] = made.load(), tool(target)
+        except (MissingTool, MissingExtra, ToolFailed) as error:
+            if missing is None:
+                raise
+            missing(target, error)
+            continue
         for subject in subjects:
-            if not hasattr(module, subject.kernel.name):  # a conversion that the target leaves out
-                continue
-            found[subject.kernel.name][target] = _errors(subject, target, module)
+            if hasattr(module, subject.kernel.name):  # a target may leave conversions out
+                found[subject.kernel.name][target] = _errors(subject, target, module)
     rows = [subject.row(found[subject.kernel.name]) for subject in subjects]
-    return Measured(
-        tools={target: tool(target) for target in targets},
-        rows={row.digest: row for row in rows},
-    )
+    return Measured(tools=tools, rows={row.digest: row for row in rows})
 
 
 def kernels_of(

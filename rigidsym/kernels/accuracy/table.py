@@ -14,11 +14,11 @@ from pathlib import Path
 
 from rigidsym.errors import CheckError
 from rigidsym.kernels.accuracy.digest import digest
-from rigidsym.kernels.ir import Kernel
+from rigidsym.kernels.ir import Kernel, Program
 
 SHIPPED = Path(__file__).with_name("measured.csv")
 SMALL, LARGE, LARGEST = 3.0, 1e4, 1e15  # sizes of coordinates that points are taken from
-_SIZES = ("1e4", "1e6", "1e15")
+_SIZES = "1e4, 1e6 and 1e15"
 _FIXED = ("digest", "points", "reach", "nearest", "function")
 
 
@@ -38,14 +38,14 @@ class Row:
         double, *single = (f"{error:.3g} eps" for error in self.errors[target])
         also = "".join(f", {error} in single precision" for error in single)
         return (
-            f"Measured: at most {double} of the largest entry{also}; {self.points} points, "
-            f"{', '.join(self._ranges(kernel))}."
+            f"Measured: at most {double}{also}; {self.points} points: "
+            f"{'; '.join(self._ranges(kernel))}."
         )
 
     def _ranges(self, kernel: Kernel) -> Iterator[str]:
         names = [argument.name for argument in kernel.arguments]
         if "q" in names:
-            yield f"q up to {', '.join(_SIZES) if self.reach > SMALL else f'{SMALL:g}'}"
+            yield f"q up to {_SIZES if self.reach > SMALL else f'{SMALL:g}'}"
         others = [name for name in names if name != "q"]
         if others:
             yield f"{' and '.join(others)} up to 1"
@@ -60,9 +60,17 @@ class Measured:
     tools: Mapping[str, str] = field(default_factory=dict)  # target: "NumPy 2.4.6, x86-64"
     rows: Mapping[str, Row] = field(default_factory=dict)
 
-    def stated(self, kernel: Kernel, target: str) -> Kernel:
-        """The kernel with its measured error in words, where it is known."""
-        row = self.rows.get(digest(kernel))
+    def stated(self, program: Program, target: str) -> Program:
+        """The program with the measured errors of its kernels in words, where they are known."""
+        kernels = self.of_kernels(program.kernels, target)
+        is_any = any(kernel.measured for kernel in kernels)
+        return replace(program, kernels=kernels, measured_with=self.tools[target] if is_any else "")
+
+    def of_kernels(self, kernels: Iterable[Kernel], target: str) -> tuple[Kernel, ...]:
+        return tuple(self._stated(kernel, target) for kernel in kernels)
+
+    def _stated(self, kernel: Kernel, target: str) -> Kernel:
+        row = self.rows.get(digest(kernel)) if self.rows else None
         if row is None or target not in row.errors:
             return kernel
         return replace(kernel, measured=row.words(kernel, target))

@@ -11,6 +11,7 @@ from math import pi
 from types import ModuleType
 
 from rigidsym import __version__, resources
+from rigidsym.kernels.accuracy import words as accurate
 from rigidsym.kernels.conversions import ConversionProgram
 from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program
 from rigidsym.kernels.layout import filled
@@ -120,9 +121,8 @@ def _about(program: Program) -> list[str | Sequence[str]]:
         "without gaps, a step of the row's length and a stride of 1, are the fastest. `out` may "
         "not overlap an argument.",
         "Sine and cosine are evaluated here, within 2 eps of their size (eps is 2^-52 in double, "
-        "2^-23 in float) at any finite angle; an infinite angle and NaN give NaN. The error of a "
-        "rotation matrix or an angular velocity is at most 4 eps of its largest entry, measured "
-        "for angles up to 10000.",
+        "2^-23 in float) at any finite angle.",
+        *accurate.remarks(program.kernels, program.measured_with),
         "No function allocates, recurses, keeps a state or sets errno; an array function takes "
         "room for 64 orientations on the stack.",
     ]
@@ -142,6 +142,7 @@ def _about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
         f"{kernel.symbol}{definition}: {kernel.about}.",
         [*rows, f"  out[{len(kernel.outputs)}]{shape}{unit}"],
         f"{place}{kernel.operations}.",
+        *accurate.accuracy(kernel),
         *singular.poles(kernel),
     ]
 
