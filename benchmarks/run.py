@@ -107,7 +107,7 @@ def _parser() -> argparse.ArgumentParser:
         "--write",
         action="store_true",
         help="of accuracy: measure all shipped kernels that have no row in the package's table of "
-        "errors, or with --fresh all of them (half an hour), and write it",
+        "errors, or with --fresh all of them (an hour), and write it",
     )
     return parser
 

@@ -10,6 +10,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import sympy as sp
 from click.testing import CliRunner
 from conftest import derived
 from witness import evaluate, mp
@@ -101,12 +102,18 @@ def test_what_depends_on_nan_or_an_infinite_angle_is_nan(target):
         step, arrays = few().step(name), inputs(name, 1, 1.0)
         for vector, array in zip(step.quantity.inputs, arrays, strict=True):
             for place, symbol in enumerate(few().argument(vector).symbols):
-                depends = [entry.has(symbol) for entry in step.expression]
+                depends = [holds(entry, symbol) for entry in step.expression]
                 for bad in (np.nan, np.inf, -np.inf) if vector == "q" else (np.nan,):
                     before, array[0, place] = array[0, place], bad
                     (found,) = functions(target)[name](*arrays)
                     array[0, place] = before
                     assert np.isnan(found[depends]).all(), (name, symbol, bad)
+
+
+def holds(entry: sp.Expr, symbol: sp.Expr) -> bool:
+    """Whether an input stands in an expression; a coordinate does not stand in its rate."""
+    plain = {rate: sp.Dummy() for rate in entry.atoms(sp.Derivative) - {symbol}}
+    return entry.xreplace(plain).has(symbol)
 
 
 @pytest.mark.parametrize("target", TARGETS)
@@ -151,7 +158,7 @@ def test_the_table_covers_every_function_of_the_catalogue():
             row = table.rows.get(digest(kernel))
             assert row is not None, (name, kernel.name)
             assert set(row.errors) == set(TARGETS), (name, kernel.name)
-            assert row.points > 9000
+            assert row.points > 1900
 
 
 def test_docstrings_state_the_row():

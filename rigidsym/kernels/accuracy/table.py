@@ -75,6 +75,15 @@ class Measured:
             return kernel
         return replace(kernel, measured=row.words(kernel, target))
 
+    def joined(self, other: Measured) -> Measured:
+        """All rows of both, by function; what the other says of a target goes before."""
+        rows = dict(self.rows)
+        for name, row in other.rows.items():
+            before = rows[name].errors if name in rows else {}
+            rows[name] = replace(row, errors={**before, **row.errors})
+        ordered = sorted(rows.items(), key=lambda named: named[1].function)
+        return Measured(tools={**self.tools, **other.tools}, rows=dict(ordered))
+
     def lines(self) -> list[str]:
         """The text of a file, line by line."""
         columns = (*_FIXED, *self.tools)
