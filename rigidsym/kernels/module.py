@@ -80,10 +80,10 @@ def generate(
         converting = lower_conversions(
             derivation, conversions_of(derivation.model), chosen.RESERVED
         )
-    known = measured if measured is not None and target in measured.tools else shipped()
-    program = known.stated(program, target)
+    kernels = (*program.kernels, *(converting.kernels if converting else ()))
+    known = measured if measured and target in measured.tools else shipped(kernels)
     if converting is not None:
-        kernels = known.of_kernels(converting.kernels, target)
-        converting = replace(converting, kernels=kernels)
+        converting = replace(converting, kernels=known.of_kernels(converting.kernels, target))
+    program = known.stated(program, target)
     files = chosen.render(program, converting)
     return KernelModule(name=derivation.name, target=target, files=files)

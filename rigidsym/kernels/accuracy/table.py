@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 
 from rigidsym.errors import CheckError
-from rigidsym.kernels.accuracy.digest import digest
+from rigidsym.kernels.accuracy.digest import DIGITS, digest
 from rigidsym.kernels.ir import Kernel, Program
 
 SHIPPED = Path(__file__).with_name("measured.csv")
@@ -130,9 +130,13 @@ def _row(cells: list[str], targets: tuple[str, ...]) -> Row:
     )
 
 
+def shipped(kernels: Iterable[Kernel] | None = None) -> Measured:
+    """What was measured of the catalogue when the package was made; of some kernels, or all."""
+    names = None if kernels is None else set(map(digest, kernels))
+    lines = _shipped_lines()
+    return read(line for line in lines if names is None or line[0] == "#" or line[:DIGITS] in names)
+
+
 @cache
-def shipped() -> Measured:
-    """What was measured for the rotations of the catalogue, when the package was made."""
-    if not SHIPPED.is_file():
-        return Measured()
-    return read(SHIPPED.read_text(encoding="utf-8").splitlines())
+def _shipped_lines() -> tuple[str, ...]:
+    return tuple(SHIPPED.read_text(encoding="utf-8").splitlines()) if SHIPPED.is_file() else ()
