@@ -288,3 +288,35 @@ def test_an_unknown_quantity_on_the_command_line_is_a_fault_of_usage(tmp_path):
     assert isinstance(done.exception, QuantityError)
     assert "--derivative: no quantity 'angular_velocity'; did you mean" in str(done.exception)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("rotation", "vector", "is_bound"),
+    [
+        ("unit_quaternion", "q", True),
+        ("unit_quaternion", "q_dot", True),
+        ("cayley_klein", "q", True),
+        ("direction_cosines", "q", True),
+        ("z(phi) [a,b,c](beta)", "parameters", True),
+        ("z(phi) [a,b,c](beta)", "q", False),
+        ("quaternion", "q", False),
+        ("ZXZ", "q", False),
+    ],
+)
+def test_where_inputs_are_bound_the_text_says_what_the_derivative_is(rotation, vector, is_bound):
+    alone = rs.derive(rotation, only=["spin_matrix"])
+    for target in TARGETS:
+        files = alone.kernels(target, derivatives=[f"spin_matrix by {vector}"]).files
+        words = " ".join(re.sub(r"\n *\*? *", " ", text) for text in files.values())
+        assert ("bound components count as free" in words) == is_bound, target
+
+
+def test_the_jacobian_of_a_unit_quaternion_is_that_of_the_expression_as_written():
+    kernels = rs.derive("unit_quaternion", only=["rotation_matrix"]).kernels(
+        derivatives=["rotation_matrix by q"]
+    )
+    q = np.array([0.7, -0.3, 0.5, 0.2])  # no unit quaternion
+    _, jacobian = kernels.load().rotation_matrix_jacobian_q(q)
+    w, x, y, z = q
+    assert_allclose(jacobian[0, 0], [0, 0, -4 * y, -4 * z], atol=1e-15)  # of 1 - 2y² - 2z²
+    assert_allclose(jacobian[0, 1], [-2 * z, 2 * y, 2 * x, -2 * w], atol=1e-15)

@@ -16,12 +16,17 @@ import sympy as sp
 
 from rigidsym.errors import KernelError
 from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Step
+from rigidsym.models.rotation import RotationModel
 
 KINDS = {
     "jacobian": "its Jacobian by {vector}, row by row",
     "jvp": "its Jacobian by {vector} times {given}",
     "vjp": "{given} times its Jacobian by {vector}",
 }
+_FREE = (
+    "; bound components count as free, so that this is the derivative of the expression as "
+    "written, not projected onto what binds them"
+)
 _TEXT = re.compile(r"(\w+)(?: by |:)(\w+)(?:[ :](\w+))?")
 _EXPECTED = (
     'expected "QUANTITY by VECTOR", with jvp or vjp behind it for a product with a vector: '
@@ -79,6 +84,7 @@ class Derivative:
     step: Step
     vectors: tuple[Argument, ...]  # the inputs of the quantity, then the vector of the product
     given: Argument | None  # that vector
+    is_bound: bool = False  # a constraint binds the components of the vector of the request
 
     @property
     def parts(self) -> tuple[tuple[int, ...], ...]:
@@ -97,7 +103,7 @@ class Derivative:
         """The value and the derivative in words."""
         given = self.given.name if self.given else ""
         what = KINDS[self.request.kind].format(vector=self.request.vector, given=given)
-        return f"{self.step.quantity.about}; then {what}"
+        return f"{self.step.quantity.about}; then {what}{_FREE if self.is_bound else ''}"
 
     def jacobian(self) -> list[sp.Expr]:
         """Row by row: one row an entry of the quantity, one column a component of the vector.
@@ -144,7 +150,16 @@ def _derivative(derivation: Derivation, request: Request) -> Derivative:
         step=step,
         vectors=(*vectors, given) if given else vectors,
         given=given,
+        is_bound=_is_bound(derivation.model, by),
     )
+
+
+def _is_bound(model: RotationModel, by: Argument) -> bool:
+    """Whether the vector, or the coordinates whose rates it holds, are bound by a constraint."""
+    symbols = set(model.coordinates) if by.name in ("q_dot", "q_ddot") else set(by.symbols)
+    if model.pullback is not None and symbols.intersection(model.coordinates):
+        return True
+    return any(symbols.intersection(sp.preorder_traversal(c)) for c in model.constraints)
 
 
 def _tangent(by: Argument) -> Argument:
