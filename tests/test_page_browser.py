@@ -252,6 +252,12 @@ def test_a_pole_is_shown_when_it_is_near(tab, tmp_path):
     assert tab.run("document.getElementById('warning').innerHTML") == ""
 
 
+def test_the_pole_of_a_vector_is_told_by_its_length(tab, tmp_path):
+    opened(tab, page_of("rotation_vector"), tmp_path)
+    tab.run(f"({SET_ALL})({json.dumps({'q-0': 2.1, 'q-1': 4.2, 'q-2': 4.2})})")
+    assert "n = 2π" in tab.run("document.getElementById('warning').innerHTML")
+
+
 def test_buttons_copy(tab, tmp_path):
     opened(tab, page_of("ZXZ"), tmp_path)
     tab.call("Browser.grantPermissions", permissions=["clipboardReadWrite"])

@@ -147,19 +147,22 @@ class _Page:
         """Where the rates fail, in radians, and what is to be said there."""
         found = self.derivation.singularities
         coordinates = self.derivation.model.coordinates
-        for point in found.points if found else ():
+        points = found.points if found else ()
+        for point in points:
             is_shown = all(p.coordinate in coordinates and p.value.is_number for p in point.places)
-            if point.places and is_shown:
-                places = [
-                    {
-                        "place": coordinates.index(place.coordinate),
-                        "value": float(place.value),
-                        "period": float(place.period),
-                    }
-                    for place in point.places
-                ]
-                words = self.printer.words(singular(point, self.derivation))
-                yield {"places": places, "words": words}
+            if len(points) > 1 and not (point.places and is_shown):
+                continue  # which of them is near is not seen by the coordinates
+            places = [
+                {
+                    "place": coordinates.index(place.coordinate),
+                    "value": float(place.value),
+                    "period": float(place.period),
+                }
+                for place in point.places
+                if is_shown
+            ]
+            words = self.printer.words(singular(point, self.derivation))
+            yield {"places": places, "words": words}
 
     def _pole(self) -> str:
         """How the margin is called, where there is one."""
