@@ -149,8 +149,9 @@ class _Inertia:
         rest = _scalar(self._from_moments - moment)
         return Found(
             _scalar(moment),
-            "The moment about a line is the quadratic form of the tensor about a point of it: n is "
-            "a unit vector, and n × (x′ − p) as long as the distance from the line.",
+            "The moment about a line is the quadratic form of the tensor about a point p of it. "
+            "The direction is a unit vector, and n × (x′ − p) is as long as the distance from the "
+            "line.",
             (_vanishes(rest, claims.OF_LINE, self.body.name),),
         )
 

@@ -30,6 +30,7 @@ _QUAD = ems(r"\quad")
 _MOST_INDENTS = 5
 _ROW = r" \\[2pt]" + "\n"  # dots above the letters want some air
 _HIGH_ROW = r" \\[7pt]" + "\n"  # so do fractions
+_HIGHEST_ROW = r" \\[11pt]" + "\n"  # and roots below them
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,12 +121,24 @@ def _one_line(equation: Equation, rows: Rows) -> tuple[str, float]:
 
 
 def _matrix(rows: Rows) -> str:
-    first, *others = (" & ".join(row).replace(r"\frac", r"\dfrac") for row in rows)
+    first, *others = (" & ".join(map(_tall, row)) for row in rows)
     text, above = first, first
     for line in others:
-        text += (_HIGH_ROW if r"\dfrac" in above + line else _ROW) + line
+        text += _between(above + line) + line
         above = line
     return _environment("pmatrix", text)
+
+
+def _between(rows: str) -> str:
+    """The end of the upper of two rows: what is high wants air."""
+    if r"\frac" not in rows:
+        return _ROW
+    return _HIGHEST_ROW if r"\sqrt" in rows else _HIGH_ROW
+
+
+def _tall(entry: str) -> str:
+    """The entry with its fractions in their full height, but for those within others."""
+    return rf"\displaystyle {entry}" if r"\frac" in entry else entry
 
 
 def _definitions(equation: Equation, rows: Rows, width: float) -> Display:

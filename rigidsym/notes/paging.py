@@ -18,15 +18,16 @@ Row = tuple[Text, ...]
 
 def paged(table: Table) -> Iterator[Table]:
     """The table, or its parts; those after the first say in the caption that they go on."""
+    heights = [max(map(_lines, row)) for row in table.rows]
+    room = sum(heights) / max(1, ceil(sum(heights) / _ROWS))  # parts of about one height
     part: list[Row] = []
-    room, caption = _ROWS, table.caption
-    for row in table.rows:
-        height = max(map(_lines, row))
-        if part and height > room:
+    used, caption = 0, table.caption
+    for row, height in zip(table.rows, heights, strict=True):
+        if part and used >= room:
             yield replace(table, caption=caption, rows=tuple(part))
-            part, room, caption = [], _ROWS, f"{table.caption}, continued"
+            part, used, caption = [], 0, f"{table.caption}, continued"
         part.append(row)
-        room -= height
+        used += height
     yield replace(table, caption=caption, rows=tuple(part))
 
 

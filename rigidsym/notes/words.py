@@ -28,6 +28,14 @@ ACTIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", POSITION, ROTATION, BODY_POSIT
 PASSIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", BODY_POSITION, COSINES, POSITION)
 TRANSPOSED = fill(r"{0} = {1}^{{\mathsf T}}", "{0} = {1}ᵀ", COSINES, ROTATION)
 
+_OF_BODIES = (
+    BODY_POSITION,
+    fill(r"{0}\times({1}-{2})", "{0} × ({1} − {2})", DIRECTION, BODY_POSITION, POINT),
+    fill(r"{0}^{{\mathsf T}}\mathbf{{I}}'\,{0} = 1", "{0}ᵀ I′ {0} = 1", BODY_POSITION),
+    POINT,
+    DIRECTION,
+)
+
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _ALSO_WORDS = ("a", "A", "I")  # in a sentence these are words, whatever an angle is called
 
@@ -72,7 +80,7 @@ def symbols_of(derivation: Derivation) -> dict[str, Markup]:
         (SPACE.omega, BODY.omega, RATES),
     )
     if derivation.body is not None:
-        named = chain(named, (BODY_POSITION, POINT, DIRECTION))
+        named = chain(named, _OF_BODIES)
     if derivation.model.vector:
         length = length_of(derivation.model)
         named = chain(named, (VECTOR,), (length.names[length.symbol],) if length else ())
