@@ -28,6 +28,7 @@ from benchmarks.kernel_parts import (
     threads,
 )
 from benchmarks.measure import Settings, Spread, interleaved, progress, ratios, timed
+from benchmarks.node import node_side
 from benchmarks.peers import PEERS, Array, Side, Task, jitted
 from benchmarks.report import Cell, Column, Figure, Report, Table, spread_columns
 from rigidsym.api import Motion, derive
@@ -35,7 +36,8 @@ from rigidsym.kernels.targets import TARGETS
 
 SEQUENCE = "ZXZ"
 QUANTITIES = {"angular_velocity_body": "Ω′", "rotation_matrix": "R"}
-ARRAYS = ("numpy", "numba", "c", "jax")  # javascript has no arrays
+ARRAYS = ("numpy", "numba", "c", "jax")
+OURS = (*ARRAYS, "javascript")  # the last in a process of its own
 REPEATS = 15
 COPY = "a plain copy of as many bytes"
 LAMBDIFY, JAX, HEYOKA = "lambdify, cse", "JAX jit", "heyoka cfunc"
@@ -131,6 +133,10 @@ def sides(quantity: str, size: int) -> tuple[dict[str, Side], int]:
     points = np.random.default_rng(0).uniform(-3.0, 3.0, (size, len(names)))
     task = Task(list(symbols.values()), plain, points, SEQUENCE)
     found = {name: _ours(module, quantity, points) for name, module in modules().items()}
+    if not TARGETS["javascript"].missing:
+        batches = np.split(points, points.shape[1] // 3, 1)
+        module = motion().kernels("javascript").source
+        found["javascript"] = node_side(module, quantity, batches, len(plain))
     for name, peer in PEERS.items():
         if peer.is_there and (quantity == "rotation_matrix" or peer.package != "scipy"):
             progress(f"preparing {name}")
@@ -187,9 +193,9 @@ def report(outcomes: Sequence[Outcome], parts: Sequence[Part] = ()) -> Report:
 
 def _table(outcomes: Sequence[Outcome]) -> Table:
     """A side a line, a case a column: medians in nanoseconds an orientation."""
-    names = [*ARRAYS, *PEERS, COPY]
+    names = [*OURS, *PEERS, COPY]
     there = [name for name in names if any(name in o.seconds for o in outcomes)]
-    ours = {name: f"rigidsym {name}" for name in ARRAYS}
+    ours = {name: f"rigidsym {name}" for name in OURS}
     rows = tuple(
         (ours.get(name, name), *(outcome.nanoseconds(name) for outcome in outcomes))
         for name in there
@@ -202,7 +208,7 @@ def _ratios(outcomes: Sequence[Outcome]) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for outcome in outcomes:
         for below in ("numpy", "c"):
-            for above in (*PEERS, *ARRAYS):
+            for above in (*PEERS, *OURS):
                 spread = outcome.ratio(above, below)
                 if above != below and spread is not None:
                     rows.append((outcome.name, above, below, *spread.in_order()))
@@ -214,7 +220,7 @@ def _bandwidths(outcomes: Sequence[Outcome]) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for outcome in outcomes:
         limit = outcome.nanoseconds(COPY)
-        for name in ARRAYS:
+        for name in OURS:
             taken = outcome.nanoseconds(name)
             if taken is not None and limit is not None:
                 per = outcome.bytes / outcome.size
