@@ -77,8 +77,11 @@ def environment(**options: Any) -> Environment:
 def template(name: str) -> tuple[str, str]:
     """(text, file) of one template: the user's own, or else the shipped one.
 
-    Raises FileNotFoundError where there is none.
+    Raises FileNotFoundError where there is none, and for a name that leads out of the folder;
+    UnicodeDecodeError where it is no text.
     """
+    if Path(name).name != name:
+        raise FileNotFoundError(f"{name} is not the name of a file beside the templates")
     own = _OWN.get()
     path = own / name if own is not None and (own / name).is_file() else folder("templates") / name
     return path.read_text(encoding="utf-8"), str(path)

@@ -8,7 +8,14 @@ from traceback import walk_tb
 from types import TracebackType
 from typing import Any, NoReturn
 
-from jinja2 import FunctionLoader, StrictUndefined, TemplateError, TemplateSyntaxError
+from jinja2 import (
+    FunctionLoader,
+    StrictUndefined,
+    TemplateError,
+    TemplateNotFound,
+    TemplateSyntaxError,
+)
+from jinja2.exceptions import SecurityError
 from jinja2.runtime import Context
 from jinja2.sandbox import SandboxedEnvironment
 
@@ -19,6 +26,8 @@ Find = Callable[[str], tuple[str, str]]  # name -> text, file
 
 class SandboxedTemplates(SandboxedEnvironment):
     """Templates found by a function; every fault in one is a TemplateFault."""
+
+    intercepted_binops = frozenset({"*", "**"})  # a short template could fill the memory
 
     def __init__(self, find: Find, **options: Any) -> None:
         self._files: set[str] = set()
@@ -37,8 +46,13 @@ class SandboxedTemplates(SandboxedEnvironment):
             text, file = find(name)
         except FileNotFoundError:
             return None
+        except UnicodeDecodeError as error:
+            raise TemplateFault(f"{name} is not text in UTF-8: {error.reason}") from error
         self._files.add(file)
         return text, file, None
+
+    def call_binop(self, _context: Context, operator: str, _left: Any, _right: Any) -> Any:
+        raise SecurityError(f"templates place text; {operator} is not for them")
 
     def handle_exception(self, source: str | None = None) -> NoReturn:
         """Jinja2 comes here with every exception from a template."""
@@ -49,11 +63,27 @@ class SandboxedTemplates(SandboxedEnvironment):
             place = f"{error.filename or error.name}, line {error.lineno}"
             raise TemplateFault(f"{place}: {error.message}") from error
         except TemplateError as error:
-            lines = walk_tb(error.__traceback__)
-            places = [(f.f_code.co_filename, n) for f, n in lines]
-            file, line = next(place for place in reversed(places) if place[0] in self._files)
             known = f"; names here: {', '.join(names)}" if names else ""
-            raise TemplateFault(f"{file}, line {line}: {error.message}{known}") from error
+            said = f"no template {error.name}" if isinstance(error, TemplateNotFound) else error
+            raise TemplateFault(f"{self._place(error)}: {said}{known}") from error
+        except RecursionError as error:
+            raise TemplateFault(f"{self._place(error)}: it includes itself") from error
+        except (ArithmeticError, TypeError, ValueError) as error:
+            if not self._is_of_template(error):
+                raise
+            raise TemplateFault(f"{self._place(error)}: {error}") from error
+
+    def _place(self, error: BaseException) -> str:
+        """The template and the line where an exception passed last."""
+        places = [(f.f_code.co_filename, line) for f, line in walk_tb(error.__traceback__)]
+        file, line = next(place for place in reversed(places) if place[0] in self._files)
+        return f"{file}, line {line}"
+
+    def _is_of_template(self, error: BaseException) -> bool:
+        """Whether it was raised by a template or by Jinja2 for it, and not by what it was given."""
+        *_, (frame, _) = walk_tb(error.__traceback__)
+        is_by_jinja = frame.f_globals.get("__name__", "").startswith("jinja2.")
+        return is_by_jinja or frame.f_code.co_filename in self._files
 
 
 def _names_at(trace: TracebackType | None, common: set[str]) -> list[str]:

@@ -8,7 +8,9 @@ import sys
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
+import sympy as sp
 from conftest import derived
 from markdown_it import MarkdownIt
 
@@ -184,6 +186,31 @@ def test_a_step_shows_itself_in_jupyter():
 def test_selected_steps_keep_showing_themselves():
     motion = derived("ZXZ").select(["angular_velocity_body"])
     assert motion.steps[0]._repr_latex_().endswith("\\tag{1}\n$$")
+
+
+def test_a_passive_model_shows_the_matrix_that_its_words_speak_of():
+    bundle = rs.rotation_from("z(phi)", passive=True)._repr_mimebundle_()
+    assert bundle["text/latex"].startswith(r"$$\mathbf{A} = \mathbf{R}^{\mathsf T} = ")
+    assert r"& \sin{\left(\phi \right)}" in bundle["text/latex"]
+    assert "the matrix shown is A = Rᵀ" in bundle["text/plain"]
+
+
+def test_a_body_shows_itself_in_jupyter():
+    A, B, C = sp.symbols("A B C", positive=True)
+    bundle = rs.principal_moments(A, A, C)._repr_mimebundle_(include=None, exclude=None)
+    assert bundle["text/latex"].startswith(r"$$\mathbf{I}' = \left[\begin{matrix}A & 0 & 0")
+    assert bundle["text/plain"].startswith("Symmetric body\nmass M = M\ncentre of mass c = (0, 0")
+    cone = rs.solid("cone", radius=A, height=B, mass=C)
+    assert r"M = C \qquad \mathbf{c} = " in cone._repr_latex_()
+    measured = rs.inertia_of(np.array([[1.0, 1, 0, 0], [1, -1, 0, 0], [2, 0, 1, 0]]))
+    assert measured._repr_mimebundle_()["text/plain"].startswith("mass                 M = 4 kg")
+
+
+def test_what_would_fill_pages_is_one_line_at_a_prompt():
+    motion = derived("ZXZ")
+    assert repr(motion.note()) == f"<Note {NAME}, 13 equations>"
+    assert motion.note()._repr_mimebundle_()["text/markdown"] == motion.note().markdown()
+    assert repr(motion.kernels()) == f"<KernelModule {NAME}, numpy: {NAME}.py>"
 
 
 def test_a_model_shows_its_matrix_and_its_convention():

@@ -50,6 +50,15 @@ def test_an_own_template_may_include_others(tmp_path: Path):
         ("{% if x %}", 1, "Unexpected end of template"),
         ("\n{{ title.__class__.__mro__ }}", 2, "access to attribute '__class__'"),
         ("{% include 'nowhere.jinja' %}", 1, "nowhere.jinja"),
+        ("\n{% include '/etc/hostname' %}", 2, "hostname"),
+        ("{% include '../note.html.jinja' %}", 1, "note.html.jinja"),
+        ("{% include 'note.html.jinja' %}", 1, "it includes itself"),
+        ("\n{{ title + 1 }}", 2, "can only concatenate str"),
+        ("{{ 1 / 0 }}", 1, "division by zero"),
+        ("{{ title() }}", 1, "'str' object is not callable"),
+        ("{% for i in range(999999) %}{% endfor %}", 1, "Range too big"),
+        ("{{ 9**9**9**9 }}", 1, "templates place text; ** is not for them"),
+        ("{{ 'a' * 9999999999 }}", 1, "templates place text; * is not for them"),
     ],
 )
 def test_a_fault_is_named_with_its_template_and_line(tmp_path: Path, template, line, said):
@@ -63,6 +72,15 @@ def test_a_fault_in_an_included_template_is_named_there(tmp_path: Path):
     (tmp_path / "head.jinja").write_text("\n\n{{ nothing }}", encoding="utf-8")
     with pytest.raises(TemplateFault, match=r"head\.jinja, line 3: 'nothing' is undefined"):
         html_with(tmp_path, "\n{% include 'head.jinja' %}")
+
+
+def test_a_template_that_is_no_text_is_named(tmp_path: Path):
+    (tmp_path / "note.html.jinja").write_bytes(b"\xff")
+    with (
+        resources.overridden_by(tmp_path),
+        pytest.raises(TemplateFault, match="UTF-8"),
+    ):
+        derived("ZXZ").note().html()
 
 
 def test_a_folder_without_templates_is_an_error(tmp_path: Path):

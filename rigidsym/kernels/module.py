@@ -23,6 +23,10 @@ class KernelModule:
     target: str
     files: Mapping[str, str]  # file name -> text, the main file first
 
+    def __repr__(self) -> str:
+        """One line, for a prompt; `source` is the text itself."""
+        return f"<KernelModule {self.name}, {self.target}: {', '.join(self.files)}>"
+
     @property
     def main(self) -> str:
         """The name of the main file: "euler_zxz_intrinsic.py"."""

@@ -32,9 +32,15 @@ class Measured:
 
     def text(self, noun: str = "particle") -> str:
         """A few lines for a terminal; `noun` is what was counted."""
+        return f"{counted(self.count, noun)}\n{self._in_numbers()}"
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        """What Jupyter shows: what a terminal does, but for what was counted."""
+        return {"text/plain": self._in_numbers()}
+
+    def _in_numbers(self) -> str:
         principal = self.principal
         lines = [
-            counted(self.count, noun),
             f"mass                 M = {_number(self.mass)} kg",
             f"centre of mass       c = ({_row(self.centre)}) m",
             "inertia tensor about the centre of mass, kg m²",

@@ -18,6 +18,7 @@ from rigidsym.models.so3 import TIME
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _AXES = ("x", "y", "z")
+_SPACE = r" \qquad "
 SOURCE = lecture("4", "section 2.2")
 
 
@@ -106,6 +107,29 @@ class RigidBody:
                     f"{self.name}: the inertia tensor is not symmetric: "
                     f"I_{places[0]} − I_{places[1]} = {_short(self.in_numbers(left))}"
                 )
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        """What Jupyter shows: the mass, the centre and the inertia tensor about it."""
+        return {"text/latex": self._repr_latex_(), "text/plain": self._in_words()}
+
+    def _repr_latex_(self) -> str:
+        mass, centre, inertia = map(sp.latex, (self.mass, self.centre, self.inertia))
+        masses = "" if self.mass == sp.Symbol("M") else f"M = {mass}"
+        place = "" if self.centre.is_zero_matrix else rf"\mathbf{{c}} = {centre}"
+        parts = filter(None, (masses, place, rf"\mathbf{{I}}' = {inertia}"))
+        return f"$${_SPACE.join(parts)}$$"
+
+    def _in_words(self) -> str:
+        rows = (", ".join(map(str, row)) for row in self.inertia.tolist())
+        return "\n".join(
+            [
+                self.title,
+                f"mass M = {self.mass}",
+                f"centre of mass c = ({', '.join(map(str, self.centre))})",
+                "inertia tensor about the centre of mass, along the axes of the body",
+                *(f"  ({row})" for row in rows),
+            ]
+        )
 
     def __str__(self) -> str:
         return self.name

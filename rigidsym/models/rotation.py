@@ -225,7 +225,9 @@ class RotationModel:
 
     def _repr_latex_(self) -> str:
         plain = {q: sp.Symbol(q.func.__name__) for q in self.coordinates}
-        return rf"$$\mathbf{{R}} = {sp.latex(self.matrix.xreplace(plain))}$$"
+        shown = (self.matrix.T if self.passive else self.matrix).xreplace(plain)
+        symbol = r"\mathbf{A} = \mathbf{R}^{\mathsf T}" if self.passive else r"\mathbf{R}"
+        return f"$${symbol} = {sp.latex(shown)}$$"
 
     def _in_words(self) -> str:
         product = f"R = {self.product}" if self.turns else ""

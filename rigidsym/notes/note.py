@@ -22,6 +22,14 @@ class Note:
 
     document: Document
 
+    def __repr__(self) -> str:
+        """One line, for a prompt; the document itself would fill pages."""
+        return f"<Note {self.document.name}, {len(list(self.document.equations))} equations>"
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        """What Jupyter shows: the whole note, or one line."""
+        return {"text/markdown": self.markdown(), "text/plain": repr(self)}
+
     def latex(self) -> str:
         """A complete LaTeX file; the same derivation gives the same bytes."""
         return print_latex(self.document)
