@@ -18,16 +18,13 @@ import click
 from rigidsym import __version__
 from rigidsym.errors import RigidsymError
 from rigidsym.options import (
-    FOR_TARGETS,
     JSON,
     MEASURE,
     OUT,
-    PDF,
     TEMPLATES,
-    WITH_CONVERSIONS,
-    WITH_DERIVATIVES,
     in_notation,
     names_of,
+    of_production,
 )
 
 _INTERRUPTED = 130
@@ -85,15 +82,7 @@ def commands(context: click.Context) -> None:
 @click.option("--constants", metavar="A,B", help="Names in turns that are constants.")
 @click.option("--scalar-last", is_flag=True, help="Quaternions as (x, y, z, w).")
 @click.option("--passive", is_flag=True, help="Present the direction cosine matrix A = Rᵀ.")
-@WITH_CONVERSIONS
-@WITH_DERIVATIVES
-@FOR_TARGETS
-@MEASURE
-@in_notation
-@TEMPLATES
-@OUT
-@PDF
-@JSON
+@of_production
 def derive(
     rotation: str,
     angles: str | None,
@@ -124,15 +113,7 @@ def derive(
 
 @commands.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@WITH_CONVERSIONS
-@WITH_DERIVATIVES
-@FOR_TARGETS
-@MEASURE
-@in_notation
-@TEMPLATES
-@OUT
-@PDF
-@JSON
+@of_production
 def run(files: tuple[str, ...], out: Path, pdf: bool, as_json: bool) -> None:
     """Run derivation files, given by path or by the name of a shipped one.
 

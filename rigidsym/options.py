@@ -146,6 +146,26 @@ def measures() -> bool:
     return bool(click.get_current_context().meta.get(_MEASURE, False))
 
 
+_OF_PRODUCTION = (
+    WITH_CONVERSIONS,
+    WITH_DERIVATIVES,
+    FOR_TARGETS,
+    MEASURE,
+    in_notation,
+    TEMPLATES,
+    OUT,
+    PDF,
+    JSON,
+)
+
+
+def of_production(command: Callable[..., None]) -> Callable[..., None]:
+    """The options of `derive` and `run`: what is printed, how, and where it goes."""
+    for option in reversed(_OF_PRODUCTION):
+        command = option(command)
+    return command
+
+
 def as_chosen(spec: DerivationSpec) -> DerivationSpec:
     """The specification with the choices of the command line in place of its own."""
     kept = click.get_current_context().meta

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import sys
 from collections.abc import Iterable, Iterator
@@ -12,6 +11,7 @@ from pathlib import Path
 import click
 
 from rigidsym.errors import RigidsymError, SpecError
+from rigidsym.folder import with_what_is_there
 from rigidsym.notes.terminal import show
 from rigidsym.options import as_chosen, measures
 from rigidsym.pipeline import PDF, Product, product
@@ -41,6 +41,7 @@ def produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool)
     chosen = [_with_pdf(spec) if pdf else spec for spec in map(as_chosen, specs)]
     singles = [single for spec in chosen for single in spec.singles()]
     _check_folders(singles)
+    singles = [with_what_is_there(single, out) for single in singles]
     shown_in_full = len(singles) == 1
     missing: RigidsymError | None = None
     if measures():
@@ -104,11 +105,6 @@ def _with_progress(singles: list[DerivationSpec]) -> Iterator[Product]:
 def _write(made: Product, out: Path) -> tuple[list[Path], RigidsymError | None]:
     """Write the files of one product; a missing TeX is reported after all else is written."""
     folder = out / made.name
-    if _holds_another(folder / f"{made.name}.json", made):
-        click.echo(
-            f"rigidsym: {folder} held another rotation and is written over; --out keeps both",
-            err=True,
-        )
     written = [write_text(folder / name, text) for name, text in made.files.items()]
     if not made.wants_pdf:
         return written, None
@@ -119,15 +115,6 @@ def _write(made: Product, out: Path) -> tuple[list[Path], RigidsymError | None]:
     except RigidsymError as error:
         return written, error
     return [*written, write_bytes(folder / f"{made.name}.pdf", paper.pdf)], None
-
-
-def _holds_another(record: Path, made: Product) -> bool:
-    """Whether a record stands for other rotations: other angles, say, under the same name."""
-    try:
-        before = json.loads(record.read_text(encoding="utf-8"))["request"]["rotations"]
-    except (OSError, ValueError, KeyError, TypeError):  # none, or no record
-        return False
-    return bool(before != json.loads(made.record_text)["request"]["rotations"])
 
 
 def _show(made: Product, written: list[Path]) -> None:

@@ -74,6 +74,7 @@ ORDER = (
     "typeset",
     "measuring",
     "options",
+    "folder",
     "building",
     "production",
     "cli",

@@ -27,6 +27,7 @@ class Target:
     """One language that kernels are printed in, and what loading them needs, printing not."""
 
     about: str
+    ending: str  # of the main file, behind the name of the derivation
     package: str = ""  # of Python, which the extra of the target's name brings
     programs: tuple[str, ...] = ()  # of which one will do
     has_single: bool = True  # whether its functions know single precision
@@ -43,20 +44,28 @@ class Target:
 
 TARGETS: Mapping[str, Target] = MappingProxyType(
     {
-        "numpy": Target(about="NAME.py: a Python module that needs NumPy alone"),
+        "numpy": Target(about="NAME.py: a Python module that needs NumPy alone", ending=".py"),
         "c": Target(
             about="NAME.h, NAME.c: C99; rigidsym build makes the Python module NAME_c.py",
+            ending=".c",
             programs=("cc", "gcc", "clang"),
         ),
         "numba": Target(
-            about="NAME_numba.py: a Python module that Numba compiles", package="numba"
+            about="NAME_numba.py: a Python module that Numba compiles",
+            ending="_numba.py",
+            package="numba",
         ),
         "javascript": Target(
             about="NAME.mjs: an ES module without dependencies",
+            ending=".mjs",
             programs=("node",),
             has_single=False,
         ),
-        "jax": Target(about="NAME_jax.py: a Python module for JAX; jit, vmap, grad", package="jax"),
+        "jax": Target(
+            about="NAME_jax.py: a Python module for JAX; jit, vmap, grad",
+            ending="_jax.py",
+            package="jax",
+        ),
     }
 )
 
