@@ -19,7 +19,6 @@ from rigidsym import __version__
 from rigidsym.errors import RigidsymError
 from rigidsym.options import (
     JSON,
-    MEASURE,
     OUT,
     TEMPLATES,
     in_notation,

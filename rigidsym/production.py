@@ -41,11 +41,11 @@ def produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool)
     chosen = [_with_pdf(spec) if pdf else spec for spec in map(as_chosen, specs)]
     singles = [single for spec in chosen for single in spec.singles()]
     _check_folders(singles)
-    singles = [with_what_is_there(single, out) for single in singles]
     shown_in_full = len(singles) == 1
     missing: RigidsymError | None = None
     if measures():
         singles, missing = _measured(singles)
+    singles = [with_what_is_there(single, out) for single in singles]
     for made in _with_progress(singles):
         written, problem = _write(made, out)
         missing = missing or problem

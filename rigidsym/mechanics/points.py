@@ -67,6 +67,5 @@ def _moved_onto(point: Point, constraints: Sequence[sp.Expr]) -> Point | None:
 
 def _value(expression: sp.Expr, point: Point) -> sp.Expr:
     """The value at a point; zero where it has none, which refutes nothing."""
-    rates = {u: value for u, value in point.items() if u.is_Derivative}
-    value = sp.sympify(expression, strict=True).subs(rates).subs(point).evalf(_DIGITS)
+    value = sp.sympify(expression, strict=True).xreplace(dict(point)).evalf(_DIGITS)
     return value if value.is_number and value.is_finite else sp.S.Zero
