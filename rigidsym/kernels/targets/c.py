@@ -28,10 +28,11 @@ _WORDS = (
     "union unsigned void volatile while asm typeof "
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf nan "
     "NULL NAN INFINITY HUGE_VAL HUGE_VALF HUGE_VALL SIZE_MAX PTRDIFF_MAX math_errhandling "
-    "size_t ptrdiff_t uint32_t uint64_t TILE INLINED tile found rows count at i j "
+    "size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED tile found rows count at i j "
 )
 RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
 _WIDTH = 92
+_WHOLE = frozenset({1, 2, 3, 4, 8})  # lengths of rows that compilers put together by whole vectors
 
 
 def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
@@ -62,6 +63,7 @@ def _source(program: Program, kernels: Sequence[Kernel], functions: Sequence[Fun
     calls = [call for kernel in kernels for call in singular.calls_of(kernel).values()]
     orders = [call.order for call in calls if call.order is not None]
     called = {call.function for call in calls}
+    given = sorted({len(kernel.outputs) for kernel in kernels})
     return _template("kernels_c.c.jinja").render(
         title=_safe(program.title),
         name=program.name,
@@ -74,7 +76,9 @@ def _source(program: Program, kernels: Sequence[Kernel], functions: Sequence[Fun
         two_over_pi=_words(),
         half_pi=repr(pi / 2),
         counts=sorted({len(a.components) for kernel in kernels for a in kernel.arguments}),
-        given=sorted({len(kernel.outputs) for kernel in kernels}),
+        given=given,
+        whole=_WHOLE,
+        has_fours=not _WHOLE.issuperset(given),
         functions=functions,
     )
 
