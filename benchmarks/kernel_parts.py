@@ -18,7 +18,7 @@ import sympy as sp
 import rigidsym
 from benchmarks.accuracy import SYMBOLS, angle_groups, exact, largest_error
 from benchmarks.measure import Spread, interleaved, peak_memory, progress, ratios, timed
-from benchmarks.peers import PEERS, Task
+from benchmarks.peers import PEERS, Array, Task
 from benchmarks.report import Cell, Column, Figure, Table, spread_columns
 from rigidsym.api import Motion, derive
 from rigidsym.kernels.lower import lower
@@ -32,6 +32,12 @@ GROWN = ("lambdify, cse", "JAX jit", "heyoka cfunc")
 SEQUENCES = ("ZXZ", "ZYX", "xyz")  # whose errors are taken
 MEGABYTE = 1e6
 GROUPS = ("random in ±π", "multiples of π/2", "tiny", "random in ±1e4")
+
+CONTROL = 1 << 26  # bytes that the controls of threads work on
+CONTROLS = {
+    "hashing": "hashing: the most there is to gain at arithmetic",
+    "copying": "a plain copy: the most there is to gain at moving",
+}
 
 Part = tuple[list[Table], list[Figure]]
 
@@ -89,7 +95,7 @@ def _plain(motion: Motion) -> tuple[list[sp.Symbol], list[sp.Expr]]:
 
 
 def threads(modules: Mapping[str, ModuleType], size: int, repeats: int) -> Part:
-    """Two threads beside one, and what two processors gain here for work without memory."""
+    """Two threads beside one, and what two processors gain here at arithmetic and at memory."""
     random = np.random.default_rng(0)
     q, q_dot = random.uniform(-3.0, 3.0, (2, size, 3))
     rows: list[tuple[Cell, ...]] = []
@@ -111,20 +117,36 @@ def threads(modules: Mapping[str, ModuleType], size: int, repeats: int) -> Part:
                 figures.append(
                     _least(f"two threads over one, {name}, {quantity}", gain.middle, 1.7, "times")
                 )
-    rows.append(("none", "hashing: the most there is to gain", *_hashing(repeats).in_order()))
+    for name, gain in (("hashing", _gain(_hashed, repeats)), ("copying", _gain(_copied, repeats))):
+        rows.append(("none", CONTROLS[name], *gain.in_order()))
     columns = (Column("target"), Column("quantity"), *spread_columns("gain", 2))
     return [Table(f"Two threads, {size:,} orientations", columns, tuple(rows))], figures
 
 
-def _hashing(repeats: int) -> Spread:
-    """The gain of two threads at work that holds no lock and hardly reads memory."""
-    content = bytes(5_000_000)
+def _hashed(content: Array) -> None:
+    sha256(content.data)
 
-    def hashed(count: int) -> None:
-        with ThreadPoolExecutor(count) as pool:
-            list(pool.map(sha256, [content, content]))
 
-    times = interleaved({str(n): partial(timed, partial(hashed, n)) for n in (1, 2)}, repeats)
+def _copied(content: Array) -> None:
+    np.copyto(content[: len(content) // 2], content[len(content) // 2 :])
+
+
+def _gain(work: Callable[[Array], None], repeats: int) -> Spread:
+    """What a second thread gains at some work on two halves of one array."""
+    halves = np.split(np.ones(CONTROL // 8), 2)
+
+    def alone() -> None:
+        for half in halves:
+            work(half)
+
+    with ThreadPoolExecutor(1) as pool:
+
+        def both() -> None:
+            other = pool.submit(work, halves[1])
+            work(halves[0])
+            other.result()
+
+        times = interleaved({"1": partial(timed, alone), "2": partial(timed, both)}, repeats)
     return ratios(times["1"], times["2"])
 
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -12,6 +16,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import mutually_broadcastable_shapes
 from kernel_modules import QUANTITIES, inputs, module, one_by_one
 from numpy.testing import assert_allclose, assert_array_equal
+
+import rigidsym as rs
 
 
 @pytest.mark.parametrize("name", QUANTITIES)
@@ -292,6 +298,50 @@ def test_threads_that_are_refused(threads):
     message = f"threads: got {threads!r}; expected a whole number from 1 up"
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         module().rotation_matrix(Q, threads=threads)
+
+
+def test_what_fails_in_one_thread_ends_the_work_of_all():
+    done = []
+
+    def work(piece):
+        if piece == 3:
+            raise MemoryError(piece)
+        done.append(piece)
+
+    with pytest.raises(MemoryError, match="3"):
+        module()._share(work, range(1_000_000), 3)
+    assert {0, 1, 2} <= set(done)
+    assert len(done) < 999_999
+
+
+def test_threads_of_several_callers_do_not_wait_for_one_another():
+    q = inputs("rotation_matrix", (30_000,))[0]
+    expected = module().rotation_matrix(q)
+    with ThreadPoolExecutor(8) as pool:
+        for found in pool.map(lambda _: module().rotation_matrix(q, threads=4), range(24)):
+            assert_array_equal(found, expected)
+
+
+FORKED = """
+import os, warnings
+import numpy as np
+import {name} as m
+warnings.simplefilter("ignore")  # newer Pythons warn of any fork beside threads
+q = np.ones((30_000, 3))
+expected = m.rotation_matrix(q)
+assert (m.rotation_matrix(q, threads=2) == expected).all()
+child = os.fork()
+if not child:
+    os._exit(0 if (m.rotation_matrix(q, threads=2) == expected).all() else 1)
+assert os.waitpid(child, 0)[1] == 0
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")
+def test_a_forked_process_has_threads_of_its_own(tmp_path):
+    made = rs.derive("ZXZ", only=["rotation_matrix"]).kernels().write(tmp_path)
+    code = FORKED.format(name=made.stem)
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True, timeout=60)
 
 
 def test_threads_may_fill_an_out_that_overlaps():

@@ -157,6 +157,38 @@ def test_sanitizers_find_nothing_at_any_size(sources, compiler):
         assert abs(values[2] - mp.cos(mp.mpf(angles[2]))) < 3e-7
 
 
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("shuffled", [True, False])
+def test_rows_stand_where_they_belong(sources, compiler, shuffled):
+    """Any count, from any place in a line of the cache, into rows side by side and apart."""
+    text = (sources / f"{NAME}.c").read_text(encoding="utf-8")
+    assert text.count("#define SHUFFLED\n") == 1
+    name = f"rows_{compiler}_{shuffled}"
+    kept = text if shuffled else text.replace("#define SHUFFLED\n", "")
+    (sources / f"{name}.c").write_text(kept, encoding="utf-8")
+    flags = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off")
+    run(compiler, *flags, f"{name}.c", "-o", f"{name}.so", "-lm", cwd=sources)
+    library = ctypes.CDLL(str(sources / f"{name}.so"))
+    for dtype, suffix in ((np.float64, ""), (np.float32, "f")):
+        one = getattr(library, f"{NAME}_rotation_matrix{suffix}")
+        many = getattr(library, f"{NAME}_rotation_matrix_array{suffix}")
+        q = np.random.default_rng(0).uniform(-3, 3, (120, 3)).astype(dtype)
+        expected = np.zeros((120, 9), dtype)
+        for row, out in zip(q, expected, strict=True):
+            one(ctypes.c_void_p(row.ctypes.data), ctypes.c_void_p(out.ctypes.data))
+        for start in range(9):
+            for count in (0, 1, 31, 32, 33, 64, 95, 111):
+                for width in (9, 11):
+                    found = np.full((count + 1, width), 7.0, dtype)
+                    given, filled = (ctypes.c_void_p(a.ctypes.data) for a in (q[start:], found))
+                    steps = map(ctypes.c_ssize_t, (3, 1))
+                    across = map(ctypes.c_ssize_t, (width, 1))
+                    many(ctypes.c_size_t(count), given, *steps, filled, *across)
+                    assert np.array_equal(found[:count, :9], expected[start : start + count])
+                    assert (found[count:] == 7).all()
+                    assert (found[:, 9:] == 7).all()
+
+
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
 @pytest.mark.skipif("avx" not in CPU, reason="a processor without AVX")
 @pytest.mark.parametrize("compiler", COMPILERS)
