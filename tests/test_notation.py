@@ -85,7 +85,7 @@ def test_the_form_of_the_lectures_equation_18(golden):
     motion = derived("ZXZ").written(rates="fraction")
     golden("terminal/euler_zxz_fractions_100.txt", show(motion, width=100, manner=motion.manner))
     assert (
-        r"\dfrac{d\phi}{dt} \sin\theta \sin\psi + \dfrac{d\theta}{dt} \cos\psi"
+        r"\displaystyle \frac{d\phi}{dt} \sin\theta \sin\psi + \frac{d\theta}{dt} \cos\psi"
         in motion.note().latex()
     )
 
