@@ -114,10 +114,13 @@ def test_markup_in_text_comes_out_as_text():
 
 
 def test_the_notation_is_that_of_the_motion():
-    motion = derive("ZXZ").written(angular_velocity="omega", body="superscript")
+    motion = derive("ZXZ").written(
+        angular_velocity="omega", body="superscript", frames=("inertial", "spacecraft")
+    )
     page = motion.page()
     assert '"omega":"ω"' in page
     assert '"body":["xᴮ","yᴮ","zᴮ"]' in page
+    assert '"spoken":"angular velocity, spacecraft components"' in page
     assert "Ω" not in re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
 
 

@@ -32,6 +32,7 @@ TEMPLATE = "page.html.jinja"
 SCRIPT = "page.mjs.jinja"
 MOST_BYTES = 150_000
 
+_FIGURE = "The axes of space and the axes of the body, as the sliders have turned them"
 _SAVED = 0.85  # of what is packed
 _SHORT = 300  # bytes that are not worth it
 
@@ -91,6 +92,7 @@ class _Page:
             printer,
             policy=f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'",
             script=script,
+            packed=len(packed),
             groups=[
                 {"title": group.title, "controls": [*map(_shown, group.controls)]}
                 for group in self.groups
@@ -99,6 +101,7 @@ class _Page:
             values=[self._value(step) for step in self.functions.steps],
             pole=self._pole(),
             stage=self._stage(),
+            title_of_figure=escape(self.document.notation.manner.words(_FIGURE)),
         )
 
     def _script(self, blocks: Sequence[str]) -> str:
@@ -126,9 +129,12 @@ class _Page:
 
     def _stage(self) -> dict[str, Any]:
         model = self.derivation.model
-        shown = dict(stage_of(model, self.document.notation))
-        spoken = "angular velocity in the body"
-        return {**shown, "passive": model.passive, "spoken": spoken}
+        words = self.document.notation.manner.words
+        return {
+            **stage_of(model, self.document.notation),
+            "passive": model.passive,
+            "spoken": words("angular velocity, body components"),
+        }
 
     def _value(self, step: Step) -> dict[str, Any]:
         """A table of numbers, as the template places it."""
