@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
@@ -63,11 +64,15 @@ def odd_page() -> str:
 def carried(page: str) -> dict[str, Any]:
     """Texts to copy, words on poles, and blocks of the note."""
     (data,) = re.findall(r"^const \{ stage, .*?\} = (.*);$", page, re.MULTILINE)
-    packed = json.loads(data.replace("<\\/", "</").replace("<\\!--", "<!--"))["packed"]
+    return json.loads(spelt(json.loads(data)["packed"]))
+
+
+def spelt(packed: Mapping[str, Any]) -> str:
+    """The text that was packed."""
     words = dict(enumerate(packed["words"]))
     for first, second in zip(*[iter(_symbols(packed["rules"]))] * 2, strict=True):
         words[len(words)] = words[first] + words[second]
-    return json.loads("".join(words[symbol] for symbol in _symbols(packed["symbols"])))
+    return "".join(words[symbol] for symbol in _symbols(packed["symbols"]))
 
 
 def _symbols(text: str) -> list[int]:

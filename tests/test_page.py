@@ -14,13 +14,16 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from pages import NAME, carried, main_of, note_in, odd_page, page_of, shipped
+from hypothesis import given
+from hypothesis import strategies as st
+from pages import NAME, carried, main_of, note_in, odd_page, page_of, shipped, spelt
 from test_html import Elements
 
 import rigidsym as rs
 from rigidsym.api import derive
 from rigidsym.cli import commands
 from rigidsym.page.functions import SHOWN
+from rigidsym.page.packing import pack
 from rigidsym.page.page import MOST_BYTES
 from rigidsym.pipeline import product
 from rigidsym.spec import read_spec
@@ -58,6 +61,26 @@ def test_where_something_is_packed_a_reader_without_a_script_is_told_where_it_st
     assert {words for _, words in places} == {
         "Shown with JavaScript; without, it stands in the note, <code>composite_body.html</code>."
     }
+
+
+PIECES = [
+    "<mi>φ</mi>",
+    "<mo>=</mo>",
+    "sin",
+    " ",
+    '<math alttext="a">',
+    "aaaaa",
+    '"\\',
+    "(",
+    "\n    ",
+]
+
+
+@given(st.lists(st.sampled_from(PIECES) | st.text(max_size=5), max_size=60).map("".join))
+def test_any_text_that_is_packed_is_spelt_again(text):
+    packed = pack(text)
+    assert spelt(packed) == text
+    assert packed == pack(text)
 
 
 def test_results_are_packed_after_all_other_displays():
