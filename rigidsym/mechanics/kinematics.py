@@ -200,7 +200,9 @@ class _Kinematics:
                 "turns the product is not multiplied out."
             )
         else:
-            because = "The vector of a skew matrix stands in its entries (3,2), (1,3) and (2,1)."
+            because = (
+                "C⁻¹ takes the vector of a skew matrix from its entries (3,2), (1,3) and (2,1)."
+            )
             if self.model.passive:
                 because = (
                     "The derivative of the transpose times the matrix is the operator of Ω, as "

@@ -195,7 +195,11 @@ class Composer:
         yield from motion(passive=self.model.passive)
         yield Equation(sides=(_OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
         yield Paragraph(
-            words("That it is skew follows from {} by differentiation:", orthogonal(shown))
+            words(
+                "That {} is skew follows from {} by differentiation:",
+                spin_of(shown),
+                orthogonal(shown),
+            )
         )
         yield Equation(sides=(skew(spin_of(shown)),))
         yield from self._steps(_ANGULAR_VELOCITY)

@@ -14,6 +14,7 @@ from rigidsym.notes.layout import Done
 from rigidsym.notes.notation import Notation
 from rigidsym.notes.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION, equal, words
 
+_TURNING = lecture("3", "section 1.2")
 _MOTION = lecture("15", "section 3.2")
 _VELOCITY = Markup(r"\dot{\mathbf{x}}", "ẋ")
 _BODY_VELOCITY = Markup(r"\dot{\mathbf{x}}'", "ẋ′")
@@ -67,8 +68,10 @@ def _active_motion() -> Iterator[Block]:
     )
     yield Paragraph(
         words(
-            "This velocity is also {}, so that {} is the matrix of the operator {}\u00a0{}.",
+            "This velocity is also {}\u00a0{}, so that {} is the matrix of the operator "
+            "{}\u00a0{}.",
             _cross(SPACE.omega, POSITION),
+            Cited(_TURNING),
             spinning,
             _operator(SPACE.omega),
             Cited(_MOTION),

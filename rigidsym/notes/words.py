@@ -24,6 +24,7 @@ POSITION = Markup(r"\mathbf{x}", "x")
 BODY_POSITION = Markup(r"\mathbf{x}'", "x′")
 COORDINATES = Markup(r"\mathbf{q}", "q")
 VECTOR = Markup(r"\mathbf{v}", "v")
+VECTOR_OF = Markup(r"\mathbf{C}^{-1}", "C⁻¹")
 ACTIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", POSITION, ROTATION, BODY_POSITION)
 PASSIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", BODY_POSITION, COSINES, POSITION)
 TRANSPOSED = fill(r"{0} = {1}^{{\mathsf T}}", "{0} = {1}ᵀ", COSINES, ROTATION)
@@ -77,7 +78,7 @@ def symbols_of(derivation: Derivation) -> dict[str, Markup]:
         (ROTATION, *(Markup(axis, axis) for axis in AXES)),
         chain.from_iterable(argument.notation for argument in derivation.arguments),
         (step.quantity.symbol for step in derivation.steps),
-        (SPACE.omega, BODY.omega, RATES),
+        (SPACE.omega, BODY.omega, RATES, VECTOR_OF),
     )
     if derivation.body is not None:
         named = chain(named, _OF_BODIES)
