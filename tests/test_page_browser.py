@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,8 @@ from rigidsym.api import derive
 from rigidsym.kernels.lower import MARGIN
 from rigidsym.page.functions import SHOWN
 from rigidsym.page.page import MOST_BYTES
+from rigidsym.pipeline import product
+from rigidsym.spec import read_spec
 
 DRAWN = ("ZXZ", "YZY", "xyz", "z(phi) x(theta) z(psi) y(delta)", "axis_angle")
 LIVE = ("ZXZ", "zyx", *OTHERS)
@@ -73,6 +76,10 @@ def compare_with_numpy(tab: Page, motion: rs.Motion) -> None:
     given: dict[str, list[float]] = {"q": [], "q_dot": [], "parameters": []}
     for key, value in state.items():
         given[key.split("-")[0]].append(value)
+    if "parameters" in {argument.name for argument in motion.arguments}:
+        whole = len(motion.argument("parameters").symbols)
+        # moments turn nothing, and have no sliders
+        given["parameters"] += [1.0] * (whole - len(given["parameters"]))
     kernels = motion.kernels().load()
     for name in SHOWN:
         vectors = [given[argument] for argument in motion.step(name).quantity.inputs]
@@ -115,6 +122,36 @@ def test_numbers_agree_with_numpy_and_nothing_is_scrolled_sideways(tab, rotation
     for width in (320, 360, 768):
         tab.resize(width)
         assert tab.run("document.documentElement.scrollWidth") <= width
+
+
+FILES = {
+    "passive": '[rotation]\nsequence = "z(heading) y(elevation) x(bank)"\npassive = true',
+    "own": """
+        [rotation]
+        matrix = [["cos(a)", "-sin(a)", "0"], ["sin(a)", "cos(a)", "0"], ["0", "0", "1"]]
+        coordinates = ["a"]
+        """,
+    "top": """
+        [rotation]
+        sequence = "z(phi) x(theta) z(psi) y(alpha0)"
+        [parameters]
+        A = { positive = true, about = "a moment", unit = "kg m^2" }
+        [body]
+        principal_moments = ["A", "A", "2*A"]
+        """,
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_pages_of_files_agree_with_numpy_on_a_phone(tab, name, tmp_path):
+    spec = read_spec(FILES[name], source=f"{name}.toml", name=name)
+    made = product(replace(spec, note=("page",)))
+    opened(tab, made.files[f"{name}_page.html"], tmp_path, 360)
+    rng = np.random.default_rng(7)
+    values = {key: float(rng.uniform(-1, 1)) for key in tab.run(STATE)}
+    tab.run(f"({SET_ALL})({json.dumps(values)})")
+    compare_with_numpy(tab, made.motion)
+    assert tab.run("document.documentElement.scrollWidth") <= 360
 
 
 @pytest.mark.parametrize(
