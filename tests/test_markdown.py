@@ -183,6 +183,12 @@ def test_a_step_shows_itself_in_jupyter():
     assert step._repr_latex_() == bundle["text/latex"]
 
 
+def test_a_step_of_a_vector_shows_itself_as_one():
+    latex = rs.derive("rotation_vector").step("angular_velocity_body")._repr_latex_()
+    assert r"= \dot{\mathbf{v}} + \frac{\cos n - 1}{n^{2}}" in latex
+    assert "pmatrix" not in latex
+
+
 def test_selected_steps_keep_showing_themselves():
     motion = derived("ZXZ").select(["angular_velocity_body"])
     assert motion.steps[0]._repr_latex_().endswith("\\tag{1}\n$$")

@@ -52,7 +52,7 @@ class Fitter:
 
     def fitted(self, equation: Equation, step: Step) -> Iterator[Block]:
         """An equation; where it would be long, in short, or its parts with their names first."""
-        equation = self._as_vectors(equation, step)
+        equation = as_vectors(equation, step, self.notation)
         short = in_short(step, self.derivation, self.notation) if self._breaks(equation) else None
         if short is not None and self.derivation.model.vector and _is_of_motion(step):
             yield _without_entries(equation, short)
@@ -67,15 +67,6 @@ class Fitter:
         if equation.number:  # it can be referred to
             for name, _ in form.parts:
                 self._explained_at.setdefault(name, equation.label)
-
-    def _as_vectors(self, equation: Equation, step: Step) -> Equation:
-        """With its vector form; where there is one, the entries are shown only if they fit."""
-        if step.vector_form is None:
-            return equation
-        sides = (*equation.sides, sum_of_vectors(step.vector_form, self.notation))
-        whole = replace(equation, sides=sides)
-        fits = not display(whole, self.notation, PAGE).done
-        return whole if fits else _without_entries(equation, sides[-1:])
 
     def _shortest(self, equation: Equation) -> _Form:
         """With names for its parts, where that is better than without."""
@@ -169,6 +160,16 @@ def _said(equation: Equation, short: Sequence[Markup], lines: int) -> Iterator[B
     what = "It" if equation.matrix is None else "Its entries"
     yield _without_entries(equation, short)
     yield Paragraph((f"{what}, written out, would fill {lines} lines.",))
+
+
+def as_vectors(equation: Equation, step: Step, notation: Notation) -> Equation:
+    """With its vector form; where there is one, the entries are shown only if they fit."""
+    if step.vector_form is None:
+        return equation
+    sides = (*equation.sides, sum_of_vectors(step.vector_form, notation))
+    whole = replace(equation, sides=sides)
+    fits = not display(whole, notation, PAGE).done
+    return whole if fits else _without_entries(equation, sides[-1:])
 
 
 def definitions(parts: Sequence[Part], notation: Notation) -> Equation:

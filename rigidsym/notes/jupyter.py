@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.compose import equation_of
+from rigidsym.notes.fitting import as_vectors
 from rigidsym.notes.layout import display
 from rigidsym.notes.manner import Manner
 from rigidsym.notes.markdown import formula
@@ -46,6 +47,7 @@ def latex_of(
     step: Step, arguments: Sequence[Argument], manner: Manner, model: RotationModel | None = None
 ) -> str:
     """The equation of a step between dollar signs, with its number."""
-    equation = equation_in_manner(equation_of(step, arguments), manner)
-    shown = display(equation, notation_of(arguments, manner, model), _WIDTH)
+    notation = notation_of(arguments, manner, model)
+    equation = as_vectors(equation_of(step, arguments), step, notation)
+    shown = display(equation_in_manner(equation, manner), notation, _WIDTH)
     return f"$$\n{formula(shown.latex)}\n\\tag{{{step.number}}}\n$$"
