@@ -61,7 +61,11 @@ int main(void)
         euler_zxz_intrinsic_rotation_matrix_arrayf(count, qf, 3, 1, matrixf, 9, 1);
         euler_zxz_intrinsic_angular_velocity_body_array(
             count, q + 3 * (N - 1), -3, 1, q_dot, 0, 1, body, 3, 1);
+        euler_zxz_intrinsic_from_rotation_matrix_array(count, matrix, 9, 1, body, 3, 1);
+        euler_zxz_intrinsic_from_quaternion_array(count, q, 2, 1, body, 3, 1);
+        euler_zxz_intrinsic_from_quaternion_arrayf(count, qf, 2, 1, matrixf, 3, 1);
     }
+    euler_zxz_intrinsic_rotation_matrix_arrayf(N, qf, 3, 1, matrixf, 9, 1);
     euler_zxz_intrinsic_rotation_matrix(q + 12, matrix + 36);
     euler_zxz_intrinsic_rates_from_angular_velocity_space(q, q_dot + 3, body + 3);
     printf("%.17g %.17g %.9g\\n", matrix[0], matrix[53], (double)matrixf[35]);
@@ -76,7 +80,6 @@ def sources(tmp_path_factory):
     folder = tmp_path_factory.mktemp("c")
     for rotation in ROTATIONS:
         rs.derive(rotation).kernels("c").write(folder)
-    (folder / "main.c").write_text(MAIN, encoding="utf-8")
     return folder
 
 
@@ -87,10 +90,14 @@ def run(*command: str, cwd) -> str:
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
-def test_compilers_have_nothing_to_say(sources, compiler):
+def test_compilers_have_nothing_to_say(sources, tmp_path, compiler):
     for rotation in ROTATIONS:
         name = rs.derive(rotation, only=["rotation_matrix"]).name
         run(compiler, *STRICT, "-O1", "-c", f"{name}.c", "-o", f"{compiler}.o", cwd=sources)
+    for rotation in (*ROTATIONS, "direction_cosines", "z(phi) [a,b,c](beta)"):
+        alone = rs.derive(rotation, only=["rotation_matrix"])
+        source = alone.kernels("c", conversions=True).write(tmp_path)
+        run(compiler, *STRICT, "-fsyntax-only", source.name, cwd=tmp_path)
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
@@ -140,17 +147,19 @@ def test_sine_and_cosine_keep_two_eps_of_their_size_at_any_angle(sources, contra
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
-def test_sanitizers_find_nothing_at_any_size(sources, compiler):
+def test_sanitizers_find_nothing_at_any_size(tmp_path, compiler):
+    rs.derive("ZXZ").kernels("c", conversions=True).write(tmp_path)
+    (tmp_path / "main.c").write_text(MAIN, encoding="utf-8")
     flags = ("-std=c99", "-g", "-O1", "-fsanitize=address,undefined,float-cast-overflow")
     made = f"main_{compiler}"
     run(
         *(compiler, *flags, "-fno-sanitize-recover=all", f"{NAME}.c", "main.c"),
         *("-o", made, "-lm"),
-        cwd=sources,
+        cwd=tmp_path,
     )
     values, angles = (
         [float(x) for x in line.split()]
-        for line in run(str(sources / made), cwd=sources).splitlines()
+        for line in run(str(tmp_path / made), cwd=tmp_path).splitlines()
     )
     with mp.workdps(400):
         assert abs(values[1] - mp.cos(mp.mpf(angles[1]))) < 1e-15

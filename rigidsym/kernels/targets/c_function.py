@@ -75,7 +75,7 @@ def _taken(kernel: Kernel) -> Iterator[Taken]:
 def _signature(name: str, kernel: Kernel, precision: Precision) -> str:
     given = [f"const {precision.real} {a.name}[{len(a.components)}]" for a in kernel.arguments]
     filled = f"{precision.real} out[{len(kernel.outputs)}]"
-    return _listed(0, f"void {name}{precision.suffix}(", [*given, filled])
+    return listed(0, f"void {name}{precision.suffix}(", [*given, filled])
 
 
 def _array_signature(name: str, kernel: Kernel, precision: Precision) -> str:
@@ -87,16 +87,16 @@ def _array_signature(name: str, kernel: Kernel, precision: Precision) -> str:
             f"ptrdiff_t {vector}_step",
             f"ptrdiff_t {vector}_stride",
         ]
-    return _listed(0, f"void {name}_array{precision.suffix}(", items)
+    return listed(0, f"void {name}_array{precision.suffix}(", items)
 
 
 def _call(
     kernel: Kernel, suffix: str, far: str, places: list[str], result: str, indent: int
 ) -> str:
-    return _listed(indent, f"evaluate_{kernel.name}{suffix}(", [far, *places, result]).lstrip()
+    return listed(indent, f"evaluate_{kernel.name}{suffix}(", [far, *places, result]).lstrip()
 
 
-def _listed(indent: int, head: str, items: Sequence[str]) -> str:
+def listed(indent: int, head: str, items: Sequence[str]) -> str:
     """Parameters or what is given for them; C takes no comma after the last."""
     text = bracketed(indent, head, items, ")")
     return text.replace(f",\n{' ' * indent})", ")")
@@ -109,7 +109,7 @@ def _body(kernel: Kernel, precision: Precision) -> str:
     items = ["const int far", *given, f"{real} *out"]
     return "\n".join(
         [
-            _listed(0, head, items),
+            listed(0, head, items),
             "{",
             f"    {precision.word} beyond = 0;",
             *_unused(kernel),

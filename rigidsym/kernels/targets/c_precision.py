@@ -56,6 +56,7 @@ class Precision:
             "turns": found.turns,
             "magic": self.literal(magic),
             "least_word": f"{word - 2**found.turns:#x}u",
+            "pi": self.literal(pi),
             "two_over_pi": self.literal(2 / pi),
             "parts": [float(part).hex() + self.suffix for part in found.parts],
             "first": (sine[0], cosine[0]),
