@@ -292,3 +292,5 @@ def test_a_long_table_goes_on_with_every_row_once():
     assert len(parts) > 2
     short = Table(caption="Rows", head=(("A",), ("B",)), rows=rows[:9])
     assert list(paged(short)) == [short]
+    one_more = Table(caption="Rows", head=(("A",),), rows=((("row",),),) * 41)
+    assert [len(part.rows) for part in paged(one_more)] == [21, 20]  # and not 40 and 1

@@ -13,7 +13,7 @@ import rigidsym as rs
 from rigidsym.mechanics.derivation import Derivation, Markup, Place, Proof, Singularity
 from rigidsym.mechanics.kinematics import derive
 from rigidsym.models.catalogue import EulerAngles
-from rigidsym.models.rotation import Citation, RotationModel
+from rigidsym.models.rotation import LECTURE, Citation, RotationModel
 from rigidsym.models.so3 import elementary, time_function
 from rigidsym.notes.document import Document, Equation, Paragraph, Table
 from rigidsym.notes.entries import entry_names, indexed
@@ -116,6 +116,13 @@ def test_every_result_is_an_equation_of_some_note():
     motion = rs.derive("ZXZ", body=rs.solid("cone", density=sp.Symbol("rho")), theory=True)
     names = {step.quantity.name for step in motion.steps} | {s.name for s in motion.theory}
     assert names >= RESULTS
+
+
+def test_a_source_is_listed_once_and_its_places_stand_beside_it():
+    motion = rs.derive("ZXZ", ["inertia_tensor_space"], body=rs.general_inertia())
+    made = motion.note()
+    assert [s for s in made.document.sources if "Lecture notes" in s] == [LECTURE]
+    assert r"\cite[eq.~9]{" in made.latex()
 
 
 def test_without_a_module_no_functions_are_named():
