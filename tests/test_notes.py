@@ -335,3 +335,64 @@ def test_numbers_and_labels_of_a_document():
     ]
     assert unnumbered
     assert not any(equation.label for equation in unnumbered)
+
+
+# --- prose and symbols follow the model
+
+
+def _said(motion: rs.Motion) -> str:
+    return " ".join(motion.note().markdown().split())
+
+
+def _symbols(motion: rs.Motion) -> dict[str, tuple[str, str]]:
+    """Meaning and unit by symbol, in plain text."""
+    (section,) = (s for s in motion.note().document.sections if s.title == "Symbols")
+    (table,) = section.blocks
+    assert isinstance(table, Table)
+    return {plain(row[0]): (plain(row[1]), plain(row[2])) for row in table.rows}
+
+
+def test_one_turn_is_not_called_a_product():
+    said = _said(rs.derive("z(phi)"))
+    assert "The rotation is one turn" in said
+    assert "The right-handed turn by an angle" in said
+    assert "The angular velocity is the rate times the axis" in said
+    for wrong in ("product of turns", "from left to right", "The coordinates are"):
+        assert wrong not in said
+
+
+def test_what_is_transposed_is_said_to_be():
+    assert "from left to right and transposed" in _said(derived("ZYX", passive=True))
+    assert "The rotation is given and transposed" in _said(
+        rs.derive(rs.rotation_from("rotation_vector", passive=True))
+    )
+    assert "transposed" not in _said(derived("ZYX")).replace("the transposed rotation", "")
+
+
+@pytest.mark.parametrize(
+    ("rotation", "choice"),
+    [
+        ("unit_quaternion", "those that keep to the conditions are taken"),
+        ("quaternion", "the smallest are taken"),
+    ],
+)
+def test_which_of_all_rates_are_taken_depends_on_the_conditions(rotation, choice):
+    assert choice in _said(rs.derive(rotation))
+
+
+def test_the_table_of_symbols_says_what_each_constant_is():
+    known = _symbols(rs.derive("z(phi) [a,b,c](beta) y(alpha0)"))
+    assert known["a, b, c"] == ("components of an axis at rest", "1")
+    assert known["α₀"] == ("constant angle", "rad")
+    a, h = sp.symbols("a h", positive=True)
+    body = _symbols(rs.derive("ZXZ", body=rs.solid("cone", radius=a, height=h)))
+    assert body["X, Y, Z"] == ("space components of the position of the centre of mass", "m")
+    assert body["M, h, a"] == ("constant of the body", "—")
+    assert body["pₓ, p_y, p_z"] == ("a point, in the axes of the body", "m")
+    assert body["(a₁, a₂, a₃)"][1] == "1/√(kg m²)"
+    assert _symbols(rs.derive("unit_quaternion"))["J"][1] == "1"
+
+
+def test_a_point_is_at_rest_in_space_where_the_matrix_takes_to_the_body():
+    assert _symbols(derived("ZYX", passive=True))["x"][0].startswith("position of a point at rest")
+    assert _symbols(derived("ZYX"))["x"][0].startswith("position of a point of the body")

@@ -80,7 +80,9 @@ def _constants(derivation: Derivation) -> Iterator[Row]:
         constants.symbols, constants.notation, constants.units, strict=True
     ):
         if symbol in of_body:
-            named.append((name, of_body[symbol].about or "constant of the body", unit))
+            about = of_body[symbol].about
+            # in Python a symbol may come without a word of what it is
+            named.append((name, about or "constant of the body", unit if about else unit or "—"))
         elif symbol in axes:
             named.append((name, "components of an axis at rest", unit))
         elif symbol in angles:
