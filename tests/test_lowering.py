@@ -1,4 +1,4 @@
-"""Lowering: exact, each sine once, no more operations than SymPy's own pass, no clash of names."""
+"""Lowering: exact, each sine once, no more operations than SymPy's own pass."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rigidsym as rs
-from rigidsym.api import derive
 from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
 from rigidsym.kernels.assign import write
@@ -19,10 +18,8 @@ from rigidsym.kernels.infix import infix
 from rigidsym.kernels.ir import Assignment, Call, Guarded, Name, Negative, Number, Product, Sum
 from rigidsym.kernels.layout import assignment_lines, bracketed
 from rigidsym.kernels.lower import MARGIN, _Reader, lower
-from rigidsym.kernels.naming import Names, identifier
+from rigidsym.kernels.naming import Names
 from rigidsym.kernels.narrow import narrowed
-from rigidsym.models.rotation import RotationModel, lecture
-from rigidsym.models.so3 import elementary, time_function
 
 A, B, C, D = sp.symbols("a b c d")
 INPUTS = {symbol: symbol.name for symbol in (A, B, C, D)}
@@ -388,55 +385,3 @@ def test_what_reaches_a_divisor_is_delicate():
     rounded = Assignment("x1", Sum((Name("x0"), Number(Fraction(1)))))
     summed = replace(kernel, assignments=(kernel.assignments[0], rounded, kernel.assignments[2]))
     assert summed.delicate == {"x1"}  # a sum has a rounding of its own
-
-
-@pytest.mark.parametrize(
-    ("text", "name"),
-    [
-        ("phi", "phi"),
-        ("θ", "θ"),
-        ("ϕ", "φ"),
-        (r"\theta'", "theta"),
-        ("2nd angle", "v2nd_angle"),
-        ("__init__", "init"),
-        ("_", "v"),
-    ],
-)
-def test_names_become_identifiers(text, name):
-    assert identifier(text) == name
-
-
-def test_names_are_given_once():
-    names = Names(["lambda", "x0"])
-    assert [names.fresh(n) for n in ("lambda", "phi", "phi", "lambda")] == [
-        "lambda_",
-        "phi",
-        "phi_",
-        "lambda__",
-    ]
-    assert [names.numbered("x"), names.numbered("x")] == ["x1", "x2"]
-
-
-def turned_by(*names: str) -> rs.Motion:
-    """Turns about z, x and z by angles of any names."""
-    angles = [time_function(name) for name in names]
-    matrix = elementary("z", angles[0]) * elementary("x", angles[1]) * elementary("z", angles[2])
-    return derive(
-        RotationModel(
-            name="clashes",
-            title="Names that clash",
-            convention=(),
-            coordinates=tuple(angles),
-            matrix=sp.ImmutableMatrix(matrix),
-            source=lecture("17"),
-        )
-    )
-
-
-@pytest.mark.parametrize(
-    "names", [("x0", "x1", "x2"), ("phi", "sin_phi", "phi_dot"), ("lambda", "np", "out")]
-)
-def test_names_of_a_person_clash_with_nothing(names):
-    kernels = lower(turned_by(*names), {"lambda", "np"}).kernels
-    for kernel in kernels:  # each Kernel refuses a name that is defined twice
-        assert not {"lambda", "np"} & {*kernel.components, *(a.name for a in kernel.assignments)}

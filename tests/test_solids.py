@@ -17,7 +17,7 @@ from rigidsym.errors import AlgebraError, BodyError
 from rigidsym.mechanics.bodies import body_of, solid
 from rigidsym.mechanics.moments import moments_of
 from rigidsym.models.body import RigidBody
-from rigidsym.models.distribution import Composite, Part, Particle, Particles, Polyhedron, Solid
+from rigidsym.models.distribution import Composite, Part, Particle, Particles, Solid
 from rigidsym.models.solids import SHAPES, shaped
 
 M, a, b, c, h, rho = sp.symbols("M a b c h rho")
@@ -302,41 +302,6 @@ def test_a_turn_keeps_the_principal_moments():
         np.linalg.eigvalsh(numbers(turned.inertia)),
         np.linalg.eigvalsh(numbers(body_of(box).inertia)),
     )
-
-
-CUBE = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
-SQUARE = ((0, 0), (1, 0), (1, 1), (0, 1))
-
-
-def cube(faces=CUBE, side=a) -> Polyhedron:
-    vertices = tuple(column(x * side, y * side, z * side) for z in (0, 1) for x, y in SQUARE)
-    return Polyhedron(vertices=vertices, faces=faces, mass=M)
-
-
-def test_a_cube_by_its_faces_is_a_box():
-    found = body_of(cube())
-    assert found.inertia == body("box").inertia.subs({b: a, c: a}).applyfunc(sp.factor)
-    assert found.centre == column(a / 2, a / 2, a / 2)
-
-
-@pytest.mark.parametrize(
-    ("faces", "fault"),
-    [
-        (CUBE[1:], "the surface is open: the edge 4–0 of face 1 has no other face|is open"),
-        ((CUBE[0][::-1], *CUBE[1:]), "in the same direction; one of them is turned over"),
-        (((0, 1), *CUBE[1:]), "face 0: expected three or more different corners"),
-        (((0, 1, 9), *CUBE[1:]), "face 0: corners are numbered from 0 to 7"),
-    ],
-)
-def test_open_and_torn_surfaces_are_refused(faces, fault):
-    with pytest.raises(BodyError, match=fault):
-        cube(faces)
-
-
-def test_a_surface_inside_out_is_refused_with_its_volume():
-    inverted = cube(tuple(face[::-1] for face in CUBE), side=sp.Integer(2))
-    with pytest.raises(BodyError, match="inside out: its volume is -8 m³"):
-        body_of(inverted)
 
 
 def test_a_solid_of_any_density_by_its_bounds():

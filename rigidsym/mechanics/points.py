@@ -15,6 +15,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.models.so3 import TIME
 
 _DIGITS = 100
+_GUARDED = _DIGITS + 50  # what sums may lose
 _ZERO = sp.Float(10, _DIGITS) ** -(_DIGITS // 2)
 _POINTS = 3
 _STEPS = 60  # of Newton's method, which doubles the digits once it is near
@@ -66,6 +67,13 @@ def _moved_onto(point: Point, constraints: Sequence[sp.Expr]) -> Point | None:
 
 
 def _value(expression: sp.Expr, point: Point) -> sp.Expr:
-    """The value at a point; zero where it has none, which refutes nothing."""
-    value = sp.sympify(expression, strict=True).xreplace(dict(point)).evalf(_DIGITS)
+    """The value at a point; zero where it has none, which refutes nothing.
+
+    Roots of numbers become numbers first, all with as many digits: SymPy would look for the digits
+    of a zero again and again.
+    """
+    exact = sp.sympify(expression, strict=True)
+    roots = {r: r.evalf(_GUARDED) for r in exact.atoms(sp.Pow, sp.NumberSymbol) if r.is_number}
+    at = {unknown: value.evalf(_GUARDED) for unknown, value in point.items()}
+    value = exact.xreplace(roots | at).evalf(_DIGITS)
     return value if value.is_number and value.is_finite else sp.S.Zero
