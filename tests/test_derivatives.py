@@ -295,11 +295,9 @@ def test_an_unknown_quantity_on_the_command_line_is_a_fault_of_usage(tmp_path):
     [
         ("unit_quaternion", "q", True),
         ("unit_quaternion", "q_dot", True),
-        ("cayley_klein", "q", True),
         ("direction_cosines", "q", True),
         ("z(phi) [a,b,c](beta)", "parameters", True),
         ("z(phi) [a,b,c](beta)", "q", False),
-        ("quaternion", "q", False),
         ("ZXZ", "q", False),
     ],
 )

@@ -95,7 +95,7 @@ def test_types_are_those_of_jax():
     assert_allclose(matrix(q), module().rotation_matrix(q), atol=4 * EPS * 2**29)
 
 
-@pytest.mark.parametrize("leading", [(), (0,), (1,), (7,), (2, 0, 3)])
+@pytest.mark.parametrize("leading", [(), (0,), (7,)])
 def test_every_shape_and_stride_is_taken(leading):
     (q,) = inputs("rotation_matrix", leading)
     found = functions().rotation_matrix(q)

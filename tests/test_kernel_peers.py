@@ -31,8 +31,8 @@ def of(target: str) -> ModuleType:
 
 
 @pytest.mark.parametrize("target", ARRAYS)
-@pytest.mark.parametrize("name", ["angular_velocity_body", "rotation_matrix"])
-def test_apply_gufunc_takes_the_signature(name, target):
+def test_apply_gufunc_takes_the_signature(target):
+    name = "rotation_matrix"
     arrays = inputs(name, (60,))
     function = getattr(of(target), name)
     chunked = [da.from_array(array, chunks=(30, 3)) for array in arrays]
