@@ -19,6 +19,7 @@ from rigidsym import __version__
 from rigidsym.errors import RigidsymError
 from rigidsym.options import (
     JSON,
+    MEASURE,
     OUT,
     TEMPLATES,
     in_notation,
@@ -126,6 +127,7 @@ def run(files: tuple[str, ...], out: Path, pdf: bool, as_json: bool) -> None:
 @commands.command()
 @click.argument("asked", nargs=-1, required=True, metavar="ROTATION|FILE...")
 @click.option("--portable", is_flag=True, help="For any processor of this kind; slower.")
+@MEASURE
 @TEMPLATES
 @OUT
 def build(asked: tuple[str, ...], out: Path, *, portable: bool) -> None:

@@ -99,15 +99,22 @@ def test_large_angles_are_right_or_refused(target, size):
 @pytest.mark.parametrize("target", EVERY)
 def test_what_depends_on_nan_or_an_infinite_angle_is_nan(target):
     for name in FEW:
-        step, arrays = few().step(name), inputs(name, 1, 1.0)
-        for vector, array in zip(step.quantity.inputs, arrays, strict=True):
-            for place, symbol in enumerate(few().argument(vector).symbols):
-                depends = [holds(entry, symbol) for entry in step.expression]
-                for bad in (np.nan, np.inf, -np.inf) if vector == "q" else (np.nan,):
-                    before, array[0, place] = array[0, place], bad
-                    (found,) = functions(target)[name](*arrays)
-                    array[0, place] = before
-                    assert np.isnan(found[depends]).all(), (name, symbol, bad)
+        step, vectors = few().step(name), few().step(name).quantity.inputs
+        cases = [
+            (vector, place, bad)
+            for vector in vectors
+            for place in range(3)
+            for bad in ((np.nan, np.inf, -np.inf) if vector == "q" else (np.nan,))
+        ]
+        arrays = [np.repeat(array, len(cases), axis=0) for array in inputs(name, 1, 1.0)]
+        for row, (vector, place, bad) in enumerate(cases):
+            arrays[vectors.index(vector)][row, place] = bad
+        for found, (vector, place, bad) in zip(
+            functions(target)[name](*arrays), cases, strict=True
+        ):
+            symbol = few().argument(vector).symbols[place]
+            depends = [holds(entry, symbol) for entry in step.expression]
+            assert np.isnan(found[depends]).all(), (name, symbol, bad)
 
 
 def holds(entry: sp.Expr, symbol: sp.Expr) -> bool:
@@ -272,6 +279,19 @@ def test_what_cannot_be_measured_with_is_named_and_the_rest_is_written(tmp_path,
     with pytest.raises(MissingTool, match="no program `node`"):
         commands.main([*arguments, "--out", str(tmp_path)], standalone_mode=False)
     assert (tmp_path / "chain_z" / "chain_z.mjs").is_file()
+
+
+@pytest.mark.skipif(bool(TARGETS["c"].missing), reason="no compiler")
+def test_a_compiled_module_states_what_was_measured(tmp_path):
+    arguments = ["build", "z(alpha)", "--measure", "--out", str(tmp_path)]
+    done = CliRunner().invoke(commands, arguments, catch_exceptions=False)
+    module = tmp_path / "chain_z" / "chain_z_c.py"
+    assert done.output.strip().endswith(str(module))
+    assert "1000 points" in module.read_text(encoding="utf-8")
+    assert "1000 points" in module.with_name("chain_z.h").read_text(encoding="utf-8")
+    again = ["build", str(module.with_name("chain_z.c")), "--measure"]
+    with pytest.raises(CheckError, match="--measure needs the rotation"):
+        commands.main(again, standalone_mode=False)
 
 
 def test_python_measures_too():
