@@ -34,10 +34,6 @@ MEGABYTE = 1e6
 GROUPS = ("random in ±π", "multiples of π/2", "tiny", "random in ±1e4")
 
 CONTROL = 1 << 26  # bytes that the controls of threads work on
-CONTROLS = {
-    "hashing": "hashing: the most there is to gain at arithmetic",
-    "copying": "a plain copy: the most there is to gain at moving",
-}
 
 Part = tuple[list[Table], list[Figure]]
 
@@ -100,6 +96,8 @@ def threads(modules: Mapping[str, ModuleType], size: int, repeats: int) -> Part:
     q, q_dot = random.uniform(-3.0, 3.0, (2, size, 3))
     rows: list[tuple[Cell, ...]] = []
     figures = []
+    hashing, copying = _gain(_hashed, repeats), _gain(_copied, repeats)
+    limit = f"times, where a plain copy gains {copying.middle:.2f}"
     for name, module in modules.items():
         if name == "jax":
             continue
@@ -114,11 +112,12 @@ def threads(modules: Mapping[str, ModuleType], size: int, repeats: int) -> Part:
             gain = ratios(times["1"], times["2"])
             rows.append((name, quantity, *gain.in_order()))
             if name in ("numpy", "c"):
-                figures.append(
-                    _least(f"two threads over one, {name}, {quantity}", gain.middle, 1.7, "times")
-                )
-    for name, gain in (("hashing", _gain(_hashed, repeats)), ("copying", _gain(_copied, repeats))):
-        rows.append(("none", CONTROLS[name], *gain.in_order()))
+                title = f"two threads over one, {name}, {quantity}"
+                figures.append(_least(title, gain.middle, 1.7, "times", limit))
+    rows += [
+        ("none", "hashing: the most there is to gain at arithmetic", *hashing.in_order()),
+        ("none", "a plain copy: the most there is to gain at moving", *copying.in_order()),
+    ]
     columns = (Column("target"), Column("quantity"), *spread_columns("gain", 2))
     return [Table(f"Two threads, {size:,} orientations", columns, tuple(rows))], figures
 
@@ -301,8 +300,10 @@ def _most(name: str, found: float, most: float, unit: str) -> Figure:
     return Figure(name, f"at most {most:g} {unit}", f"{_short(found)} {unit}", found <= most)
 
 
-def _least(name: str, found: float, least: float, unit: str) -> Figure:
-    return Figure(name, f"at least {least:g} {unit}", f"{_short(found)} {unit}", found >= least)
+def _least(name: str, found: float, least: float, unit: str, beside: str = "") -> Figure:
+    """`beside`: what else was found that says why it is no more."""
+    said = f"{_short(found)} {beside or unit}"
+    return Figure(name, f"at least {least:g} {unit}", said, found >= least)
 
 
 def _short(value: float) -> str:
