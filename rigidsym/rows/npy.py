@@ -26,5 +26,5 @@ def mapped(path: Path) -> NDArray[Any]:
     try:
         array: NDArray[Any] = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError) as error:
-        raise DataError(f"{path}: not a whole NPY file of numbers ({error})") from None
+        raise DataError(f"{path}: not an NPY file of numbers ({error})") from None
     return array
