@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier, Event
 
 import numpy as np
 import pytest
@@ -314,6 +315,23 @@ def test_what_fails_in_one_thread_ends_the_work_of_all():
     assert len(done) < 999_999
 
 
+def test_no_thread_is_at_work_when_others_have_failed(monkeypatch):
+    pool, failing, done = ThreadPoolExecutor(2), Barrier(3), []
+    monkeypatch.setattr(module(), "_pool", lambda: pool)
+
+    def work(piece):
+        failing.wait(timeout=10)  # each thread has one piece
+        if piece == 2:
+            Event().wait(0.2)
+            done.append(piece)
+        else:
+            raise MemoryError(piece)
+
+    with pytest.raises(MemoryError):
+        module()._share(work, range(3), 3)
+    assert done == [2]
+
+
 def test_threads_of_several_callers_do_not_wait_for_one_another():
     q = inputs("rotation_matrix", (30_000,))[0]
     expected = module().rotation_matrix(q)
@@ -335,6 +353,24 @@ if not child:
     os._exit(0 if (m.rotation_matrix(q, threads=2) == expected).all() else 1)
 assert os.waitpid(child, 0)[1] == 0
 """
+
+
+AT_THE_END = """
+import atexit
+import numpy as np
+import {name} as m
+q = np.ones((30_000, 3))
+expected = m.rotation_matrix(q, threads=2)
+atexit.register(lambda: print((m.rotation_matrix(q, threads=2) == expected).all()))
+"""
+
+
+def test_threads_are_done_without_while_the_interpreter_ends(tmp_path):
+    made = rs.derive("ZXZ", only=["rotation_matrix"]).kernels().write(tmp_path)
+    code = AT_THE_END.format(name=made.stem)
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert (done.stdout, done.stderr) == ("True\n", "")
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork")

@@ -33,6 +33,7 @@ _WORDS = (
 )
 RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
 _WIDTH = 92
+_TILE = 32  # orientations that are evaluated side by side
 _WHOLE = frozenset({1, 2, 3, 4, 8})  # lengths of rows that compilers put together by whole vectors
 
 
@@ -92,6 +93,7 @@ def _source(
     return _template("kernels_c.c.jinja").render(
         title=_safe(program.title),
         name=program.name,
+        tile=_TILE,
         has_angles=bool(orders) or not called.isdisjoint(("sin", "cos")),
         has_choices=any("$pick(" in text for text in texts),
         has_wraps=any("$wrapped(" in text for text in texts),
@@ -155,8 +157,8 @@ def _about(program: Program) -> list[str | Sequence[str]]:
         "Sine and cosine are evaluated here, within 2 eps of their size (eps is 2^-52 in double, "
         "2^-23 in float) at any finite angle.",
         *accurate.remarks(program.kernels, program.measured_with),
-        "No function allocates, recurses, keeps a state or sets errno; an array function takes "
-        "room for 64 orientations on the stack.",
+        "No function allocates, recurses or keeps a state; an array function takes room for "
+        f"{_TILE} orientations on the stack.",
     ]
 
 
