@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from rigidsym.errors import CheckError
-from rigidsym.folder import with_what_is_there
+from rigidsym.folder import say_what_was_there, with_what_is_there
 from rigidsym.kernels.targets.c_build import build
 from rigidsym.options import as_chosen, measures
 from rigidsym.pipeline import PAGE, page_name, product
@@ -48,6 +48,7 @@ def paged(asked: str, out: Path) -> Iterator[Path]:
 def _written(spec: DerivationSpec, out: Path) -> Path:
     """The folder of a rotation, once its files are written."""
     made = product(with_what_is_there(spec, out))
+    say_what_was_there(made, out)
     for name, text in made.files.items():
         write_text(out / made.name / name, text)
     return out / made.name

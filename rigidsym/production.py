@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 from rigidsym.errors import RigidsymError, SpecError
-from rigidsym.folder import with_what_is_there
+from rigidsym.folder import say_what_was_there, with_what_is_there
 from rigidsym.notes.terminal import show
 from rigidsym.options import as_chosen, measures
 from rigidsym.pipeline import PDF, Product, product
@@ -105,6 +105,7 @@ def _with_progress(singles: list[DerivationSpec]) -> Iterator[Product]:
 def _write(made: Product, out: Path) -> tuple[list[Path], RigidsymError | None]:
     """Write the files of one product; a missing TeX is reported after all else is written."""
     folder = out / made.name
+    say_what_was_there(made, out)
     written = [write_text(folder / name, text) for name, text in made.files.items()]
     if not made.wants_pdf:
         return written, None

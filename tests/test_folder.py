@@ -68,3 +68,14 @@ def test_files_of_another_derivation_are_named(tmp_path):
 def test_the_ending_of_a_target_is_that_of_its_file(target):
     motion = rs.derive("ZXZ", only=("angular_velocity_body",))
     assert motion.name + TARGETS[target].ending in motion.kernels(target).files
+
+
+def test_what_is_refused_writes_over_nothing_and_does_not_say_so(tmp_path):
+    out = "--out", str(tmp_path)
+    _run("derive", "ZXZ", *out)
+    before = (tmp_path / NAME / f"{NAME}.json").read_bytes()
+    wrong = "--derivative", "angular_velocity_body:z"
+    done = CliRunner().invoke(commands, ["derive", "ZXZ", "--angles", "a,b,c", *wrong, *out])
+    assert isinstance(done.exception, rs.RigidsymError), done.output
+    assert "written over" not in done.stderr
+    assert (tmp_path / NAME / f"{NAME}.json").read_bytes() == before
