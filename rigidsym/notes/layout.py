@@ -30,7 +30,8 @@ _QUAD = ems(r"\quad")
 _MOST_INDENTS = 5
 _ROW = r" \\[2pt]" + "\n"  # dots above the letters want some air
 _HIGH_ROW = r" \\[7pt]" + "\n"  # so do fractions
-_HIGHEST_ROW = r" \\[11pt]" + "\n"  # and roots below them
+_BELOW_FRACTIONS = r" \\[10pt]" + "\n"  # in a matrix, where a row's depth is part of this
+_BELOW_ROOTS = r" \\[13pt]" + "\n"  # roots in fractions are deeper
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,16 +125,16 @@ def _matrix(rows: Rows) -> str:
     first, *others = (" & ".join(map(_tall, row)) for row in rows)
     text, above = first, first
     for line in others:
-        text += _between(above + line) + line
+        text += _between(above, line) + line
         above = line
     return _environment("pmatrix", text)
 
 
-def _between(rows: str) -> str:
+def _between(above: str, below: str) -> str:
     """The end of the upper of two rows: what is high wants air."""
-    if r"\frac" not in rows:
-        return _ROW
-    return _HIGHEST_ROW if r"\sqrt" in rows else _HIGH_ROW
+    if r"\frac" in above:
+        return _BELOW_ROOTS if r"\sqrt" in above + below else _BELOW_FRACTIONS
+    return _HIGH_ROW if r"\frac" in below else _ROW
 
 
 def _tall(entry: str) -> str:
