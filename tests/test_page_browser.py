@@ -168,6 +168,25 @@ def test_bound_coordinates_stay_a_rotation(tab, rotation, tmp_path):
         assert abs(np.linalg.det(matrix) - 1) < 1e-12
 
 
+CUT_OFF = """
+[...document.querySelectorAll("input[type=number]")].filter((field) => {
+  const style = getComputedStyle(field), pen = document.createElement("canvas").getContext("2d");
+  pen.font = style.font;
+  const room = field.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+  return pen.measureText(field.value).width > room;
+}).map((field) => field.value)
+"""
+
+
+def test_numbers_are_not_cut_off_on_a_phone(tab, tmp_path):
+    text = page_of("unit_quaternion")
+    opened(tab, text, tmp_path, 360)
+    assert tab.run("document.querySelectorAll('input[type=number]').length") > 7
+    assert tab.run(CUT_OFF) == []
+    # Arrows would cover the digits, and no script can see how much room they take.
+    assert "::-webkit-inner-spin-button { display: none; }" in text
+
+
 def test_a_slider_that_is_moved_keeps_its_value_where_others_can_give_way(tab, tmp_path):
     opened(tab, page_of("unit_quaternion"), tmp_path)
     tab.run(f"({SET_ALL})({json.dumps({'q-1': 0.5})})")
