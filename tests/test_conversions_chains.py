@@ -17,6 +17,7 @@ from rigidsym.rotations import rotation_from
 
 EPS = np.finfo(np.float64).eps
 NUMBERS = {"a": 1 / 3, "b": 2 / 3, "c": 2 / 3, "alpha0": 0.7, "beta0": -0.4}
+NUMBERS |= {"w": 0.48, "x": 0.64, "turn_1": 0.6}  # an axis whose parts are called like lines
 LEAN = {"b": 0.6, "c": 0.8}
 
 
@@ -40,6 +41,7 @@ CASES = (
     Case("z(phi) x(pi/4) z(psi)"),
     Case("x(alpha0) z(phi + beta0) x(pi/3) [1,2,2](w)"),
     Case("z(near) [a,b,c](w)"),  # names that the lines use themselves
+    Case("z(phi) [w,x,turn_1](theta) z(psi)"),
     Case("z(phi + psi) x(theta)", kept=1),
     Case("z(phi) z(psi) x(theta)", kept=1),
     Case("z(phi) x(theta) z(phi)"),

@@ -24,7 +24,7 @@ CHAIN = "z(phi) x(alpha) [0,3,4](beta)"
 CONSTANTS = "z(gamma) x(phi) y(alpha0) z(beta)"
 TEXTS = (
     *("ZXZ", *PARAMETRISATIONS, CHAIN, CONSTANTS, "z(phi) x(b) [0,-1,0](c)"),
-    *("z(a) x(b) z(c) y(d)", "davenport"),
+    *("z(a) x(b) z(c) y(d)", "davenport", "z(phi) [sets,k,rows](theta) z(psi)"),
 )
 C = (
     *("ZXZ", "axis_angle", "rotation_vector", "modified_rodrigues", "direction_cosines"),

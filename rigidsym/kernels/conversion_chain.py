@@ -9,7 +9,7 @@ import sympy as sp
 
 from rigidsym.kernels.formulas import QUATERNION, Line
 from rigidsym.kernels.naming import Names
-from rigidsym.kernels.writing_lines import LineWriter, number
+from rigidsym.kernels.writing_lines import LineWriter, Local, number
 from rigidsym.mechanics.conversion_chain import ChainTurns
 from rigidsym.mechanics.davenport import quaternion_product
 from rigidsym.models.rotation import RotationModel, Turn
@@ -81,7 +81,7 @@ def chain_lines(
 
 def _freed(writer: LineWriter, rule: ChainTurns) -> Vector:
     """The quaternion without the known turns."""
-    parts: Vector = sp.symbols(QUATERNION)
+    parts: Vector = tuple(map(Local, QUATERNION))
     for turn in rule.before:
         parts = writer.let(QUATERNION, quaternion_product(_backward(writer, turn), parts))
     for turn in reversed(rule.right):
@@ -206,7 +206,7 @@ def _outer(writer: LineWriter, axes: Sequence[Vector], plus: Vector, minus: Vect
     whichever is longer, so that nothing is lost where both p± and m± are short.
     """
     first, middle, last = axes
-    cosine, sine = sp.symbols("cosine sine")
+    cosine, sine = Local("cosine"), Local("sine")
     cross = sp.Matrix(first).cross(sp.Matrix(middle))
     before, after, opposite = _dot(first, middle), _dot(middle, last), _dot(first, last)
     volume = _dot(cross, last)
@@ -260,7 +260,7 @@ def _coordinates(
     else:
         names = [f"turn_{k + 1}" for k in range(len(angles))]
         writer.lines += zip(names, angles, strict=True)
-        turns = sp.Matrix(sp.symbols(names)) - sp.Matrix(rule.offsets)
+        turns = sp.Matrix([*map(Local, names)]) - sp.Matrix(rule.offsets)
         found = [writer.text(entry) for entry in rule.inverse * turns]
     placed = dict(zip(rule.places, found, strict=True)) | dict(
         zip(rule.kept, inputs.kept, strict=True)

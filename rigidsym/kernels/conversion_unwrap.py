@@ -10,17 +10,18 @@ import sympy as sp
 
 from rigidsym.kernels.formulas import Line
 from rigidsym.kernels.naming import Names
-from rigidsym.kernels.writing_lines import LineWriter, number
+from rigidsym.kernels.writing_lines import LineWriter, Local, number
 from rigidsym.mechanics.conversion_chain import ChainTurns
 from rigidsym.mechanics.conversion_forms import ClosedForm
 from rigidsym.mechanics.conversion_turns import ThreeTurns
 from rigidsym.models.rotation import RotationModel
 
 _SHAPE = ("base", "apart", "together", "before", "after", "opposite", "volume")
-_LOCAL = (
+_LOCAL = (  # of `unwrap` in every target
     *_SHAPE,
     *("samples", "lost", "angles", "columns", "q", "parameters", "first", "middle", "third"),
-    *(f"turn_{k}" for k in (1, 2, 3)),
+    *("sample", "sets", "set", "clear", "nearest", "rows", "row", "k"),
+    *(f"turn_{k}{after}" for k in (1, 2, 3) for after in ("", "_all")),
 )
 
 
@@ -108,7 +109,7 @@ def _of_chain(model: RotationModel, rule: ChainTurns, reserved: Iterable[str]) -
     written = tuple(writer.text(turn.angle) for turn in angles)
     if is_triangle:
         _relations(writer, rule)
-    turns = sp.symbols([f"turn_{k + 1}" for k in range(len(angles))])
+    turns = [Local(f"turn_{k + 1}") for k in range(len(angles))]
     kept = sp.Matrix(turns[: len(rule.places)]) - sp.Matrix(rule.offsets)
     placed = tuple(
         (place, writer.text(value))

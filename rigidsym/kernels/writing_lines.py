@@ -20,6 +20,10 @@ def number(exact: sp.Expr) -> float:
     return 0.0 if abs(value) < sp.Float(10) ** (-_DIGITS // 2) else float(value)
 
 
+class Local(sp.Symbol):
+    """The name of a line; no symbol of a model equals it, though it be called the same."""
+
+
 class LineWriter:
     """Collects lines; what is neither a number nor a name inside a product gets a line of its own.
 
@@ -45,7 +49,7 @@ class LineWriter:
             self.lines += zip(held, texts, strict=True)
             texts = held
         self.lines += zip(names, texts, strict=True)
-        return tuple(map(sp.Symbol, names))
+        return tuple(map(Local, names))
 
     def shared(self, values: Iterable[sp.Expr]) -> Vector:
         """The values as numbers, inputs, or names of lines that hold them."""
@@ -86,7 +90,7 @@ class LineWriter:
             value = self._called(expression)
             name = self.fresh("v")
             self.lines.append((name, value))
-            self._known[expression] = sp.Symbol(name)
+            self._known[expression] = Local(name)
         return self._known[expression]
 
     def _called(self, expression: sp.Expr) -> str:
