@@ -101,3 +101,11 @@ def test_a_prompt_shows_one_line():
     doubtful = replace(first, proofs=(replace(first.proofs[0], status="unproved"),))
     part = replace(motion, steps=(doubtful, *motion.steps[1:]))
     assert repr(part) == f"<Motion euler_zxz_intrinsic, 1 unproved: {names}>"
+
+
+def test_a_note_has_no_section_on_rates_that_are_not_in_it():
+    title = "The rates of the coordinates"
+    assert title in derive("ZXZ").note().markdown()
+    chosen = derive("ZXZ", only=["rotation_matrix", "angular_velocity_body"]).note().markdown()
+    assert title not in chosen
+    assert "rate matrices" not in chosen

@@ -205,6 +205,10 @@ class Composer:
         yield from self._steps(_ANGULAR_VELOCITY)
 
     def _rates(self) -> Iterator[Block]:
+        steps = list(self._steps(_RATES))
+        found = self.derivation.singularities
+        if not steps and found is None:
+            return
         yield Paragraph(
             words(
                 "The rate matrices are defined by {} and {}, so that {}.",
@@ -213,8 +217,7 @@ class Composer:
                 equal(SPACE.matrix, product([ROTATION, BODY.matrix])),
             )
         )
-        yield from self._steps(_RATES)
-        found = self.derivation.singularities
+        yield from steps
         if found is not None and found.rank < 3:
             yield Paragraph(("The rate matrices have no inverse; the rates are not solved for.",))
 
