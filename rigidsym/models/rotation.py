@@ -136,7 +136,9 @@ class RotationModel:
         if self.matrix.shape != (3, 3):
             raise ModelError(f"{self.name}: a rotation matrix is 3x3, got {self.matrix.shape}")
         if not self.coordinates:
-            raise ModelError(f"{self.name}: a model needs at least one coordinate")
+            raise ModelError(
+                f"{self.name}: a model needs at least one coordinate, a function of time as phi(t)"
+            )
         self._check_coordinates()
         self._check_constants()
         self._check_turns()
