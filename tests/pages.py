@@ -8,14 +8,12 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-from test_html import ODD
+from test_html import odd_model
 
 import rigidsym as rs
 from rigidsym import resources
 from rigidsym.api import derive
 from rigidsym.models.library import PARAMETRISATIONS
-from rigidsym.models.rotation import Citation
-from rigidsym.models.so3 import elementary, time_function
 from rigidsym.page.functions import SHOWN
 from rigidsym.spec import DerivationSpec, read_file
 
@@ -49,16 +47,7 @@ def shipped() -> dict[str, DerivationSpec]:
 
 def odd_page() -> str:
     """The page of a rotation whose words hold markup."""
-    a, b = time_function("a"), time_function("b")
-    model = rs.RotationModel(
-        name="odd",
-        title=ODD,
-        convention=(ODD,),
-        coordinates=(a, b),
-        matrix=elementary("z", a) * elementary("x", b),
-        source=Citation(text=ODD, equation=ODD),
-    )
-    return derive(model).page()
+    return derive(odd_model()).page()
 
 
 def carried(page: str) -> dict[str, Any]:

@@ -42,9 +42,10 @@ def html(motion: rs.Motion) -> str:
     return note(motion, module=f"{motion.name}.py").html()
 
 
-def odd_note() -> str:
+def odd_model() -> rs.RotationModel:
+    """A rotation whose words hold markup."""
     a, b = time_function("a"), time_function("b")
-    model = rs.RotationModel(
+    return rs.RotationModel(
         name="odd",
         title=ODD,
         convention=(ODD,),
@@ -52,7 +53,10 @@ def odd_note() -> str:
         matrix=elementary("z", a) * elementary("x", b),
         source=Citation(text=ODD, equation=ODD),
     )
-    return html(derive(model))
+
+
+def odd_note() -> str:
+    return html(derive(odd_model()))
 
 
 def printed_page(single: DerivationSpec) -> str:
