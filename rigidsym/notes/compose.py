@@ -63,7 +63,7 @@ _RATES = tuple(
     for frame in ("space", "body")
     for name in ("rate_matrix", "inverse_rate_matrix", "rates_from_angular_velocity")
 )
-_ACCELERATION = ("angular_acceleration_space", "angular_acceleration_body")
+ACCELERATION = ("angular_acceleration_space", "angular_acceleration_body")
 
 
 def compose(
@@ -117,7 +117,7 @@ class Composer:
             "The angular velocity": self._angular_velocity(),
             "The rates of the coordinates": self._rates(),
             "Where the rates fail": self._singularities(),
-            "The angular acceleration": self._steps(_ACCELERATION),
+            "The angular acceleration": self._steps(ACCELERATION),
             "The body": self._body(),
             "The kinetic energy": self._steps(ENERGIES),
             "The angular momentum": self._steps(MOMENTA),

@@ -8,9 +8,8 @@ from itertools import groupby
 
 from rigidsym.mechanics.derivation import Derivation, Markup, Statement, Step
 from rigidsym.mechanics.energy_quantities import ENERGIES, MOMENTA
-from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.notes.claims_table import claims_in_a_table
-from rigidsym.notes.compose import Composer
+from rigidsym.notes.compose import ACCELERATION, Composer
 from rigidsym.notes.document import (
     Block,
     Cited,
@@ -20,6 +19,7 @@ from rigidsym.notes.document import (
     Section,
     Text,
 )
+from rigidsym.notes.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 from rigidsym.notes.manner import DEFAULT, Manner
 from rigidsym.notes.results import RESULTS
 from rigidsym.notes.rewriting import in_manner
@@ -75,14 +75,23 @@ class _Lecture(Composer):
             yield Section(title, tuple(blocks))
         parts = {
             self.model.title: self._of_the_rotation(),
-            "The body": self._steps(tuple(INERTIA_QUANTITIES)),
+            "The rates of the coordinates": self._rates(),
+            "Where the rates fail": self._singularities(),
+            "The angular acceleration": self._steps(ACCELERATION),
+            "The body": self._body(),
             "The kinetic energy of the body": self._steps(ENERGIES),
             "The angular momentum of the body": self._steps(MOMENTA),
             "What was proved": self._proofs(),
+            "Symbols": self._symbols(),
             "Functions": self._functions(),
         }
         filled = ((title, tuple(blocks)) for title, blocks in parts.items())
-        yield from (Section(title, blocks) for title, blocks in filled if blocks)
+        sections = [Section(title, blocks) for title, blocks in filled if blocks]
+        yield from sections
+        yield summary_of_the_lecture(self.derivation, sections, self.notation)
+
+    def _symbols(self) -> Iterator[Block]:
+        yield symbols_of_the_lecture(self.derivation, self.notation, _WHERE_SHOWN)
 
     def _method(self) -> Iterator[Block]:
         masses = Markup(r"\sum_i m_i = M", "Σ mᵢ = M")

@@ -23,7 +23,7 @@ from rigidsym.notes.words import convention, listed
 
 TITLE = "Summary"
 _SENTENCES = 2  # what the coordinates are, and which way the rotation goes
-_SHEET = 40.0  # lines of a page that displays may take, beside their headings
+SHEET = 40.0  # lines of a page that displays may take, beside their headings
 
 _GROUPS: Sequence[tuple[str, tuple[str, ...]]] = (
     ("The rotation", ("rotation_matrix",)),
@@ -40,9 +40,11 @@ _GROUPS: Sequence[tuple[str, tuple[str, ...]]] = (
 )
 
 
-def summary(derivation: Derivation, sections: Sequence[Section], notation: Notation) -> Section:
+def summary(
+    derivation: Derivation, sections: Sequence[Section], notation: Notation, room: float = SHEET
+) -> Section:
     """A section that fits on one sheet: results that are short enough, others by their numbers."""
-    blocks = tuple(_blocks(derivation, _numbered(sections), notation))
+    blocks = tuple(_blocks(derivation, _numbered(sections), notation, room))
     return Section(TITLE, blocks, on_own_page=True)
 
 
@@ -52,17 +54,16 @@ def _numbered(sections: Sequence[Section]) -> Mapping[str, Equation]:
 
 
 def _blocks(
-    derivation: Derivation, equations: Mapping[str, Equation], notation: Notation
+    derivation: Derivation, equations: Mapping[str, Equation], notation: Notation, room: float
 ) -> Iterator[Block]:
     yield from (Paragraph(text) for text in convention(derivation, notation.manner)[:_SENTENCES])
-    room = _SHEET
     for title, labels in _GROUPS:
         there = [equations[label] for label in labels if label in equations]
         if not there:
             continue
         results = {e: _result(e) for e in there if _is_whole(e, derivation)}
         short = {e: result for e, result in results.items() if _fits(result, notation)}
-        needed = _height(list(short.values()), notation)
+        needed = row_height(list(short.values()), notation)
         if short and needed <= room:
             room -= needed
             others = [equation for equation in there if equation not in short]
@@ -74,7 +75,7 @@ def _blocks(
     yield from _where_it_fails(derivation, notation)
 
 
-def _height(equations: Sequence[Equation], notation: Notation) -> float:
+def row_height(equations: Sequence[Equation], notation: Notation) -> float:
     """Of a row of equations, which may share a line."""
     heights = [height(equation, notation) for equation in equations]
     widths = [display(equation, notation, PAGE).width for equation in equations]
