@@ -22,6 +22,7 @@ from rigidsym.options import (
     MEASURE,
     OUT,
     TEMPLATES,
+    OnceCommand,
     in_notation,
     names_of,
     of_production,
@@ -56,6 +57,8 @@ def main() -> None:
 
 class _Commands(click.Group):
     """Commands whose reader (`| head`) may have had enough: nothing is wrong then."""
+
+    command_class = OnceCommand
 
     def invoke(self, context: click.Context) -> Any:
         try:

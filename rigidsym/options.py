@@ -12,6 +12,19 @@ import click
 if TYPE_CHECKING:
     from rigidsym.spec import DerivationSpec
 
+
+class OnceCommand(click.Command):
+    """A command that refuses an option given twice of which only the last would count."""
+
+    def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
+        _, _, given = self.make_parser(context).parse_args(list(args))
+        for parameter in given:
+            is_many = getattr(parameter, "multiple", False) or getattr(parameter, "is_flag", False)
+            if not is_many and given.count(parameter) > 1:
+                raise click.UsageError(f"{parameter.opts[0]} is given twice", context)
+        return super().parse_args(context, args)
+
+
 OUT = click.option(
     "--out",
     type=click.Path(file_okay=False, path_type=Path),
@@ -108,11 +121,11 @@ WITH_DERIVATIVES = click.option(
 )
 
 
-def _keep_targets(context: click.Context, _: click.Parameter, targets: str | None) -> None:
-    if targets is not None:
+def _keep_targets(context: click.Context, _: click.Parameter, targets: tuple[str, ...]) -> None:
+    if targets:
         from rigidsym.kernels.targets import check_target
 
-        context.meta[_TARGETS] = chosen = names_of(targets)
+        context.meta[_TARGETS] = chosen = names_of(",".join(targets))
         for target in chosen:
             check_target(target)
 
@@ -120,6 +133,7 @@ def _keep_targets(context: click.Context, _: click.Parameter, targets: str | Non
 _TARGETS = f"{__name__}.targets"
 FOR_TARGETS = click.option(
     "--target",
+    multiple=True,
     metavar="A,B",
     expose_value=False,
     callback=_keep_targets,

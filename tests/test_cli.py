@@ -280,3 +280,15 @@ def test_a_target_is_chosen_by_name(tmp_path):
     wrong = call("derive", "ZXZ", "--target", "numpy,fortran", cwd=tmp_path, status=2)
     assert wrong.stderr.startswith("rigidsym: no target 'fortran'; there is numpy")
     assert [path.name for path in tmp_path.iterdir()] == [NAME]
+
+
+def test_targets_given_one_by_one_are_all_written(tmp_path):
+    call("derive", "ZXZ", "--target", "numpy", "--target", "javascript", "--out", ".", cwd=tmp_path)
+    kernels = {path.suffix for path in (tmp_path / "euler_zxz_intrinsic").iterdir()}
+    assert {".py", ".mjs"} <= kernels
+
+
+def test_an_option_whose_last_value_alone_would_count_is_refused(tmp_path):
+    twice = call("derive", "ZXZ", "--out", "one", "--out", "two", cwd=tmp_path, status=2)
+    assert "--out is given twice" in twice.stderr
+    assert not list(tmp_path.iterdir())
