@@ -136,6 +136,10 @@ console.log(JSON.stringify([
   said(() => velocity(q, q.slice(0, 6))),
   said(() => kernels.unwrap(q.slice(0, 4))),
   kernels.unwrap(new Float64Array(0)).length,
+  said(() => kernels.quaternion(["1", "2", "3"])),
+  said(() => kernels.quaternion("123")),
+  said(() => kernels.from_rotation_matrix([[1, 0, 0], [0, 1, 0], [0, 0, null]])),
+  said(() => turned([0, 0, 0, 0, undefined, 0])),
 ]));
 """
 
@@ -155,6 +159,10 @@ def test_many_orientations_are_flat_arrays(tmp_path: Path):
         "RangeError: q_dot: expected 1000 rows or one, got 2",
         "RangeError: q: expected rows of 3 numbers, got 4 numbers",
         0,
+        "TypeError: q: expected numbers, got string at 0",  # + would join them
+        "TypeError: q: expected numbers, got string at 0",
+        "TypeError: matrix: expected numbers, got object at 8",
+        "TypeError: q: expected numbers, got undefined at 4",
     ]
 
 

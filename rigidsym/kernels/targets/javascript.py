@@ -47,7 +47,7 @@ _WORDS = (
     "enum eval export extends false finally for function if implements import in instanceof "
     "interface let new null package private protected public return static super switch this "
     "throw true try typeof undefined var void while with yield Infinity Math NaN RangeError "
-    "Float64Array Array atan2 hypot out at "
+    "TypeError ArrayBuffer Float64Array Array atan2 hypot out at "
 )
 RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS, "tan"})
 
