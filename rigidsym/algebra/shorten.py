@@ -27,7 +27,8 @@ def shortest(ring: Ring, element: PolyElement) -> PolyElement:
         fresh = [other for other in _neighbours(ring, current) if other not in seen]
         if not fresh:
             break
-        candidate = min(fresh, key=_length)
+        fewest = min(map(len, fresh))  # degrees are added up of these alone
+        candidate = min((other for other in fresh if len(other) == fewest), key=_length)
         if _length(candidate) > _length(current):
             break
         seen.add(candidate)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import IntEnum
+from functools import lru_cache
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -99,6 +100,7 @@ def _angle_key(angle: sp.Expr, notation: Notation) -> Key:
     return (held, angle.sort_key())
 
 
+@lru_cache(maxsize=1 << 15)  # a sum asks for the keys of what its own terms hold, at every depth
 def _term_key(term: sp.Expr, notation: Notation) -> Key:
     factors = [factor for factor in sp.Mul.make_args(term) if not factor.is_Number]
     has_bracket = any(_is_sum(factor) for factor in factors)
