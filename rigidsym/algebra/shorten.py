@@ -7,7 +7,7 @@ relation, never to a longer one.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from operator import sub
 
 from sympy.polys.rings import PolyElement
@@ -24,18 +24,24 @@ def shortest(ring: Ring, element: PolyElement) -> PolyElement:
     best = current = element
     seen = {current}
     for _ in range(_MOST_STEPS):
-        fresh = [other for other in _neighbours(ring, current) if other not in seen]
-        if not fresh:
-            break
-        fewest = min(map(len, fresh))  # degrees are added up of these alone
-        candidate = min((other for other in fresh if len(other) == fewest), key=_length)
-        if _length(candidate) > _length(current):
+        candidate = _shortest_outside(seen, list(_neighbours(ring, current)))
+        if candidate is None or _length(candidate) > _length(current):
             break
         seen.add(candidate)
         current = candidate
         if _length(current) < _length(best):
             best = current
     return best
+
+
+def _shortest_outside(seen: set[PolyElement], found: Sequence[PolyElement]) -> PolyElement | None:
+    """The first of the shortest that are not in the set; only these are looked up and added up."""
+    for count in sorted(set(map(len, found))):
+        short = sorted((element for element in found if len(element) == count), key=_length)
+        fresh = next((element for element in short if element not in seen), None)
+        if fresh is not None:
+            return fresh
+    return None
 
 
 def _length(element: PolyElement) -> tuple[int, int]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping
 from fractions import Fraction
+from functools import cache
 from itertools import combinations
 from typing import TypeVar
 
@@ -103,10 +104,11 @@ class Graph:
     def share(self, roots: Iterable[int]) -> None:
         """Give a node of its own to what several products or several sums have in common."""
         roots = list(roots)
-        while pair := _most_common(_factor_pairs(f) for f in self._used(self.products, roots)):
+        of_factors, of_terms = cache(_factor_pairs), cache(_term_pairs)  # a round alters few nodes
+        while pair := _most_common(map(of_factors, self._used(self.products, roots))):
             self._take_factors(roots, *pair)
         self._take_reciprocals(roots)
-        while found := _most_common(_term_pairs(t) for t in self._used(self.sums, roots)):
+        while found := _most_common(map(of_terms, self._used(self.sums, roots))):
             self._take_terms(roots, *found)
 
     def _used(self, table: Mapping[int, Pair], roots: list[int]) -> list[Pair]:

@@ -6,9 +6,10 @@ break in: the inside of a fraction or a root that is wider than the page.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import chain, islice
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -72,11 +73,10 @@ class Namer:
         """The parts that are long and come up again; all others are written out."""
         written: dict[sp.Symbol, sp.Expr] = {}
         parts: list[Part] = []
-        later = [value for _, value in found] + list(entries)
-        for place, (symbol, value) in enumerate(found):
+        times = _counted([*(value for _, value in found), *entries])
+        for symbol, value in found:
             whole = value.xreplace(written)
-            times = sum(_count(symbol, expression) for expression in later[place + 1 :])
-            if self._is_worth_it(whole, times):
+            if self._is_worth_it(whole, times[symbol]):
                 name = self._name_of(whole)
                 written[symbol] = name
                 parts.append((name, whole))
@@ -139,11 +139,10 @@ def _label(symbol: sp.Expr) -> str:
     return base.func.__name__ if isinstance(base, AppliedUndef) else str(base)
 
 
-def _count(symbol: sp.Symbol, expression: sp.Expr) -> int:
-    """How often a symbol is written in an expression."""
-    if expression == symbol:
-        return 1
-    return sum(_count(symbol, argument) for argument in expression.args)
+def _counted(expressions: Iterable[sp.Expr]) -> Counter[sp.Expr]:
+    """How often each symbol is written in them together."""
+    nodes = chain.from_iterable(map(sp.preorder_traversal, expressions))
+    return Counter(node for node in nodes if node.is_Symbol)
 
 
 def _unbreakable(expression: sp.Expr) -> Iterator[sp.Expr]:
