@@ -293,6 +293,12 @@ def test_a_line_inside_a_bracket_knows_how_deep_it_is():
     assert [line.depth for line in break_lines(LONG, 30, columns, 2)] == [0, 1, 0, 0]
 
 
+def test_a_divisor_is_broken_where_nothing_else_can_be():
+    quotient = "4(a + b)/(1 + n²)²"
+    assert [line.text for line in break_lines(quotient, 16, len, 0)] == ["4(a", "+ b)/(1 + n²)²"]
+    assert [line.text for line in break_lines("4a/(1 + n²)²", 8, len, 0)] == ["4a/(1", "+ n²)²"]
+
+
 def test_braces_are_never_broken():
     quotient = r"\frac{a + b}{c} + \left(d + e\right)"
     lines = break_lines(quotient, 1, len, 0)

@@ -12,7 +12,7 @@ from test_typeset import _bound_together, tex  # noqa: F401
 import rigidsym as rs
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.so3 import hat
-from rigidsym.notes.document import Document, Equation
+from rigidsym.notes.document import Document, Equation, EquationRow
 from rigidsym.notes.formula import text
 from rigidsym.notes.latex import print_latex
 from rigidsym.notes.layout import PAGE, display
@@ -269,3 +269,19 @@ def test_the_rotation_vector_is_written_as_rodrigues_did():
         r"\mathbf{R} = \mathbf{1} + \frac{\sin n}{n}\,\mathbf{C}(\mathbf{v}) + "
         r"\frac{1 - \cos n}{n^{2}}\,\mathbf{C}(\mathbf{v})^{2}"
     ) in latex
+
+
+@pytest.mark.parametrize("rotation", VECTORS[:3])
+def test_a_summary_says_by_vectors_what_they_can_say(rotation):
+    motion = rs.derive(rotation)
+    sheet = motion.note().document.sections[-1]
+    rows = [block.equations for block in sheet.blocks if isinstance(block, EquationRow)]
+    shown = {str(e.sides[0]): e for row in rows for e in row}
+    found = [
+        step for step in motion.steps if step.vector_form and str(step.quantity.symbol) in shown
+    ]
+    assert found
+    for step in found:
+        equation = shown[str(step.quantity.symbol)]
+        assert equation.matrix is None
+        assert len(equation.sides) == 2

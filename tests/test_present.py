@@ -87,6 +87,28 @@ def test_squares_of_a_unit_quaternion_fold(expression, expected):
     assert shown(expression, codec_for([w, x, y, z], constraints=[UNIT])) == expected
 
 
+ONE_OVER = 1 / (1 + x**2 + y**2 + z**2)
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        (  # an entry of the rate matrix of modified Rodrigues parameters
+            4 * ONE_OVER * (2 * (1 + z**2) * ONE_OVER - 1),
+            sp.Mul(4, 1 + z**2 - x**2 - y**2, ONE_OVER**2),
+        ),
+        (  # an entry of R, which is shorter as it is
+            1 - 8 * (x**2 + y**2) * ONE_OVER**2,
+            1 - sp.Mul(8, x**2 + y**2, ONE_OVER**2),
+        ),
+    ],
+    ids=["nested", "plain"],
+)
+def test_no_fraction_stands_within_a_fraction_that_is_shorter_without(expression, expected):
+    codec = codec_for([x, y, z, ONE_OVER])
+    assert presenter_for(codec).element(codec.encode(expression)) == expected
+
+
 def test_numbers_with_roots():
     for expression, expected in (
         (sqrt(2) * sqrt(3) * sin(a), sqrt(6) * sin(a)),

@@ -7,10 +7,11 @@ difference from the value must reduce to zero.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, reduce
 from math import gcd, lcm
+from operator import add
 from typing import Any
 
 import sympy as sp
@@ -24,6 +25,8 @@ from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.ring import Monomial
 from rigidsym.algebra.shorten import shortest
 from rigidsym.errors import AlgebraError
+
+_MORE_TERMS = 2  # that a sum over one denominator may have; with more it is hardly ever shorter
 
 
 @lru_cache(maxsize=32)
@@ -42,6 +45,11 @@ class Presenter:
         self._sums = rules(codec.angle_pairs, generators)
         self._expressions = _Expressions(generators, self._sums)
         self._weights = _Weights(self._expressions)
+        self._sums_below = {
+            place: codec.encode(1 / expression)
+            for place, expression in enumerate(generators)
+            if expression.is_Pow and expression.exp == -1 and self._is_plain_sum(expression.base)
+        }
         self._matrices: dict[tuple[tuple[Row, ...], PolyElement], sp.ImmutableMatrix] = {}
         self._products: dict[tuple[Monomial, tuple[Product, ...]], sp.Expr] = {}
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
@@ -88,9 +96,35 @@ class Presenter:
             number = sp.Rational(*(over / under).as_integer_ratio())
             return sp.Mul(number, self._terms(above, over), 1 / self._terms(below, under))
         if below == self.ring.one:
-            return self._terms(above)
+            return min((self._terms(above), *self._over_one(above)), key=_length)
         ((divisor, scale),) = below.items()
         return self._terms({_divide(m, divisor): c for m, c in above.items()}, _fraction(scale))
+
+    def _is_plain_sum(self, expression: sp.Expr) -> bool:
+        """Not so a sum whose root is in the ring too: what it divides, half its powers divide."""
+        return bool(expression.is_Add and sp.sqrt(expression) not in self.ring.index)
+
+    def _over_one(self, element: PolyElement) -> Iterator[sp.Expr]:
+        """Terms that are divided by different powers of one sum, over the highest of them."""
+        for place, divisor in self._sums_below.items():
+            above = self._by_power(element, place)
+            if len(above) > 1:
+                highest = max(above)
+                parts = (part * divisor ** (highest - power) for power, part in above.items())
+                whole = reduce(add, parts)
+                if len(whole) <= len(element) + _MORE_TERMS:
+                    number = _leading_number(whole)
+                    rational = sp.Rational(number.numerator, number.denominator)
+                    below = self._expressions[place] ** highest
+                    yield sp.Mul(rational, self._terms(whole, number), below)
+
+    def _by_power(self, element: PolyElement, place: int) -> dict[int, PolyElement]:
+        """power of a generator: what it multiplies"""
+        found: dict[int, PolyElement] = {}
+        for monomial, coefficient in element.items():
+            part = found.setdefault(monomial[place], self.ring.polynomials.zero)
+            part[(*monomial[:place], 0, *monomial[place + 1 :])] = coefficient
+        return found
 
     def _terms(self, terms: Mapping[Monomial, Any], scale: Fraction = Fraction(1)) -> sp.Expr:
         fractions = {monomial: _fraction(c) for monomial, c in terms.items()}
@@ -159,6 +193,10 @@ class _Weights(dict[int, int]):
     def __missing__(self, place: int) -> int:
         weight = self[place] = int(sp.count_ops(self._expressions[place]))
         return weight
+
+
+def _length(expression: sp.Expr) -> int:
+    return int(sp.count_ops(expression))
 
 
 def _divide(monomial: Monomial, divisor: Monomial) -> Monomial:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 Measure = Callable[[str], float]
 
 _SIGNS = (" + ", " - ", " − ")
+_LAST = 50  # a divisor's brackets are as deep as so many others: 1/(1 + n²) is broken last
 _NEVER = 1000  # inside braces and between \left and \right no line can break
 
 
@@ -46,7 +47,7 @@ def _lines(formula: str, width: float, measure: Measure, indent: float) -> list[
             lines[-1] = longer
         else:
             # only a term that is too wide for a line of its own is broken inside its brackets
-            lines += _lines(chunk, width - indent * level, measure, indent)
+            lines += _lines(chunk, width - indent * (level % _LAST), measure, indent)
     return [line for line in lines if line]
 
 
@@ -64,15 +65,18 @@ def _chunks(formula: str, level: int) -> list[str]:
 def _signs(formula: str) -> Iterator[tuple[int, int]]:
     """Each sign between two terms: its place, and how many brackets are open there."""
     level = 0
+    opened: list[int] = []
     for place, character in enumerate(formula):
         if character in "({":
-            level += _weight(formula, place, r"\left")
-        elif character in ")}":
-            level -= _weight(formula, place, r"\right")
+            opened.append(_weight(formula, place, r"\left"))
+            level += opened[-1]
+        elif character in ")}":  # a part may close what it did not open
+            level -= opened.pop() if opened else _weight(formula, place, r"\right")
         elif formula.startswith(_SIGNS, place):
             yield place, level
 
 
 def _weight(formula: str, place: int, command: str) -> int:
-    is_fixed = formula[place] in "{}" or formula.endswith(command, 0, place)
-    return _NEVER if is_fixed else 1
+    if formula[place] in "{}" or formula.endswith(command, 0, place):
+        return _NEVER
+    return _LAST if formula.endswith("/", 0, place) else 1

@@ -61,7 +61,7 @@ def _blocks(
         there = [equations[label] for label in labels if label in equations]
         if not there:
             continue
-        results = {e: _result(e) for e in there if _is_whole(e, derivation)}
+        results = {e: _result(e, derivation) for e in there if _is_whole(e, derivation)}
         short = {e: result for e, result in results.items() if _fits(result, notation)}
         needed = row_height(list(short.values()), notation)
         if short and needed <= room:
@@ -86,10 +86,16 @@ def _numbers(equations: Sequence[Equation]) -> Text:
     return listed([(EquationReference(equation.label),) for equation in equations])
 
 
-def _result(equation: Equation) -> Equation:
-    """The symbol and what it comes to, without the steps between and what was proved of it."""
+def _result(equation: Equation, derivation: Derivation) -> Equation:
+    """The symbol and what it comes to, without the steps between and what was proved of it.
+
+    Vectors say it without components.
+    """
     has_value = equation.matrix is not None or equation.scalar is not None
-    sides = equation.sides[:1] if has_value else (equation.sides[0], equation.sides[-1])
+    ends = (equation.sides[0], equation.sides[-1])
+    if derivation.step(equation.label).vector_form is not None:
+        return Equation(sides=ends)
+    sides = equation.sides[:1] if has_value else ends
     return Equation(
         sides=sides, matrix=equation.matrix, scalar=equation.scalar, entries=equation.entries
     )
