@@ -153,8 +153,8 @@ def test_the_axes_between_are_numbered():
         (RotationVector(), "the vector v along the axis", "n"),
         (UnitQuaternion(), "the vector v along the axis", "α"),
         (GibbsVector(), "the vector v along the axis", "α"),
-        (AxisAngle(), "the axis e", "φ"),
-        (AxisAngle(("a", "b", "c", "alpha")), "the axis e", "α"),
+        (AxisAngle(), "the vector v along the axis", "φ"),
+        (AxisAngle(("a", "b", "c", "alpha")), "the vector v along the axis", "α"),
     ],
 )
 def test_a_vector_is_the_axis_of_one_turn(model, named, angle):

@@ -7,7 +7,6 @@ from itertools import chain
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.notes.document import Figure, Text
 from rigidsym.notes.drawing import Kind
@@ -20,8 +19,6 @@ from rigidsym.notes.space import Camera, Vector, unit
 from rigidsym.notes.words import VECTOR, listed, words
 
 MOST_TURNS = 5  # more would be a tangle
-
-_UNIT = Markup(r"\mathbf{e}", "e")
 
 
 def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
@@ -37,7 +34,7 @@ def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
     names = Names(
         angles=tuple(markup(turn.angle, notation) for turn in turns),
         body=tuple(map(notation.manner.symbol, BODY)),
-        between=None if model.turns else notation.manner.symbol(name_of_the_vector(model)),
+        between=None if model.turns else notation.manner.symbol(VECTOR),
         is_vector=not model.turns,
     )
     scene = scene_of(axes, angles, names)
@@ -73,8 +70,7 @@ def _about_the_vector(model: RotationModel) -> tuple[Turn, ...]:
     if not model.vector:
         return ()
     axis = tuple(sp.Rational(part, 3) for part in (1, 2, 2))
-    name = name_of_the_vector(model).text
-    return (Turn(axis=name, angle=_angle_about(model), components=axis),)
+    return (Turn(axis=VECTOR.text, angle=_angle_about(model), components=axis),)
 
 
 def _angle_about(model: RotationModel) -> sp.Expr:
@@ -87,12 +83,6 @@ def _angle_about(model: RotationModel) -> sp.Expr:
     taken = {q.func.__name__ for q in model.coordinates}
     letters = (letter for letter in ("alpha", "beta", "gamma") if letter not in taken)
     return angles[0] if angles else sp.Symbol(next(letters))
-
-
-def name_of_the_vector(model: RotationModel) -> Markup:
-    """e where it is bound to be a unit vector, v where it is not."""
-    square = sp.Add(*(part**2 for part in model.vector))
-    return _UNIT if any(c - square == -1 for c in model.constraints) else VECTOR
 
 
 def _between_in_words(turns: Sequence[Turn]) -> str:

@@ -12,11 +12,12 @@ from rigidsym.mechanics.derivation import Markup
 from rigidsym.mechanics.quantities import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import AXES
-from rigidsym.notes.figure import MOST_TURNS, name_of_the_vector, turns_of, view_of
+from rigidsym.notes.figure import MOST_TURNS, turns_of, view_of
 from rigidsym.notes.formula import markup
 from rigidsym.notes.notation import Notation
 from rigidsym.notes.scene import BODY
 from rigidsym.notes.svg import as_in_formulas
+from rigidsym.notes.words import VECTOR
 
 _AZIMUTH, _ELEVATION = 35, 22  # degrees, where no figure says better
 _AXIS = Markup(r"\mathbf{e}", "e")  # of the one turn that any rotation is
@@ -63,7 +64,7 @@ def _between(model: RotationModel) -> Markup:
     """An axis that is neither of space nor of the body, as the note calls it."""
     if has_turns(model):
         return Markup("N", "N")
-    return name_of_the_vector(model) if model.vector else _AXIS
+    return VECTOR if model.vector else _AXIS
 
 
 def _written(symbol: Markup) -> str:
