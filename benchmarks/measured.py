@@ -1,4 +1,4 @@
-"""Largest errors of all shipped kernels in all targets: the table that the package carries.
+"""Largest errors of all shipped functions in all targets: the table that the package carries.
 
 Rows that the table has already stay, unless all are asked for anew; interrupted, it goes on from
 where it was.
@@ -17,6 +17,7 @@ from rigidsym import resources
 from rigidsym.api import Motion
 from rigidsym.kernels.accuracy.digest import digest
 from rigidsym.kernels.accuracy.measure import kernels_of, measure
+from rigidsym.kernels.accuracy.measure_ways import ways_in
 from rigidsym.kernels.accuracy.table import SHIPPED, Measured, Row, shipped
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.catalogue import EULER_SEQUENCES
@@ -68,7 +69,9 @@ def _shares(found: Measured, targets: Collection[str]) -> list[tuple[Subject, fr
     shares, seen = [], {name for name, row in rows if set(row.errors).issuperset(targets)}
     for subject in subjects():
         progress(f"reading {subject.text}")
-        own = {digest(kernel) for kernel in kernels_of(subject.motion(), conversions=True)}
+        motion = subject.motion()
+        own = {digest(kernel) for kernel in kernels_of(motion, conversions=True)}
+        own |= {way.digest for way in ways_in(motion)}
         if not own <= seen:
             shares.append((subject, frozenset(seen)))
         seen |= own
@@ -90,14 +93,14 @@ def _of_one(subject: Subject, known: frozenset[str], targets: Collection[str]) -
 
 
 def report(found: Measured) -> Report:
-    """The largest error of each function over all rotations, and how many kernels there are."""
+    """The largest error of each function over all rotations, and how many there are."""
     groups: dict[str, list[Row]] = {}
     for row in found.rows.values():
         groups.setdefault(row.function.split()[-1], []).append(row)
     rows = tuple(_line(name, group) for name, group in sorted(groups.items()))
-    columns = (Column("function"), Column("kernels"), *(Column(t, ".2f") for t in TARGETS))
+    columns = (Column("function"), Column("of them"), *(Column(t, ".2f") for t in TARGETS))
     return Report(
-        title=f"Measured errors: {len(found.rows)} kernels against 50 digits, {SHIPPED.name}",
+        title=f"Measured errors: {len(found.rows)} functions against 50 digits, {SHIPPED.name}",
         tables=(Table("Largest, in eps of the type", columns, rows),),
         figures=(),
         notes=tuple(f"{target}: {tool}." for target, tool in found.tools.items()),

@@ -16,7 +16,8 @@ from rigidsym.mechanics.conversion_forms import ClosedForm
 from rigidsym.mechanics.conversion_turns import ThreeTurns
 from rigidsym.models.rotation import RotationModel
 
-_SHAPE = ("base", "apart", "together", "before", "after", "opposite", "volume")
+_HALVES = ("cos_near", "sin_near", "cos_far", "sin_far")  # of half the difference and half the sum
+_SHAPE = ("base", "apart", "together", *_HALVES)
 _LOCAL = (  # of `unwrap` in every target
     *_SHAPE,
     *("samples", "lost", "angles", "columns", "q", "parameters", "first", "middle", "third"),
@@ -51,8 +52,9 @@ class ChainUnwrapping:
 
 
 _REMARKS: Mapping[str, str] = {
-    "quaternion": "Of p and −p the one nearer to the sample before.",
-    "cayley_klein": "Of the parameters and their negatives those nearer to the sample before.",
+    "quaternion": "Of p and −p the one nearer to the sample before: exact, as signs alone change.",
+    "cayley_klein": "Of the parameters and their negatives those nearer to the sample before: "
+    "exact, as signs alone change.",
     "axis_angle": "The axis does not turn by more than π/2 from one sample to the next, and the "
     "angle not by more than π; where there is no turn, the axis is that of the sample before.",
     "rotation_vector": "The axis does not turn by more than π/2 from one sample to the next, and "
@@ -141,13 +143,8 @@ def _found(names: Iterable[str], texts: str) -> tuple[tuple[str, int], ...]:
 
 
 def _relations(writer: LineWriter, rule: ChainTurns) -> None:
-    """Cosines between the axes, their volume, the flat middle angle, and the sides."""
+    """The flat middle angle, the difference and the sum of the sides, and halves of them."""
     first, middle, last = (writer.shared(axis) for axis in rule.axes)
-    one, two, three = map(sp.Matrix, (first, middle, last))
-    writer.let(
-        ["before", "after", "opposite", "volume"],
-        [one.dot(two), two.dot(three), one.dot(three), one.dot(two.cross(three))],
-    )
     sides = [
         writer.angle(writer.fresh("side"), *pair) for pair in ((first, middle), (middle, last))
     ]
@@ -158,3 +155,10 @@ def _relations(writer: LineWriter, rule: ChainTurns) -> None:
         ("apart", f"{sides[0]} - {sides[1]}"),
         ("together", f"{sides[0]} + {sides[1]}"),
     ]
+    if rule.is_across:  # exactly, which no cosine of π/2 is
+        writer.lines += zip(_HALVES, ("1.0", "0.0", "0.0", "1.0"), strict=True)
+        return
+    for name in _HALVES:
+        called, half = name.split("_")
+        side = "apart" if half == "near" else "together"
+        writer.lines.append((name, f"${called}(0.5 * {side})"))

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
+from typing import TYPE_CHECKING
 
+from rigidsym.kernels.accuracy.digest import digest
 from rigidsym.kernels.accuracy.table import Measured, shipped
 from rigidsym.kernels.derivatives import Asked, derivatives_of, read_requests
 from rigidsym.kernels.lower import lower
 from rigidsym.kernels.targets import printer
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.writing import write_text
+
+if TYPE_CHECKING:
+    from rigidsym.kernels.accuracy.ways import Way
+    from rigidsym.kernels.conversions import ConversionProgram
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -76,18 +82,22 @@ def generate(
     chosen = printer(target)
     wanted = derivatives_of(derivation, read_requests(derivatives))
     program = lower(derivation, chosen.RESERVED, wanted)
-    converting = None
+    converting: ConversionProgram | None = None
+    ways: tuple[Way, ...] = ()
     if conversions:
+        from rigidsym.kernels.accuracy.ways import stated, ways_of
         from rigidsym.kernels.conversions import lower_conversions
         from rigidsym.mechanics.conversions import conversions_of
 
         converting = lower_conversions(
             derivation, conversions_of(derivation.model), chosen.RESERVED
         )
+        ways = ways_of(converting, derivation, program.kernels)
     kernels = (*program.kernels, *(converting.kernels if converting else ()))
-    known = measured if measured and target in measured.tools else shipped(kernels)
+    names = {digest(kernel) for kernel in kernels} | {way.digest for way in ways}
+    known = measured if measured and target in measured.tools else shipped(names)
     if converting is not None:
-        converting = replace(converting, kernels=known.of_kernels(converting.kernels, target))
+        converting = stated(converting, ways, known, target)
     program = known.stated(program, target)
     files = chosen.render(program, converting)
     return KernelModule(name=derivation.name, target=target, files=files)

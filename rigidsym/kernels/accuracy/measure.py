@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import ceil, floor, log10
 from types import ModuleType
 from typing import Any
 
@@ -14,8 +13,9 @@ from numpy.typing import NDArray
 from rigidsym.errors import CheckError, MissingExtra, MissingTool, RigidsymError, ToolFailed
 from rigidsym.kernels.accuracy.digest import digest
 from rigidsym.kernels.accuracy.exact import Exact, exact_functions
+from rigidsym.kernels.accuracy.measure_ways import WaySubject, way_subjects, ways_in
 from rigidsym.kernels.accuracy.points import NEAREST, Points
-from rigidsym.kernels.accuracy.table import Measured, Row
+from rigidsym.kernels.accuracy.table import Measured, Row, rounded_up
 from rigidsym.kernels.accuracy.tools import caller, tool
 from rigidsym.kernels.accuracy.truth import Truth, precise
 from rigidsym.kernels.conversions import in_closed_form
@@ -30,7 +30,6 @@ from rigidsym.mechanics.derivation import Derivation
 
 POINTS = 1000
 _CHUNK = 500  # points whose numbers of 50 digits are held at once
-_FIGURES = 3  # of an error that is stated
 
 Array = NDArray[Any]
 Report = Callable[[float], object]  # takes the share of the true values that is there
@@ -59,6 +58,10 @@ class _Subject:
     truth: _Values
 
     @property
+    def name(self) -> str:
+        return self.kernel.name
+
+    @property
     def arrays(self) -> list[Array]:
         vectors = {vector.name: vector for vector in self.exact.vectors}
         return [self.points.of(vectors[argument.name]) for argument in self.kernel.arguments]
@@ -75,6 +78,22 @@ class _Subject:
     def nearest(self) -> float:
         is_near = bool(guards_of(self.kernel)) and (self.is_meant & self.points.is_near).any()
         return NEAREST if is_near else 0.0
+
+    def errors(self, target: str, module: ModuleType) -> tuple[float, ...]:
+        """In double precision, and in single where the target has it."""
+        call = caller(target, getattr(module, self.name))
+        arrays, everywhere = self.arrays, np.ones(self.points.count, bool)
+        found = [_error(self, target, call(*arrays), everywhere)]
+        if target == "numpy":  # the twin on floats is the same text for numba and c
+            twin = getattr(module, f"{self.name}_scalar")
+            rows = np.hstack(arrays).tolist()
+            values = np.array([twin(*row) for row in rows]).reshape(len(rows), -1)
+            found[0] = max(found[0], _error(self, target, values, everywhere))
+        if TARGETS[target].has_single:
+            is_single = self.points.is_single
+            single = [array[is_single].astype(np.float32) for array in arrays]
+            found.append(_error(self, target, call(*single), is_single))
+        return tuple(map(rounded_up, found))
 
     def row(self, errors: Mapping[str, tuple[float, ...]]) -> Row:
         return Row(
@@ -105,8 +124,13 @@ def measure(
     where it should give a number.
     """
     parts = _parts(derivation, derivatives, conversions=conversions)
-    subjects = [s for part in parts for s in _subjects(*part, count, known, report)]
-    found: dict[str, dict[str, tuple[float, ...]]] = {s.kernel.name: {} for s in subjects}
+    subjects: list[_Subject | WaySubject] = [
+        s for part in parts for s in _subjects(*part, count, known, report)
+    ]
+    if conversions:
+        ways = [way for way in ways_in(derivation) if way.digest not in known]
+        subjects += way_subjects(derivation, ways, count)
+    found: dict[str, dict[str, tuple[float, ...]]] = {s.name: {} for s in subjects}
     tools = {}
     for target in targets:
         made = generate(derivation, target, derivatives=derivatives, conversions=conversions)
@@ -118,9 +142,9 @@ def measure(
             missing(target, error)
             continue
         for subject in subjects:
-            if hasattr(module, subject.kernel.name):  # a target may leave conversions out
-                found[subject.kernel.name][target] = _errors(subject, target, module)
-    rows = [subject.row(found[subject.kernel.name]) for subject in subjects]
+            if hasattr(module, subject.name):  # a target may leave conversions out
+                found[subject.name][target] = subject.errors(target, module)
+    rows = [subject.row(found[subject.name]) for subject in subjects]
     return Measured(tools=tools, rows={row.digest: row for row in rows})
 
 
@@ -207,24 +231,6 @@ def _joined(pieces: Sequence[_Values]) -> _Values:
     )
 
 
-def _errors(subject: _Subject, target: str, module: ModuleType) -> tuple[float, ...]:
-    """In double precision, and in single where the target has it."""
-    name = subject.kernel.name
-    call = caller(target, getattr(module, name))
-    arrays, everywhere = subject.arrays, np.ones(subject.points.count, bool)
-    found = [_error(subject, target, call(*arrays), everywhere)]
-    if target == "numpy":  # the twin on floats is the same text for numba and c
-        twin = getattr(module, f"{name}_scalar")
-        rows = np.hstack(arrays).tolist()
-        values = np.array([twin(*row) for row in rows]).reshape(len(rows), -1)
-        found[0] = max(found[0], _error(subject, target, values, everywhere))
-    if TARGETS[target].has_single:
-        is_single = subject.points.is_single
-        single = [array[is_single].astype(np.float32) for array in arrays]
-        found.append(_error(subject, target, call(*single), is_single))
-    return tuple(map(_rounded_up, found))
-
-
 def _error(subject: _Subject, target: str, values: Array, where: Array) -> float:
     """The largest at any point, in eps of the values' type and of the size of what is added."""
     is_nan = np.isnan(values).any(axis=1)
@@ -240,11 +246,3 @@ def _error(subject: _Subject, target: str, values: Array, where: Array) -> float
     off = np.abs((values[counts] - truth.high) - truth.low).max(axis=1)
     relative = off / np.where(truth.size > 0, truth.size, 1.0)
     return float(relative.max(initial=0.0)) / float(np.finfo(values.dtype).eps)
-
-
-def _rounded_up(error: float) -> float:
-    """To a few figures, which is never less."""
-    if not 0 < error < float("inf"):
-        return error
-    step = 10.0 ** (floor(log10(error)) - _FIGURES + 1)
-    return float(f"{ceil(error / step) * step:.{_FIGURES}g}")

@@ -7,9 +7,10 @@ one that this package carries.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
+from math import ceil, floor, log10
 from pathlib import Path
 
 from rigidsym.errors import CheckError
@@ -19,6 +20,7 @@ from rigidsym.kernels.ir import Kernel, Program
 SHIPPED = Path(__file__).with_name("measured.csv")
 SMALL, LARGE, LARGEST = 3.0, 1e4, 1e15  # sizes of coordinates that points are taken from
 _SIZES = "1e4, 1e6 and 1e15"
+_FIGURES = 3  # of an error that is stated
 _FIXED = ("digest", "points", "reach", "nearest", "function")
 
 
@@ -35,12 +37,13 @@ class Row:
 
     def words(self, kernel: Kernel, target: str) -> str:
         """The sentence of a docstring."""
+        ranges = "; ".join(self._ranges(kernel))
+        return f"Measured: {self.largest(target)}; {self.points} points: {ranges}."
+
+    def largest(self, target: str) -> str:
+        """The errors of one target in words."""
         double, *single = (f"{error:.3g} eps" for error in self.errors[target])
-        also = "".join(f", {error} in single precision" for error in single)
-        return (
-            f"Measured: at most {double}{also}; {self.points} points: "
-            f"{'; '.join(self._ranges(kernel))}."
-        )
+        return f"at most {double}" + "".join(f", {error} in single precision" for error in single)
 
     def _ranges(self, kernel: Kernel) -> Iterator[str]:
         names = [argument.name for argument in kernel.arguments]
@@ -130,9 +133,16 @@ def _row(cells: list[str], targets: tuple[str, ...]) -> Row:
     )
 
 
-def shipped(kernels: Iterable[Kernel] | None = None) -> Measured:
-    """What was measured of the catalogue when the package was made; of some kernels, or all."""
-    names = None if kernels is None else set(map(digest, kernels))
+def rounded_up(error: float) -> float:
+    """To a few figures, which is never less."""
+    if not 0 < error < float("inf"):
+        return error
+    step = 10.0 ** (floor(log10(error)) - _FIGURES + 1)
+    return float(f"{ceil(error / step) * step:.{_FIGURES}g}")
+
+
+def shipped(names: Collection[str] | None = None) -> Measured:
+    """What was measured of the catalogue when the package was made; of some digests, or all."""
     lines = _shipped_lines()
     return read(line for line in lines if names is None or line[0] == "#" or line[:DIGITS] in names)
 

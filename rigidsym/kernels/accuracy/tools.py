@@ -23,7 +23,7 @@ def tool(target: str) -> str:
 
 def caller(target: str, function: Function) -> Callable[..., Array]:
     """The function on arrays with one point a row; all its results, row by row."""
-    compute = _jitted(function) if target == "jax" else function
+    compute = called(target, function)
 
     def call(*arrays: Array) -> Array:
         found = compute(*arrays)
@@ -31,6 +31,11 @@ def caller(target: str, function: Function) -> Callable[..., Array]:
         return np.hstack([np.asarray(part).reshape(len(arrays[0]), -1) for part in parts])
 
     return call
+
+
+def called(target: str, function: Function) -> Function:
+    """The function as it is measured: for JAX under jit."""
+    return _jitted(function) if target == "jax" else function
 
 
 def _jitted(function: Function) -> Function:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from string import Template
 from textwrap import wrap
 
@@ -179,9 +179,16 @@ def _chain(chain: ChainUnwrapping) -> dict[str, object]:
         "constants": len(chain.constants),
         "size": chain.size,
         "known": "\n".join(_lines(lines, changed, set())),
-        "samples": [f"const {name} = sample[{place}];" for name, place in chain.samples],
+        "samples": [*_taken(chain.samples, chain.angles)],
+        "kept": [*_taken(chain.samples, (value for _, value in chain.placed))],
         "angles": [_spelled(angle) for angle in chain.angles],
         "turns": [(turn, k) for k, turn in enumerate(chain.turns) if turn != "_"],
         "placed": chain.placed,
         "is_triangle": chain.is_triangle,
     }
+
+
+def _taken(samples: Sequence[tuple[str, int]], texts: Iterable[str]) -> Iterator[str]:
+    """The coordinates that stand in some texts, from the array that holds them."""
+    words = set(re.findall(r"\w+", " ".join(texts)))
+    return (f"const {name} = sample[{place}];" for name, place in samples if name in words)

@@ -52,7 +52,8 @@ def module(name: str, source: str) -> ModuleType:
     """The functions of a module on arrays with components last; their other axes broadcast.
 
     Those of many orientations, ..._batch and unwrap, take and give flat arrays as they do in
-    JavaScript. Raises MissingTool where node is not installed.
+    JavaScript; with ..._each behind the name, a call for every row, in one process. Raises
+    MissingTool where node is not installed.
     """
     if shutil.which("node") is None:
         raise MissingTool(
@@ -63,6 +64,8 @@ def module(name: str, source: str) -> ModuleType:
         run = partial(_run, source, function, parted)
         is_flat = function.endswith("_batch") or function == "unwrap"
         setattr(made, function, _flat(run) if is_flat else _caller(run, first))
+        if is_flat:
+            setattr(made, f"{function}_each", _caller(run, first))
     return made
 
 

@@ -116,7 +116,8 @@ def _chain(unwrapping: ChainUnwrapping, spelling: Mapping[str, str]) -> dict[str
     if unwrapping.is_triangle:
         before = (
             "angles = _without_poles(angles, base, apart, together)\n    "
-            "angles = _nearest(angles, base, before, after, opposite, volume)\n    "
+            "near, far = (cos_near, sin_near), (cos_far, sin_far)\n    "
+            "angles = _nearest(angles, base, near, far)\n    "
         )
     placed = [(f"columns[{place}]", value) for place, value in unwrapping.placed]
     return {
