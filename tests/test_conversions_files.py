@@ -6,14 +6,16 @@ import json
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 import rigidsym as rs
 from rigidsym.cli import commands
 from rigidsym.errors import SpecError
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import PARAMETRISATIONS
-from rigidsym.pipeline import product
+from rigidsym.pipeline import motion_of, product
 from rigidsym.rotations import rotation_from
 from rigidsym.spec import DerivationSpec, read_spec
 
@@ -24,6 +26,14 @@ sequence = "{}"
 quantities = ["rotation_matrix"]
 note = ["tex"]
 {}
+"""
+
+BODY = """
+[parameters]
+A = { positive = true }
+C = { positive = true }
+[body]
+principal_moments = ["A", "A", "C"]
 """
 
 
@@ -52,6 +62,19 @@ def test_without_a_word_there_are_none():
     files = product(spec).files
     assert "conversions" not in json.loads(files["a.json"])
     assert "from_quaternion" not in files["a.py"]
+
+
+@pytest.mark.parametrize("target", ["numpy", "c", "javascript"])
+def test_parameters_of_a_body_stand_beside_those_of_the_rotation(target):
+    """All functions of a file take the same argument "parameters"."""
+    if TARGETS[target].missing:
+        pytest.skip(TARGETS[target].missing)
+    text = BODY + FILE.format("z(phi) x(alpha0) z(psi)", "conversions = true")
+    motion = motion_of(read_spec(text, source="a.toml", name="a"))
+    functions = motion.kernels(target, conversions=True).load()
+    parameters, q = [0.4, 1.0, 2.0, 3.0], [[0.3, -1.2]]
+    matrix = functions.rotation_matrix(q, parameters)
+    np.testing.assert_allclose(functions.from_rotation_matrix(matrix, parameters), q, atol=1e-14)
 
 
 def test_what_is_not_offered_stands_in_the_record():

@@ -25,6 +25,7 @@ CONSTANTS = "z(gamma) x(phi) y(alpha0) z(beta)"
 TEXTS = (
     *("ZXZ", *PARAMETRISATIONS, CHAIN, CONSTANTS, "z(phi) x(b) [0,-1,0](c)"),
     *("z(a) x(b) z(c) y(d)", "davenport", "z(phi) [sets,k,rows](theta) z(psi)"),
+    *("z(phi + psi) x(theta)", "z(phi) x(theta) z(-phi)"),
 )
 C = (
     *("ZXZ", "axis_angle", "rotation_vector", "modified_rodrigues", "direction_cosines"),

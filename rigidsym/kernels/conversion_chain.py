@@ -50,15 +50,20 @@ class ChainInputs:
     names: Mapping[sp.Expr, str]
 
 
-def inputs_of(model: RotationModel, rule: ChainTurns, reserved: Iterable[str]) -> ChainInputs:
+def inputs_of(
+    model: RotationModel,
+    rule: ChainTurns,
+    constants: Sequence[sp.Expr],
+    reserved: Iterable[str],
+) -> ChainInputs:
     """Constants and kept coordinates under names that none of the lines uses."""
     free = Names((*_LOCAL, *reserved))
-    constants = {symbol: free.fresh(symbol.name) for symbol in model.constants}
+    fixed = {symbol: free.fresh(symbol.name) for symbol in constants}
     kept = {q: free.fresh(q.func.__name__) for q in (model.coordinates[k] for k in rule.kept)}
     return ChainInputs(
-        constants=tuple(constants.values()),
+        constants=tuple(fixed.values()),
         kept=tuple(kept.values()),
-        names={**constants, **kept},
+        names={**fixed, **kept},
     )
 
 

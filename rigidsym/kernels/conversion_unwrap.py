@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import sympy as sp
@@ -65,7 +65,8 @@ _REMARKS: Mapping[str, str] = {
 _TWO_SETS = (
     "At each sample the angles are those, of the two sets in [−π, π] that give the rotation and of "
     "all that whole turns add to them, which are nearest to the sample before. At a pole, what is "
-    "not determined is taken from the last sample that was not at one."
+    "not determined is taken from the last sample that was not at one; what is within 32 eps "
+    "(radians) of a pole counts as there."
 )
 _WHOLE_TURNS = "No angle of a turn changes by more than π from one sample to the next."
 
@@ -73,13 +74,17 @@ _WHOLE_TURNS = "No angle of a turn changes by more than π from one sample to th
 def unwrapping_of(
     model: RotationModel,
     rule: ThreeTurns | ChainTurns | ClosedForm,
+    constants: Sequence[sp.Expr] = (),
     reserved: Iterable[str] = (),
 ) -> Unwrapping | None:
-    """The continuity of a model's coordinates; None where they are unique."""
+    """The continuity of a model's coordinates; None where they are unique.
+
+    `constants` are all that the argument "parameters" holds.
+    """
     if isinstance(rule, ThreeTurns):
         return _of_turns(rule)
     if isinstance(rule, ChainTurns):
-        return _of_chain(model, rule, reserved)
+        return _of_chain(model, rule, constants, reserved)
     if rule.rule not in _REMARKS:
         return None
     kind = "quaternion" if rule.rule == "cayley_klein" else rule.rule
@@ -101,10 +106,15 @@ def _of_turns(rule: ThreeTurns) -> Unwrapping:
     )
 
 
-def _of_chain(model: RotationModel, rule: ChainTurns, reserved: Iterable[str]) -> Unwrapping:
+def _of_chain(
+    model: RotationModel,
+    rule: ChainTurns,
+    constants: Sequence[sp.Expr],
+    reserved: Iterable[str],
+) -> Unwrapping:
     is_triangle = len(rule.solved) == 3 and (not rule.mirror or rule.is_across)
     free = Names((*_LOCAL, *reserved))
-    names = {symbol: free.fresh(symbol.name) for symbol in model.constants}
+    names = {symbol: free.fresh(symbol.name) for symbol in constants}
     samples = {q: free.fresh(f"sample_{k}") for k, q in enumerate(model.coordinates, 1)}
     writer = LineWriter({**names, **samples}, taken=_LOCAL)
     angles = rule.solved if is_triangle else rule.solved[: len(rule.places)]

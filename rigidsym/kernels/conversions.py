@@ -79,9 +79,10 @@ def lower_conversions(
     program = lower(in_closed_form(derivation, conversions), tuple(reserved))
     backward, unwrapping = conversions.backward, None
     if backward is not None:
-        given = _given(derivation.model, backward.rule, reserved)
+        constants = _constants(derivation)
+        given = _given(derivation.model, backward.rule, constants, reserved)
         formulas += (*_backward(derivation.model, backward, given), *_shadow_sets(backward.rule))
-        unwrapping = unwrapping_of(derivation.model, backward.rule, reserved)
+        unwrapping = unwrapping_of(derivation.model, backward.rule, constants, reserved)
     return ConversionProgram(
         arguments=_with_parameters(derivation, program.arguments, formulas),
         kernels=program.kernels,
@@ -133,10 +134,19 @@ def _is_rule(conversions: Conversions, name: str) -> bool:
     return isinstance(rule, ClosedForm) and rule.rule == name
 
 
-def _given(model: RotationModel, rule: Rule, reserved: Iterable[str]) -> ChainInputs:
+def _constants(derivation: Derivation) -> tuple[sp.Expr, ...]:
+    """All that "parameters" holds, of the body too, where the rotation has constants."""
+    if not derivation.model.constants:
+        return ()
+    return derivation.argument("parameters").symbols
+
+
+def _given(
+    model: RotationModel, rule: Rule, constants: Sequence[sp.Expr], reserved: Iterable[str]
+) -> ChainInputs:
     """What a rule needs beside the rotation."""
     if isinstance(rule, ChainTurns):
-        return inputs_of(model, rule, reserved)
+        return inputs_of(model, rule, constants, reserved)
     return ChainInputs(constants=(), kept=(), names={})
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -96,8 +96,11 @@ def generate(
     kernels = (*program.kernels, *(converting.kernels if converting else ()))
     names = {digest(kernel) for kernel in kernels} | {way.digest for way in ways}
     known = measured if measured and target in measured.tools else shipped(names)
-    if converting is not None:
-        converting = stated(converting, ways, known, target)
     program = known.stated(program, target)
+    if converting is not None:
+        told = stated(converting, ways, known, target)
+        if told != converting:
+            program = replace(program, measured_with=known.tools[target])
+        converting = told
     files = chosen.render(program, converting)
     return KernelModule(name=derivation.name, target=target, files=files)

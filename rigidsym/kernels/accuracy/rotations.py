@@ -48,11 +48,15 @@ Values = dict[sp.Expr, Array]
 class Given:
     """What functions are given, in one type, a point a row, and the same to 50 digits as R."""
 
-    model: RotationModel
+    derivation: Derivation
     values: Values  # of coordinates and constants
     rotation: Array  # R that p and the matrix are made of, (count, 9), to 50 digits
     lengths: Array  # of the quaternions
     kept: tuple[int, ...]  # places of the coordinates that are given
+
+    @property
+    def model(self) -> RotationModel:
+        return self.derivation.model
 
     @cached_property
     def arrays(self) -> Mapping[str, Array]:
@@ -62,7 +66,9 @@ class Given:
         p = _quaternions(self.rotation.astype(float)) * self.lengths[:, np.newaxis]
         return {
             "q": self._of(self.model.coordinates),
-            "parameters": self._of(self.model.constants),
+            "parameters": self._of(
+                [s for a in self.derivation.arguments if a.name == "parameters" for s in a.symbols]
+            ),
             "kept": self._of([self.model.coordinates[place] for place in self.kept]),
             "p": p.astype(dtype),
             "matrix": self._shown(matrix).reshape(-1, 3, 3),
@@ -153,7 +159,7 @@ class Rotations:
         source = np.random.default_rng(52)
         lengths = np.geomspace(SHORTEST, LONGEST, self.count) * source.choice([-1, 1], self.count)
         return Given(
-            model=self.model,
+            derivation=self.derivation,
             values=values,
             rotation=rotation,
             lengths=lengths[some].astype(dtype),

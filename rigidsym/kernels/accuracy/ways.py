@@ -53,7 +53,7 @@ class Way:
         """The sentence of a docstring."""
         size = ", over the largest angle where that is above 1" if any(self.angles) else ""
         return (
-            f"Measured: {row.largest(target)}, in the entries of R, of what it gives against what "
+            f"Measured: {row.largest(target)}, between entries of R of what it gives and of what "
             f"it is given{size}; {row.points} points: {'; '.join(self._ranges(row))}."
         )
 
