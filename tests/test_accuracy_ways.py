@@ -25,6 +25,7 @@ from rigidsym.kernels.accuracy.measure import kernels_of, measure
 from rigidsym.kernels.accuracy.measure_ways import ways_in
 from rigidsym.kernels.accuracy.rotations import Rotations
 from rigidsym.kernels.accuracy.table import shipped
+from rigidsym.kernels.accuracy.tools import tool
 from rigidsym.kernels.accuracy.ways import Way, ways_of
 from rigidsym.kernels.conversions import lower_conversions
 from rigidsym.kernels.targets import TARGETS
@@ -34,9 +35,6 @@ from rigidsym.rotations import rotation_from
 
 CATALOGUE = (*rs.EULER_SEQUENCES, *PARAMETRISATIONS, *PRESETS)
 BACK = ("from_quaternion", "from_rotation_matrix")
-# A few points seldom hold a larger error than the 2000 that were measured, and then not by much;
-# on another processor, or with another release, the last bits of what is called are others.
-SLACK = {True: 1.25, False: 2.0}
 
 
 @cache
@@ -189,6 +187,16 @@ def multiplied(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     return np.concatenate([[p[0] * q[0] - (p[1:] * q[1:]).sum(axis=0)], vector])
 
 
+@cache
+def slack(target: str) -> float:
+    """How much more than what is stated other points may give.
+
+    A few seldom hold more than the 2000 that were measured, and then not by much; on another
+    processor, or with another release, the last bits of what is called are others.
+    """
+    return 1.25 if tool(target) == shipped().tools[target] else 2.0
+
+
 def stated(text: str, name: str, target: str) -> tuple[float, ...]:
     return shipped().rows[ways(text)[name].digest].errors[target]
 
@@ -212,9 +220,9 @@ def worst(text: str, module: ModuleType, p: np.ndarray) -> dict[str, float]:
 @pytest.mark.parametrize("text", [*rs.EULER_SEQUENCES, *FORMS])
 def test_the_errors_of_other_rotations_are_as_stated(text):
     for dtype in (np.float64, np.float32):
-        p = given(text, 24, 7).astype(dtype)
+        p = given(text, 40, 7).astype(dtype)
         for name, error in worst(text, numpy_module(text), p).items():
-            assert error <= SLACK[False] * stated(text, name, "numpy")[dtype == np.float32], name
+            assert error <= slack("numpy") * stated(text, name, "numpy")[dtype == np.float32], name
 
 
 @pytest.mark.parametrize("target", [e for e in EVERY if e.values != ("numpy",)])
@@ -222,7 +230,7 @@ def test_they_are_so_in_every_target(target):
     text = random.Random(len(target)).choice([*rs.EULER_SEQUENCES, *FORMS])
     module = motion(text).kernels(target, conversions=True).load()
     for name, error in worst(text, module, given(text, 30, 8)).items():
-        assert error <= SLACK[False] * stated(text, name, target)[0], (text, name)
+        assert error <= slack(target) * stated(text, name, target)[0], (text, name)
 
 
 # what is measured
@@ -302,9 +310,8 @@ def test_unwrapped_samples_are_the_same_rotations(text):
         float(distance(turned(text, a), turned(text, b))) for a, b in zip(q, found, strict=True)
     ]
     assert (found != q).any()
-    assert (np.array(errors) / size).max() <= SLACK[False] * stated(text, "unwrap", "numpy")[0] * (
-        2**-52
-    )
+    limit = slack("numpy") * stated(text, "unwrap", "numpy")[0]
+    assert (np.array(errors) / size).max() <= limit * 2**-52
 
 
 @pytest.mark.parametrize("away", [1e-13, 1e-11, 1e-9, 1e-7])
