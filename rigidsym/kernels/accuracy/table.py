@@ -1,7 +1,7 @@
-"""Largest errors as they were measured: rows by the digest of a kernel, and the words for them.
+"""Largest errors as they were measured: rows by the digest of a function, and words for them.
 
 A file of them is text: lines that begin with # say what each target was measured with, and a row
-a kernel follows, commas between what it holds. `benchmarks/run.py accuracy --write` writes the
+a function follows, commas between what it holds. `benchmarks/run.py accuracy --write` writes the
 one that this package carries.
 """
 
@@ -26,7 +26,10 @@ _FIXED = ("digest", "points", "reach", "nearest", "function")
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Row:
-    """The largest errors of one kernel, in eps of the type, of the largest entry of the result."""
+    """The largest errors of one function, in eps of the type, of the largest entry of the result.
+
+    For what is no kernel the result is R of it: see `ways`.
+    """
 
     digest: str
     points: int

@@ -103,7 +103,8 @@ def _body(formula: Formula, vectors: Sequence[Vector], places: Sequence[str]) ->
     known: set[str] = set()
     if not formula.inputs:
         given = ", ".join(f"{v.name}, {p}" for v, p in zip(vectors, places, strict=True))
-        yield f"  const [{', '.join(MATRIX)}] = _rotation_matrix([], 0, {given});"
+        word = "let" if any(changed[name] for name in MATRIX) else "const"
+        yield f"  {word} [{', '.join(MATRIX)}] = _rotation_matrix([], 0, {given});"
         known.update(MATRIX)
         vectors = places = ()
     for vector, place in zip(vectors, places, strict=True):
