@@ -159,11 +159,11 @@ def test_a_quaternion_read_off_from_the_transpose_of_r(target):
     if TARGETS[target].missing:
         pytest.skip(TARGETS[target].missing)
     motion = rs.derive(rotation_from("direction_cosines", passive=True), ["rotation_matrix"])
-    q = [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]  # the transpose of which turns x to y
+    q = [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]  # R, which turns y to x; A turns x to y
     found = motion.kernels(target, conversions=True).load().quaternion(q)
     expected = motion.kernels(conversions=True).load().quaternion(q)
     np.testing.assert_allclose(found, expected, atol=1e-6)
-    np.testing.assert_allclose(expected, 0.5)
+    np.testing.assert_allclose(expected, [0.5, -0.5, -0.5, -0.5])
 
 
 def test_unwrap_of_jax_compiles_and_maps():
