@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
+from sympy.core.function import AppliedUndef
 
 from rigidsym.kernels.accuracy.points import NEAREST, Points
 from rigidsym.kernels.accuracy.table import SMALL
@@ -131,6 +132,8 @@ class Rotations:
     @property
     def reach(self) -> float:
         """The largest coordinate of those that are given."""
+        if self.model.pullback is not None:  # to entries of R
+            return 1.0
         return pi if self.turns else SMALL
 
     def nearest(self, argument: str) -> float:
@@ -177,9 +180,22 @@ class Rotations:
             is_large=False,
         )
         found = {s: value[::2] for s, value in points.values.items()}  # the others are rounded
+        found = {**_allowed(found, self.model), **self._pulled_back()}
         if self.is_steady:
             found |= {s: np.full(self.count, found[s][0]) for s in self.model.constants}
         return {**found, **self._turned(self.turns, found)} if self.turns else found
+
+    def _pulled_back(self) -> Values:
+        """Coordinates that are bound as functions of others, which are those of a quaternion."""
+        pullback = self.model.pullback
+        if pullback is None:
+            return {}
+        others = sp.ordered(sp.Matrix(pullback.coordinates).atoms(AppliedUndef))
+        truth = Truth(dict(zip(others, self._drawn.T, strict=True)), FLOATS)
+        return {
+            q: truth.of(value)
+            for q, value in zip(self.model.coordinates, pullback.coordinates, strict=True)
+        }
 
     def _turned(self, turns: ChainTurns, values: Values) -> Values:
         """The coordinates that follow from angles of the turns."""
@@ -227,6 +243,20 @@ class Rotations:
         backward = conversions_of(self.model).backward
         rule = backward.rule if backward else None
         return isinstance(rule, ClosedForm) and rule.rule == _UNBOUNDED
+
+
+def _allowed(values: Values, model: RotationModel) -> Values:
+    """Points that are rotations, some of them again in the place of reflections.
+
+    Where R Rᵀ = 1 binds the coordinates, points may be found on either side of it.
+    """
+    if not model.constraints:
+        return values
+    truth = Truth(values, FLOATS)
+    matrices = np.stack([truth.of(entry) for entry in model.matrix], axis=-1).reshape(-1, 3, 3)
+    is_rotation = np.linalg.det(matrices) > 0
+    some = np.resize(np.flatnonzero(is_rotation), len(is_rotation))
+    return {s: value[some] for s, value in values.items()}
 
 
 def _wrapped(angle: Array) -> Array:
