@@ -97,6 +97,7 @@ def test_a_template_that_was_changed_takes_the_statement_of_unwrap_away(tmp_path
     (tmp_path / name).write_text(text.replace("16.0", "17.0"), encoding="utf-8")
     with resources.overridden_by(tmp_path):
         found = {way.name: way.digest for way in ways_in(motion("ZXZ"))}
+    assert ways("ZXZ")["unwrap"].digest in shipped().rows
     assert found["unwrap"] not in shipped().rows
     assert found["from_quaternion"] == ways("ZXZ")["from_quaternion"].digest
 
@@ -220,7 +221,7 @@ def worst(text: str, module: ModuleType, p: np.ndarray, target="numpy") -> dict[
 @pytest.mark.parametrize("text", [*rs.EULER_SEQUENCES, *FORMS])
 def test_the_errors_of_other_rotations_are_as_stated(text):
     for dtype in (np.float64, np.float32):
-        p = given(text, 40, 7).astype(dtype)
+        p = given(text, 24, 7).astype(dtype)
         for name, error in worst(text, numpy_module(text), p).items():
             assert error <= slack("numpy") * stated(text, name, "numpy")[dtype == np.float32], name
 

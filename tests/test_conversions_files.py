@@ -64,7 +64,7 @@ def test_without_a_word_there_are_none():
     assert "from_quaternion" not in files["a.py"]
 
 
-@pytest.mark.parametrize("target", ["numpy", "c", "javascript"])
+@pytest.mark.parametrize("target", ["numpy", "javascript"])
 def test_parameters_of_a_body_stand_beside_those_of_the_rotation(target):
     """All functions of a file take the same argument "parameters"."""
     if TARGETS[target].missing:

@@ -154,13 +154,11 @@ def test_c(text, tmp_path):
             np.testing.assert_allclose(out, expected, rtol=limit, atol=limit, err_msg=name)
 
 
-@pytest.mark.parametrize("target", ["javascript", "c", "jax"])
-def test_a_quaternion_read_off_from_the_transpose_of_r(target):
-    if TARGETS[target].missing:
-        pytest.skip(TARGETS[target].missing)
+@pytest.mark.skipif(bool(TARGETS["javascript"].missing), reason="node is not installed")
+def test_a_quaternion_read_off_from_the_transpose_of_r():
     motion = rs.derive(rotation_from("direction_cosines", passive=True), ["rotation_matrix"])
     q = [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]  # R, which turns y to x; A turns x to y
-    found = motion.kernels(target, conversions=True).load().quaternion(q)
+    found = motion.kernels("javascript", conversions=True).load().quaternion(q)
     expected = motion.kernels(conversions=True).load().quaternion(q)
     np.testing.assert_allclose(found, expected, atol=1e-6)
     np.testing.assert_allclose(expected, [0.5, -0.5, -0.5, -0.5])
