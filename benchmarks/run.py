@@ -106,8 +106,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--write",
         action="store_true",
-        help="of accuracy: measure all shipped kernels that have no row in the package's table of "
-        "errors, or with --fresh all of them (an hour), and write it",
+        help="of accuracy: measure all shipped functions that have no row in the package's table "
+        "of errors, or with --fresh all of them (an hour), and write it",
     )
     return parser
 
