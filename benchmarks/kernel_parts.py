@@ -96,8 +96,7 @@ def threads(modules: Mapping[str, ModuleType], size: int, repeats: int) -> Part:
     q, q_dot = random.uniform(-3.0, 3.0, (2, size, 3))
     rows: list[tuple[Cell, ...]] = []
     figures = []
-    hashing, copying = _gain(_hashed, repeats), _gain(_copied, repeats)
-    limit = f"times, where a plain copy gains {copying.middle:.2f}"
+    (hashing, _), (copying, copied) = _gain(_hashed, repeats), _gain(_copied, repeats)
     for name, module in modules.items():
         if name == "jax":
             continue
@@ -110,15 +109,21 @@ def threads(modules: Mapping[str, ModuleType], size: int, repeats: int) -> Part:
             }
             times = interleaved(actions, repeats)
             gain = ratios(times["1"], times["2"])
-            rows.append((name, quantity, *gain.in_order()))
+            moved = (sum(a.nbytes for a in given) + out.nbytes) / Spread.of(times["2"]).middle
+            rows.append((name, quantity, *gain.in_order(), moved / 1e9))
             if name in ("numpy", "c"):
                 title = f"two threads over one, {name}, {quantity}"
-                figures.append(_least(title, gain.middle, 1.7, "times", limit))
+                beside = (
+                    f"times, by {moved / 1e9:.0f} GB/s; a plain copy by two threads gains "
+                    f"{copying.middle:.2f}, to {copied / 1e9:.0f} GB/s"
+                )
+                figures.append(_least(title, gain.middle, 1.7, "times", beside))
     rows += [
-        ("none", "hashing: the most there is to gain at arithmetic", *hashing.in_order()),
-        ("none", "a plain copy: the most there is to gain at moving", *copying.in_order()),
+        ("none", "hashing: the most there is to gain at arithmetic", *hashing.in_order(), None),
+        ("none", "a plain copy: what moving gains", *copying.in_order(), copied / 1e9),
     ]
-    columns = (Column("target"), Column("quantity"), *spread_columns("gain", 2))
+    rate = Column("GB/s by two", ".1f")
+    columns = (Column("target"), Column("quantity"), *spread_columns("gain", 2), rate)
     return [Table(f"Two threads, {size:,} orientations", columns, tuple(rows))], figures
 
 
@@ -130,8 +135,8 @@ def _copied(content: Array) -> None:
     np.copyto(content[: len(content) // 2], content[len(content) // 2 :])
 
 
-def _gain(work: Callable[[Array], None], repeats: int) -> Spread:
-    """What a second thread gains at some work on two halves of one array."""
+def _gain(work: Callable[[Array], None], repeats: int) -> tuple[Spread, float]:
+    """What a second thread gains at work on two halves of an array; bytes a second by both."""
     halves = np.split(np.ones(CONTROL // 8), 2)
 
     def alone() -> None:
@@ -146,7 +151,7 @@ def _gain(work: Callable[[Array], None], repeats: int) -> Spread:
             other.result()
 
         times = interleaved({"1": partial(timed, alone), "2": partial(timed, both)}, repeats)
-    return ratios(times["1"], times["2"])
+    return ratios(times["1"], times["2"]), CONTROL / Spread.of(times["2"]).middle
 
 
 def memory(modules: Mapping[str, ModuleType], size: int) -> Part:
