@@ -125,7 +125,8 @@ def _keep_targets(context: click.Context, _: click.Parameter, targets: tuple[str
     if targets:
         from rigidsym.kernels.targets import check_target
 
-        context.meta[_TARGETS] = chosen = names_of(",".join(targets))
+        chosen = list(dict.fromkeys(names_of(",".join(targets))))
+        context.meta[_TARGETS] = chosen
         for target in chosen:
             check_target(target)
 
@@ -137,7 +138,8 @@ FOR_TARGETS = click.option(
     metavar="A,B",
     expose_value=False,
     callback=_keep_targets,
-    help="Languages of the functions, numpy where nothing is said; `rigidsym list` has them.",
+    help="Languages of the functions, numpy where nothing is said; `rigidsym list` has them. May "
+    "be repeated.",
 )
 
 

@@ -62,6 +62,12 @@ def overridden_by(own: Path) -> Iterator[None]:
         _OWN.reset(token)
 
 
+def is_overridden(start: str) -> bool:
+    """Whether templates of the user's own stand in for some whose names start so."""
+    own = _OWN.get()
+    return own is not None and any(own.glob(f"{start}*.jinja"))
+
+
 def environment(**options: Any) -> Environment:
     """A Jinja2 environment over the templates; `options` are Jinja2's, delimiters for instance.
 

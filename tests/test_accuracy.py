@@ -16,6 +16,7 @@ from conftest import derived
 from witness import evaluate, mp
 
 import rigidsym as rs
+from rigidsym import resources
 from rigidsym.cli import commands
 from rigidsym.errors import CheckError, MissingTool
 from rigidsym.kernels.accuracy import measure as measuring
@@ -298,3 +299,12 @@ def test_python_measures_too():
     motion = few("rotation_matrix")
     assert " 1000 points" in motion.kernels(measure=True).source
     assert "Measured" not in motion.kernels(measure=Measured(tools={"numpy": "NumPy"})).source
+
+
+def test_nothing_is_stated_of_what_templates_of_the_users_own_write(tmp_path):
+    name = "kernels_numpy.py.jinja"
+    (tmp_path / name).write_text(resources.text("templates", name), encoding="utf-8")
+    motion = rs.derive("ZXZ")
+    assert "Measured: at most" in motion.kernels("numpy").source
+    with resources.overridden_by(tmp_path):
+        assert "Measured: at most" not in motion.kernels("numpy").source

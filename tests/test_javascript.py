@@ -161,7 +161,7 @@ def test_many_orientations_are_flat_arrays(tmp_path: Path):
         0,
         "TypeError: q: expected numbers, got string at 0",  # + would join them
         "TypeError: q: expected numbers, got string at 0",
-        "TypeError: matrix: expected numbers, got object at 8",
+        "TypeError: matrix: expected numbers, got null at 8",
         "TypeError: q: expected numbers, got undefined at 4",
     ]
 

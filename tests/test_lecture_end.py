@@ -47,6 +47,7 @@ def test_every_symbol_of_the_theory_has_a_meaning_and_a_unit_once(place):
     assert meanings["mass of a particle"] == "kg"
     assert meanings["rotation matrix, body to space components"] == "1"
     assert meanings["angular velocity, body components"] == "rad/s"
+    assert meanings["kinetic energy"] == "J"  # without a body too
 
 
 @pytest.mark.parametrize("place", range(1 + len(OTHERS)))
@@ -82,3 +83,8 @@ def test_the_sheet_is_one_page():
     sheets[0] = sheets[0].replace("{article}", "{article}" + _UNPACKED)
     made = typeset(_bound_together(sheets))
     assert len(re.findall(rb"/Type\s*/Page\b(?!s)", made.pdf)) == len(sheets)
+
+
+def test_the_mass_is_of_the_body_whatever_its_frame_is_called():
+    motion = rs.derive("ZXZ", theory=True).written(frames=("inertial", "spacecraft"))
+    assert "mass of the body" in motion.note().markdown()

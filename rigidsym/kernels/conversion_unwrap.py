@@ -66,7 +66,7 @@ _TWO_SETS = (
     "At each sample the angles are those, of the two sets in [−π, π] that give the rotation and of "
     "all that whole turns add to them, which are nearest to the sample before. At a pole, what is "
     "not determined is taken from the last sample that was not at one; what is within 32 eps "
-    "(radians) of a pole counts as there."
+    "(radians) of a pole counts as there, and R is off by up to twice that."
 )
 _WHOLE_TURNS = "No angle of a turn changes by more than π from one sample to the next."
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 import sympy as sp
 
 from rigidsym.mechanics.claims import orthogonal, skew, spin_of
-from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Step
+from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.energy_quantities import ENERGIES, MOMENTA
 from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE
@@ -42,6 +42,7 @@ from rigidsym.notes.singular_words import failures, meaning, measured
 from rigidsym.notes.summary import summary
 from rigidsym.notes.tables import functions, symbols
 from rigidsym.notes.words import (
+    OPERATOR,
     convention,
     equal,
     symbols_of,
@@ -49,7 +50,6 @@ from rigidsym.notes.words import (
     words,
 )
 
-_OPERATOR = Markup(r"\mathbf{C}(\mathbf{u})", "C(u)")
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
 
 _ANGULAR_VELOCITY = (
@@ -193,7 +193,7 @@ class Composer:
     def _angular_velocity(self) -> Iterator[Block]:
         shown = COSINES if self.model.passive else ROTATION
         yield from motion(passive=self.model.passive)
-        yield Equation(sides=(_OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
+        yield Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
         yield Paragraph(
             words(
                 "That {} is skew follows from {} by differentiation:",

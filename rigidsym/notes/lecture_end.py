@@ -24,32 +24,39 @@ from rigidsym.notes.tables import symbols
 from rigidsym.notes.words import listed
 
 _LEAD = 2.0  # lines that the words before a row of equations take
-_OF_THE_THEORY: Sequence[tuple[Markup, str, str, str]] = (  # symbol, meaning, unit, equation
-    (Markup("m_i", "mᵢ"), "mass of a particle", "kg", ""),
-    (Markup("M", "M"), "mass of the body", "kg", ""),
-    (Markup(r"\mathbf{r}_i", "rᵢ"), "place of a particle", "m", ""),
-    (Markup(r"\mathbf{r}_C", "r_C"), "place of the centre of mass", "m", "centre_of_mass"),
+_OF_THE_THEORY: Sequence[tuple[str, str, str, str, str]] = (  # LaTeX, text, meaning, unit, equation
+    ("m_i", "mᵢ", "mass of a particle", "kg", ""),
+    ("M", "M", "mass of the body", "kg", ""),
+    (r"\mathbf{r}_i", "rᵢ", "place of a particle", "m", ""),
+    (r"\mathbf{r}_C", "r_C", "place of the centre of mass", "m", "centre_of_mass"),
+    (r"\mathbf{x}_i", "xᵢ", "place of a particle seen from the centre of mass", "m", ""),
+    (r"\mathbf{x}'_i", "x′ᵢ", "the same, body components", "m", ""),
+    (r"\mathbf{e}_j", "e_j", "vectors of an orthonormal basis", "1", ""),
+    (r"\mathbf{e}'_j", "e′_j", "the same, turned", "1", "components_in_another_basis"),
     (
-        Markup(r"\mathbf{x}_i", "xᵢ"),
-        "place of a particle seen from the centre of mass",
-        "m",
-        "",
-    ),
-    (Markup(r"\mathbf{x}'_i", "x′ᵢ"), "the same, body components", "m", ""),
-    (Markup(r"\mathbf{e}_j", "e_j"), "vectors of an orthonormal basis", "1", ""),
-    (Markup(r"\mathbf{e}'_j", "e′_j"), "the same, turned", "1", "components_in_another_basis"),
-    (
-        Markup(r"\mathbf{I}", "I"),
+        r"\mathbf{I}",
+        "I",
         "inertia tensor about the centre of mass, space components",
         "kg m²",
         "inertia_of_particles",
     ),
+    (r"d^{\perp}_i", "d⊥ᵢ", "distance of a particle from a line", "m", ""),
+)
+_PARTS = "parts_of_the_momentum"
+_BY_THE_BODY: Sequence[tuple[str, str, str, str, str]] = (  # where no body has them as quantities
+    (r"\mathbf{I}'", "I′", "the inertia tensor, body components", "kg m²", "inertia_turns"),
+    ("E_C", "E_C", "kinetic energy of the mass in the centre of mass", "J", "energy_splits"),
+    ("E_R", "E_R", "kinetic energy of the rotation about the centre of mass", "J", "energy_splits"),
+    ("E_K", "E_K", "kinetic energy", "J", "energy_splits"),
     (
-        Markup(r"d^{\perp}_i", "d⊥ᵢ"),
-        "distance of a particle from a line",
-        "m",
-        "",
+        r"\mathbf{L}_C",
+        "L_C",
+        "angular momentum of the mass in the centre of mass",
+        "kg m²/s",
+        _PARTS,
     ),
+    (r"\mathbf{L}_R", "L_R", "angular momentum of the rotation", "kg m²/s", _PARTS),
+    (r"\mathbf{L}", "L", "angular momentum about the origin", "kg m²/s", "momentum_splits"),
 )
 
 
@@ -67,14 +74,19 @@ def symbols_of_the_lecture(
         return span
 
     table = symbols(derivation, notation)
-    theory: list[tuple[Text, ...]] = [
-        ((symbol,), (about,), (unit,), (EquationReference(label),) if label else ())
-        for symbol, about, unit, label in _OF_THE_THEORY
-    ]
+    theory = [*map(_row, _OF_THE_THEORY)]
     known = {str(row[0]) for row in theory}
-    others = (row for row in table.rows if str(row[0]) not in known)
+    others = [row for row in table.rows if str(row[0]) not in known]
+    held = {str(span) for row in others for span in row[0]}
+    theory += [row for row in map(_row, _BY_THE_BODY) if str(row[0][0]) not in held]
     rows = (tuple(tuple(map(placed, cell)) for cell in row) for row in others)
     return replace(table, rows=(*theory, *rows))
+
+
+def _row(entry: tuple[str, str, str, str, str]) -> tuple[Text, ...]:
+    latex, text, about, unit, label = entry
+    reference: Text = (EquationReference(label),) if label else ()
+    return (Markup(latex, text),), (about,), (unit,), reference
 
 
 def summary_of_the_lecture(

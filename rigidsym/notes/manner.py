@@ -33,7 +33,16 @@ _A_FRAME_NAME = re.compile(r"\w(?:[\w .-]{0,28}\w)?")
 # what is the body's own, and not that of its frame
 _NOT_A_FRAME = "".join(
     f"(?<!{noun} )"
-    for noun in ("momentum", "energy", "tensor", "principal axes", "point", "constant", "else")
+    for noun in (
+        "momentum",
+        "energy",
+        "tensor",
+        "principal axes",
+        "point",
+        "constant",
+        "else",
+        "mass",
+    )
 )
 # the name before what it qualifies, or after a preposition, where it becomes "the ... frame"
 _FRAME_WORDS = (

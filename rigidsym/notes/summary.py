@@ -19,10 +19,11 @@ from rigidsym.notes.formula import markup
 from rigidsym.notes.layout import PAGE, display, height
 from rigidsym.notes.notation import Notation
 from rigidsym.notes.singular_words import failures, meaning, measured
-from rigidsym.notes.words import convention, listed
+from rigidsym.notes.words import convention, listed, vector_in_words
 
 TITLE = "Summary"
 _SENTENCES = 2  # what the coordinates are, and which way the rotation goes
+_SENTENCE = 1.5  # lines that one more takes
 SHEET = 40.0  # lines of a page that displays may take, beside their headings
 
 _GROUPS: Sequence[tuple[str, tuple[str, ...]]] = (
@@ -56,7 +57,10 @@ def _numbered(sections: Sequence[Section]) -> Mapping[str, Equation]:
 def _blocks(
     derivation: Derivation, equations: Mapping[str, Equation], notation: Notation, room: float
 ) -> Iterator[Block]:
-    yield from (Paragraph(text) for text in convention(derivation, notation.manner)[:_SENTENCES])
+    said = convention(derivation, notation.manner)[:_SENTENCES]
+    on_vectors = tuple(vector_in_words(derivation, notation.manner))
+    yield from map(Paragraph, (*said, *on_vectors))
+    room -= _SENTENCE * len(on_vectors)
     for title, labels in _GROUPS:
         there = [equations[label] for label in labels if label in equations]
         if not there:

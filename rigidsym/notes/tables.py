@@ -21,14 +21,18 @@ from rigidsym.notes.notation import Notation
 from rigidsym.notes.singular_words import WITH_CONDITIONS
 from rigidsym.notes.words import (
     BODY_POSITION,
+    OPERATOR,
     POSITION,
+    VECTOR,
     listed,
     symbols_of,
     unit_in_words,
+    vector,
     with_symbols,
     words,
 )
 
+_U, _CROSS = Markup(r"\mathbf{u}", "u"), Markup(r"\mathbf{u}\times", "u ×")
 _PLACES = ("centre", "point", "direction")
 _MOST_SYMBOLS = 6  # in one cell
 _CODE_WIDTH = 76  # columns of typewriter type on a page
@@ -122,6 +126,12 @@ def _in_a_row(symbols: Sequence[Text]) -> Text:
 
 
 def _length(notation: Notation, derivation: Derivation) -> Iterator[Row]:
+    """The vector of the coordinates and its length, where formulas hold them."""
+    parts = derivation.model.vector
+    if any(step.vector_form for step in derivation.steps):
+        units = dict(zip(derivation.model.coordinates, derivation.argument("q").units, strict=True))
+        unit = unit_in_words(units[parts[0]])
+        yield (VECTOR,), ("the vector ", *vector(parts, notation)), (unit,), ()
     if notation.length is not None:
         unit = unit_in_words(derivation.argument("q").units[0])
         symbol = notation.names[notation.length.symbol]
@@ -132,6 +142,7 @@ def _points(derivation: Derivation) -> Iterator[Row]:
     whose = "at rest in space" if derivation.model.passive else "of the body"
     yield (POSITION,), (f"position of a point {whose}, space components",), ("m",), ()
     yield (BODY_POSITION,), ("the same, body components",), ("m",), ()
+    yield (OPERATOR,), ("matrix of ", _CROSS, ", for a vector ", _U), ("that of ", _U), ()
 
 
 def functions(derivation: Derivation, module: str, names: Sequence[str]) -> Iterator[Block]:

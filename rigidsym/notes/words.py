@@ -24,6 +24,7 @@ POSITION = Markup(r"\mathbf{x}", "x")
 BODY_POSITION = Markup(r"\mathbf{x}'", "x′")
 COORDINATES = Markup(r"\mathbf{q}", "q")
 VECTOR = Markup(r"\mathbf{v}", "v")
+OPERATOR = Markup(r"\mathbf{C}(\mathbf{u})", "C(u)")  # of u ×
 VECTOR_OF = Markup(r"\mathbf{C}^{-1}", "C⁻¹")
 ACTIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", POSITION, ROTATION, BODY_POSITION)
 PASSIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", BODY_POSITION, COSINES, POSITION)
@@ -109,13 +110,13 @@ def convention(derivation: Derivation, manner: Manner = DEFAULT) -> tuple[Text, 
             BODY.omega,
         ),
         _coordinates(derivation.argument("q"), has_dots=manner.rates == "dot"),
-        *_vector(derivation, manner),
+        *vector_in_words(derivation, manner),
         *_body(derivation, manner),
         *_conditions(derivation, manner),
     )
 
 
-def _vector(derivation: Derivation, manner: Manner) -> Iterator[Text]:
+def vector_in_words(derivation: Derivation, manner: Manner) -> Iterator[Text]:
     """The vector, and the letter for its length, where they stand in the formulas."""
     notation = notation_of(derivation.arguments, manner, derivation.model)
     length, parts = notation.length, derivation.model.vector

@@ -23,7 +23,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.kernels.accuracy.points import NEAREST, Points
 from rigidsym.kernels.accuracy.table import SMALL
 from rigidsym.kernels.accuracy.truth import FLOATS, Truth, precise
-from rigidsym.kernels.accuracy.ways import LONGEST, SHORTEST
+from rigidsym.kernels.accuracy.ways import LONGEST, NEAREST_SINGLE, SHORTEST
 from rigidsym.mechanics.conversion_chain import ChainTurns, chain_turns
 from rigidsym.mechanics.conversion_forms import ClosedForm
 from rigidsym.mechanics.conversions import conversions_of, outer_product
@@ -33,7 +33,6 @@ from rigidsym.models.rotation import RotationModel
 
 _AT_POLES = 1e-17  # how near the points come that are not at them
 _FEW = (10, 40)  # eps: more than what counts as a pole where coordinates follow, and in `unwrap`
-_SINGLE = 1e-4  # the same beside half turns in single precision: a vector is as long as 1/1e-4
 _UNBOUNDED = "gibbs_vector"  # it has no value at a half turn
 _QUATERNION = Quaternion()  # of any length
 _ENTRIES = sp.symbols("r:9")
@@ -226,7 +225,7 @@ class Rotations:
         source, points = np.random.default_rng(53), np.arange(self.count)
         found = source.normal(size=(self.count, 4))
         kind = points // 2 % 10
-        away = self._away(source, np.where(points % 2, _SINGLE, NEAREST))
+        away = self._away(source, np.where(points % 2, NEAREST_SINGLE, NEAREST))
         axes = found[:, 1:] / np.linalg.norm(found[:, 1:], axis=1, keepdims=True)
         beside = kind < 2
         found[beside, 1:] = (axes * np.where(kind, np.cos(away), np.sin(away))[:, None])[beside]

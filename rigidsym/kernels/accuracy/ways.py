@@ -28,6 +28,7 @@ Told = TypeVar("Told", Formula, Unwrapping)
 
 UNWRAP = "unwrap"
 SHORTEST, LONGEST = 1e-3, 1e3  # lengths of quaternions that are given
+NEAREST_SINGLE = 1e-4  # to half turns in single precision: a vector is as long as 1/1e-4
 _TEMPLATES = ("kernels_unwrap_{}.jinja", "kernels_javascript_unwrap_{}.jinja")
 
 
@@ -54,10 +55,10 @@ class Way:
         size = ", over the largest angle where that is above 1" if any(self.angles) else ""
         return (
             f"Measured: {row.largest(target)}, between entries of R of what it gives and of what "
-            f"it is given{size}; {row.points} points: {'; '.join(self._ranges(row))}."
+            f"it is given{size}; {row.points} points: {'; '.join(self._ranges(row, target))}."
         )
 
-    def _ranges(self, row: Row) -> Iterator[str]:
+    def _ranges(self, row: Row, target: str) -> Iterator[str]:
         if "p" in self.arguments:
             yield f"quaternions of lengths from {SHORTEST:g} to {LONGEST:g}"
         elif "matrix" in self.arguments:
@@ -69,9 +70,11 @@ class Way:
         if "kept" in self.arguments:
             yield f"kept angles up to {SMALL:g}"
         if row.nearest and self.model.turns:
-            yield f"as near to poles as {row.nearest:.0e}, and at them"
+            yield "poles and what is beside them among these"
         elif row.nearest:
-            yield f"as near to no turn and to half turns as {row.nearest:.0e}"
+            has_single = len(row.errors[target]) > 1
+            also = f", in single precision {NEAREST_SINGLE:.0e}" if has_single else ""
+            yield f"as near to no turn and to half turns as {row.nearest:.0e}{also}"
 
 
 def ways_of(

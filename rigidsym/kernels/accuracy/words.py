@@ -37,7 +37,8 @@ def remarks(kernels: Sequence[Kernel], tool: str) -> Iterator[str]:
         yield (
             "Measured errors are the largest against 50 digits at points spread over the ranges "
             "that are named, in eps of the result's type, of the largest entry; where terms "
-            f"cancel, of their sizes together. Measured with {tool}."
+            "cancel, of their sizes together; other points may give more. Single precision is "
+            f"measured at every other point. Measured with {tool}."
         )
 
 
