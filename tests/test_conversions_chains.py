@@ -133,6 +133,25 @@ def test_scalar_twins_and_single_precision_agree(case):
     assert_allclose(rebuilt, found.matrix, atol=3e-6)
 
 
+@pytest.mark.parametrize("apart", [1e-2, 1e-5, 1e-8])
+@pytest.mark.parametrize("sign", [1, -1], ids=["alike", "opposite"])
+@pytest.mark.parametrize("has_constants", [False, True], ids=["numbers", "constants"])
+def test_two_axes_nearly_alike_or_opposite(apart, sign, has_constants):
+    """Each angle is badly determined; the rotation that both give is not."""
+    axis = "b,0,c" if has_constants else f"1/{1 / apart:.0f},0,{sign}"
+    functions = module(f"z(phi) [{axis}](theta)")
+    constants = [[apart, sign * np.sqrt(1 - apart**2)]] if has_constants else []
+    q = np.random.default_rng(5).uniform(-3, 3, (200, 2))
+    matrix = functions.rotation_matrix(q, *constants)
+    for given, name in (
+        (matrix, "from_rotation_matrix"),
+        (functions.quaternion(q, *constants), "from_quaternion"),
+    ):
+        found = getattr(functions, name)(given, *constants)
+        rebuilt = functions.rotation_matrix(found, *constants)
+        assert_allclose(rebuilt, matrix, atol=16 * EPS, rtol=0)
+
+
 def beyond(text: str, rotation: Rotation) -> float:
     """How far a rotation is, in radians, from the nearest that three turns with numbers reach."""
     first, middle, last = (np.array(turn.direction, float) for turn in rotation_from(text).turns)

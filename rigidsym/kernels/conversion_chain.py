@@ -131,10 +131,8 @@ def _one(writer: LineWriter, parts: Vector, axis: Vector) -> tuple[str, ...]:
 
 def _two(writer: LineWriter, parts: Vector, axes: Sequence[Vector]) -> tuple[str, ...]:
     first, last = axes
-    plus, minus = _halves(writer, parts, first, last)
-    for name, half in (("half_sum", plus), ("half_difference", minus)):
-        writer.let(["sine"], [_dot(half[1:], first)])
-        writer.lines.append((name, f"$atan2(sine, {half[0]})"))
+    _halves(writer, parts, first, last)
+    _from_one(writer, parts, *_across_each_other(writer, first, last))
     side = writer.angle("side", first, last)
     writer.lines += [
         ("beyond", f"abs(swing - {side})"),
@@ -142,6 +140,42 @@ def _two(writer: LineWriter, parts: Vector, axes: Sequence[Vector]) -> tuple[str
         ("half_sum", "$pick(beyond > $reach, $nan, half_sum)"),
     ]
     return "$wrapped(half_sum + half_difference)", "$wrapped(half_sum - half_difference)"
+
+
+def _from_one(writer: LineWriter, parts: Vector, sums: Vector, differences: Vector) -> None:
+    """Half the sum and half the difference of two angles: from 1± to p±, counted about e₁.
+
+    1± and e₁ 1± have the parts (s·s, ∓ d × s)/4 and (0, s)/2 with the sum s and the difference d
+    of the axes, d in place of s for 1₋. So nothing cancels where the axes are nearly parallel or
+    nearly opposite, and p± are short.
+    """
+    scalar, *vector = parts
+    cross = sp.Matrix(differences).cross(sp.Matrix(sums))
+    for name, sign, along in (("half_sum", -1, sums), ("half_difference", 1, differences)):
+        by_one = writer.whole(part / 2 for part in (_dot(along, along), *(sign * cross)))
+        sine, cosine = _dot(vector, writer.whole(along)), _dot((scalar, *vector), by_one)
+        writer.let(["sine", "cosine"], [sine, cosine])
+        writer.lines.append((name, "$atan2(sine, cosine)"))
+
+
+def _across_each_other(writer: LineWriter, first: Vector, last: Vector) -> tuple[Vector, Vector]:
+    """The sum and the difference of two unit vectors.
+
+    Axes that are rounded are not of one length, and the shorter of the two would hold some of the
+    longer: that is taken off.
+    """
+    sums, differences = ([a + sign * b for a, b in zip(first, last, strict=True)] for sign in (1, -1))
+    if all(part.is_number for part in (*first, *last)):
+        return tuple(sums), tuple(differences)
+    s, d = writer.shared(sums), writer.shared(differences)
+    sizes = writer.let([writer.fresh("v"), writer.fresh("v")], [_dot(s, s), _dot(d, d)])
+    longer, common = Local(writer.fresh("v")), Local(writer.fresh("v"))
+    writer.lines.append((longer.name, "$pick({0} > {1}, {0}, {1})".format(*sizes)))
+    writer.lines.append((common.name, f"({writer.text(_dot(s, d))}) / {longer}"))
+    return (
+        writer.shared(a - common * b for a, b in zip(s, d, strict=True)),
+        writer.shared(b - common * a for a, b in zip(s, d, strict=True)),
+    )
 
 
 _POLES: tuple[Line, ...] = (

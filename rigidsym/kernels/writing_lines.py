@@ -11,13 +11,14 @@ from rigidsym.kernels.formulas import Line
 from rigidsym.kernels.naming import Names
 
 _DIGITS = 30
+_ZERO = sp.Float("1e-25")  # what has all digits is larger or zero
 Vector = tuple[sp.Expr, ...]
 
 
 def number(exact: sp.Expr) -> float:
     """The nearest float; what is zero is zero, whatever radicals it is written in."""
     value = sp.N(exact, _DIGITS)
-    return 0.0 if abs(value) < sp.Float(10) ** (-_DIGITS // 2) else float(value)
+    return 0.0 if abs(value) < _ZERO else float(value)
 
 
 class Local(sp.Symbol):
@@ -54,6 +55,13 @@ class LineWriter:
     def shared(self, values: Iterable[sp.Expr]) -> Vector:
         """The values as numbers, inputs, or names of lines that hold them."""
         return tuple(self._atom(value.xreplace(self._inputs)) for value in values)
+
+    def whole(self, values: Iterable[sp.Expr]) -> Vector:
+        """The same, each number rounded once, so that the terms it is a sum of do not part."""
+        return tuple(
+            sp.Float(number(value)) if value.is_number else self.shared([value])[0]
+            for value in values
+        )
 
     def text(self, expression: sp.Expr) -> str:
         """A sum of products of numbers and names."""
