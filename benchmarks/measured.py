@@ -1,7 +1,7 @@
 """Largest errors of all shipped functions in all targets: the table that the package carries.
 
-Rows that the table has already stay, unless all are asked for anew; interrupted, it goes on from
-where it was.
+Rows that the table has already stay as long as they are of shipped functions, unless all are asked
+for anew; interrupted, it goes on from where it was.
 """
 
 from __future__ import annotations
@@ -54,24 +54,36 @@ def subjects() -> Iterator[Subject]:
 
 def run(settings: Settings) -> Report:
     """Measure what the table lacks, or all that is shipped, and write the table as it grows."""
-    found = Measured() if settings.fresh else shipped()
+    digests = {subject: _digests(subject) for subject in subjects()}
+    found = Measured() if settings.fresh else shipped().only(set().union(*digests.values()))
     for targets in STAGES:
-        for more in _measured(_shares(found, targets), targets):
+        for more in _measured(_shares(digests, found, targets), targets):
             found = found.joined(more)
-            write_text(SHIPPED, "\n".join(found.lines()) + "\n")
+            _write(found)
+    _write(found)
     progress()
     return report(found)
 
 
-def _shares(found: Measured, targets: Collection[str]) -> list[tuple[Subject, frozenset[str]]]:
+def _write(found: Measured) -> None:
+    write_text(SHIPPED, "\n".join(found.lines()) + "\n")
+
+
+def _digests(subject: Subject) -> frozenset[str]:
+    """Of all that a subject's modules may hold."""
+    progress(f"reading {subject.text}")
+    motion = subject.motion()
+    kernels = (digest(kernel) for kernel in kernels_of(motion, conversions=True))
+    return frozenset((*kernels, *(way.digest for way in ways_in(motion))))
+
+
+def _shares(
+    digests: Mapping[Subject, frozenset[str]], found: Measured, targets: Collection[str]
+) -> list[tuple[Subject, frozenset[str]]]:
     """Each subject with the digests that are measured already, or with a subject before it."""
     rows = found.rows.items()
     shares, seen = [], {name for name, row in rows if set(row.errors).issuperset(targets)}
-    for subject in subjects():
-        progress(f"reading {subject.text}")
-        motion = subject.motion()
-        own = {digest(kernel) for kernel in kernels_of(motion, conversions=True)}
-        own |= {way.digest for way in ways_in(motion)}
+    for subject, own in digests.items():
         if not own <= seen:
             shares.append((subject, frozenset(seen)))
         seen |= own

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 
@@ -15,6 +16,7 @@ from rigidsym.cli import commands
 from rigidsym.errors import SpecError
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import PARAMETRISATIONS
+from rigidsym.notes.document import Paragraph
 from rigidsym.pipeline import motion_of, product
 from rigidsym.rotations import rotation_from
 from rigidsym.spec import DerivationSpec, read_spec
@@ -143,3 +145,26 @@ def test_a_note_shows_them_before_the_proofs(text):
     assert ("from\\_quaternion" in latex) is is_offered
     without = [section.title for section in motion.note().document.sections]
     assert "Conversions" not in without
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("ZXZ", *PARAMETRISATIONS, "davenport", "z(phi)", "z(phi) x(theta)"),
+        *("z(phi) x(theta) z(psi) y(delta)", "z(phi) [1,1,1](theta) z(-phi)"),
+    ],
+)
+def test_formulas_in_its_sentences_are_formulas(text):
+    """No letter of a formula is left between words: no index, no Greek, no operator."""
+    motion = rs.derive(rotation_from(text), ["rotation_matrix"])
+    document = motion.note(conversions=True).document
+    (section,) = (section for section in document.sections if section.title == "Conversions")
+    words = [
+        span
+        for block in section.blocks
+        if isinstance(block, Paragraph)
+        for span in block.text
+        if isinstance(span, str)
+    ]
+    for sentence in words:
+        assert not re.search(r"[₀-₉₊₋α-ορ-ω|×=]|\b(sin|cos|tan|atan2)\b", sentence), sentence

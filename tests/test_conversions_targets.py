@@ -22,16 +22,17 @@ from rigidsym.rotations import rotation_from
 
 CHAIN = "z(phi) x(alpha) [0,3,4](beta)"
 CONSTANTS = "z(gamma) x(phi) y(alpha0) z(beta)"
+MIRRORED = "z(phi) [1,1,1](theta) z(-phi)"
 TEXTS = (
     *("ZXZ", *PARAMETRISATIONS, CHAIN, CONSTANTS, "z(phi) x(b) [0,-1,0](c)"),
     *("z(a) x(b) z(c) y(d)", "davenport", "z(phi) [sets,k,rows](theta) z(psi)"),
-    *("z(phi + psi) x(theta)", "z(phi) x(theta) z(-phi)"),
+    *("z(phi + psi) x(theta)", "z(phi) x(theta) z(-phi)", MIRRORED),
 )
 C = (
     *("ZXZ", "axis_angle", "rotation_vector", "modified_rodrigues", "direction_cosines"),
-    *(CHAIN, CONSTANTS, "z(a) x(b) z(c) y(d)"),
+    *(CHAIN, CONSTANTS, "z(a) x(b) z(c) y(d)", MIRRORED),
 )
-JAX = ("ZXZ", "rotation_vector", "modified_rodrigues", CONSTANTS)
+JAX = ("ZXZ", "rotation_vector", "modified_rodrigues", CONSTANTS, MIRRORED)
 
 
 CATALOGUE = (*rs.EULER_SEQUENCES[::12], *PARAMETRISATIONS, *PRESETS, CHAIN, CONSTANTS)

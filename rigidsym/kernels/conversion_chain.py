@@ -1,4 +1,4 @@
-"""Lines that take a quaternion to the angles of up to three turns about any axes."""
+"""Lines that take a quaternion to the coordinates of turns about any axes."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from rigidsym.kernels.conversion_halves import POLES, dot, halves
+from rigidsym.kernels.conversion_three import three_turns
 from rigidsym.kernels.formulas import QUATERNION, Line
 from rigidsym.kernels.naming import Names
-from rigidsym.kernels.writing_lines import LineWriter, Local, number
+from rigidsym.kernels.writing_lines import LineWriter, Local, Vector
 from rigidsym.mechanics.conversion_chain import ChainTurns
 from rigidsym.mechanics.davenport import quaternion_product
 from rigidsym.models.rotation import RotationModel, Turn
-
-Vector = tuple[sp.Expr, ...]
 
 _LOCAL = (
     *QUATERNION,
@@ -75,7 +75,7 @@ def chain_lines(
     parts = _freed(writer, rule)
     axes = [writer.shared(axis) for axis in rule.axes]
     if len(rule.solved) == 3:
-        angles = _three(writer, rule, parts, axes)
+        angles = three_turns(writer, rule, parts, axes)
     elif len(rule.solved) == 2:
         angles = _two(writer, parts, axes)
     else:
@@ -100,28 +100,9 @@ def _backward(writer: LineWriter, turn: Turn) -> Vector:
     return tuple(writer.shared((sp.cos(half), *(sp.sin(half) * part for part in turn.direction))))
 
 
-def _halves(
-    writer: LineWriter, parts: Vector, first: Vector, last: Vector
-) -> tuple[Vector, Vector]:
-    """p₊ and p₋, their lengths as `far` and `near`, and twice the angle between as `swing`."""
-    zero = sp.S.Zero
-    across = quaternion_product(quaternion_product((zero, *first), parts), (zero, *last))
-    halves = []
-    for name, sign, length in (("plus", -1, "far"), ("minus", 1, "near")):
-        half = tuple((a + sign * b) / 2 for a, b in zip(parts, across, strict=True))
-        found = writer.let([f"{name}_{part}" for part in QUATERNION], half)
-        writer.lines += [
-            (length, f"{name}_w * {name}_w + {name}_x * {name}_x"),
-            (length, f"$sqrt({length} + {name}_y * {name}_y + {name}_z * {name}_z)"),
-        ]
-        halves.append(found)
-    writer.lines.append(("swing", "2.0 * $atan2(near, far)"))
-    return halves[0], halves[1]
-
-
 def _one(writer: LineWriter, parts: Vector, axis: Vector) -> tuple[str, ...]:
-    (_, *vector), _ = _halves(writer, parts, axis, axis)
-    writer.let(["sine"], [_dot(vector, axis)])
+    (_, *vector), _ = halves(writer, parts, axis, axis)
+    writer.let(["sine"], [dot(vector, axis)])
     writer.lines += [
         ("half_sum", "$atan2(sine, plus_w)"),
         ("half_sum", "$pick(swing > $reach, $nan, half_sum)"),
@@ -131,12 +112,12 @@ def _one(writer: LineWriter, parts: Vector, axis: Vector) -> tuple[str, ...]:
 
 def _two(writer: LineWriter, parts: Vector, axes: Sequence[Vector]) -> tuple[str, ...]:
     first, last = axes
-    _halves(writer, parts, first, last)
+    halves(writer, parts, first, last)
     _from_one(writer, parts, *_across_each_other(writer, first, last))
     side = writer.angle("side", first, last)
     writer.lines += [
         ("beyond", f"abs(swing - {side})"),
-        *_POLES,
+        *POLES,
         ("half_sum", "$pick(beyond > $reach, $nan, half_sum)"),
     ]
     return "$wrapped(half_sum + half_difference)", "$wrapped(half_sum - half_difference)"
@@ -152,8 +133,8 @@ def _from_one(writer: LineWriter, parts: Vector, sums: Vector, differences: Vect
     scalar, *vector = parts
     cross = sp.Matrix(differences).cross(sp.Matrix(sums))
     for name, sign, along in (("half_sum", -1, sums), ("half_difference", 1, differences)):
-        by_one = writer.whole(part / 2 for part in (_dot(along, along), *(sign * cross)))
-        sine, cosine = _dot(vector, writer.whole(along)), _dot((scalar, *vector), by_one)
+        by_one = writer.whole(part / 2 for part in (dot(along, along), *(sign * cross)))
+        sine, cosine = dot(vector, writer.whole(along)), dot((scalar, *vector), by_one)
         writer.let(["sine", "cosine"], [sine, cosine])
         writer.lines.append((name, "$atan2(sine, cosine)"))
 
@@ -164,126 +145,19 @@ def _across_each_other(writer: LineWriter, first: Vector, last: Vector) -> tuple
     Axes that are rounded are not of one length, and the shorter of the two would hold some of the
     longer: that is taken off.
     """
-    sums, differences = ([a + sign * b for a, b in zip(first, last, strict=True)] for sign in (1, -1))
+    pairs = tuple(zip(first, last, strict=True))
+    sums, differences = (tuple(a + sign * b for a, b in pairs) for sign in (1, -1))
     if all(part.is_number for part in (*first, *last)):
-        return tuple(sums), tuple(differences)
+        return sums, differences
     s, d = writer.shared(sums), writer.shared(differences)
-    sizes = writer.let([writer.fresh("v"), writer.fresh("v")], [_dot(s, s), _dot(d, d)])
+    sizes = writer.let([writer.fresh("v"), writer.fresh("v")], [dot(s, s), dot(d, d)])
     longer, common = Local(writer.fresh("v")), Local(writer.fresh("v"))
     writer.lines.append((longer.name, "$pick({0} > {1}, {0}, {1})".format(*sizes)))
-    writer.lines.append((common.name, f"({writer.text(_dot(s, d))}) / {longer}"))
+    writer.lines.append((common.name, f"({writer.text(dot(s, d))}) / {longer}"))
     return (
         writer.shared(a - common * b for a, b in zip(s, d, strict=True)),
         writer.shared(b - common * a for a, b in zip(s, d, strict=True)),
     )
-
-
-_POLES: tuple[Line, ...] = (
-    ("half_difference", "$pick(near <= $tiny * far, half_sum, half_difference)"),
-    ("half_sum", "$pick(far <= $tiny * near, half_difference, half_sum)"),
-)
-
-
-def _alike(mirror: int) -> tuple[Line, ...]:
-    """Lines for outer angles that are equal, or opposite: the half that is 0 or π is made so."""
-    fixed, short = ("half_difference", "near") if mirror > 0 else ("half_sum", "far")
-    free, long = ("half_sum", "far") if mirror > 0 else ("half_difference", "near")
-    return (
-        ("apart", f"abs($sin({fixed})) * {short} / $hypot(near, far)"),
-        ("is_turned", f"({short} > $tiny * {long}) & (abs({fixed}) > 0.5 * $pi)"),
-        (fixed, "$pick(is_turned, 0.0 * half + $pi, 0.0 * half)"),
-        (free, f"$pick({long} <= $tiny * {short}, 0.0 * half, {free})"),
-        ("half_sum", "$pick(apart > $reach, $nan, half_sum)"),
-    )
-
-
-def _three(
-    writer: LineWriter, rule: ChainTurns, parts: Vector, axes: Sequence[Vector]
-) -> tuple[str, ...]:
-    first, middle, last = axes
-    plus, minus = _halves(writer, parts, first, last)
-    before = writer.angle("first_side", first, middle)
-    after = writer.angle("third_side", middle, last)
-    base = writer.flat("base", first, middle, last)
-    writer.lines += [
-        ("apart", f"0.5 * abs({before} - {after})"),
-        ("together", f"0.5 * ({before} + {after})"),
-        ("half", "0.5 * swing"),
-        ("opened", "$sin(half + apart) * $sin(half - apart)"),
-        ("opened", "$pick(opened < 0.0, 0.0, opened)"),
-        ("closed", "$sin(together + half) * $sin(together - half)"),
-        ("closed", "$pick(closed < 0.0, 0.0, closed)"),
-        ("bend", "2.0 * $atan2($sqrt(opened), $sqrt(closed))"),
-        ("middle", _from_base(base)),
-        ("cosine", "$cos(0.5 * middle)"),
-        ("sine", "$sin(0.5 * middle)"),
-    ]
-    _outer(writer, axes, plus, minus)
-    writer.lines += [
-        ("near_side", "apart - half"),
-        ("far_side", "half - $pick(together > 0.5 * $pi, $pi - together, together)"),
-        ("beyond", "2.0 * $pick(near_side > far_side, near_side, far_side)"),
-        *(_alike(rule.mirror) if rule.mirror else _POLES),
-        ("half_sum", "$pick(beyond > $reach, $nan, half_sum)"),
-    ]
-    writer.lines.append(("middle", "middle + 0.0 * half_sum"))  # NaN where that is
-    outer = "$wrapped(half_sum + half_difference)", "$wrapped(half_sum - half_difference)"
-    return (outer[0], "middle") if rule.mirror else (outer[0], "middle", outer[1])
-
-
-def _from_base(base: str) -> str:
-    """The middle angle in the interval that ends at the flat triangle and holds 0."""
-    if base == "base":
-        return "base + $pick(base > 0.0, -bend, bend)"
-    return f"{base} - bend" if float(base) > 0 else f"{base} + bend".removeprefix("0.0 + ")
-
-
-def _outer(writer: LineWriter, axes: Sequence[Vector], plus: Vector, minus: Vector) -> None:
-    """Half the sum and half the difference of the outer angles, for a middle angle that is known.
-
-    They are the angles from m± to p±, both counted from a vector of their plane: 1± or e₂±,
-    whichever is longer, so that nothing is lost where both p± and m± are short.
-    """
-    first, middle, last = axes
-    cosine, sine = Local("cosine"), Local("sine")
-    cross = sp.Matrix(first).cross(sp.Matrix(middle))
-    before, after, opposite = _dot(first, middle), _dot(middle, last), _dot(first, last)
-    volume = _dot(cross, last)
-    for name, (scalar, *vector), sign in (("half_sum", plus, 1), ("half_difference", minus, -1)):
-        lengths = (1 + sign * opposite) / 2, (1 + sign * (2 * before * after - opposite)) / 2
-        mixed, skew = sign * volume / 2, (before + sign * after) / 2
-        of_one = (
-            *(scalar, _dot(vector, first)),
-            *(cosine * lengths[0] + sine * mixed, sine * skew),
-        )
-        of_axis = (
-            *(_dot(vector, middle), _dot(vector, cross) - before * scalar),
-            *(cosine * mixed + sine * lengths[1], -cosine * skew),
-        )
-        a, b, c, d = _longer(writer, lengths, of_one, of_axis)
-        writer.lines.append((name, f"$atan2({b} * {c} - {a} * {d}, {a} * {c} + {b} * {d})"))
-
-
-def _longer(
-    writer: LineWriter,
-    lengths: tuple[sp.Expr, sp.Expr],
-    of_one: Sequence[sp.Expr],
-    of_axis: Sequence[sp.Expr],
-) -> list[str]:
-    """Names for the components by the vector that is longer: one vector where that is known."""
-    names = [writer.fresh("v") for _ in of_one]
-    if all(length.is_number for length in lengths):
-        writer.let(names, of_one if number(lengths[0]) >= number(lengths[1]) else of_axis)
-        return names
-    others = [writer.fresh("v") for _ in of_axis]
-    is_one, size, other_size = (writer.fresh("v") for _ in range(3))
-    writer.let([*names, *others, size, other_size], [*of_one, *of_axis, *lengths])
-    writer.lines.append((is_one, f"{size} >= {other_size}"))
-    writer.lines += [
-        (name, f"$pick({is_one}, {name}, {other})")
-        for name, other in zip(names, others, strict=True)
-    ]
-    return names
 
 
 def _coordinates(
@@ -305,7 +179,3 @@ def _coordinates(
         zip(rule.kept, inputs.kept, strict=True)
     )
     return tuple(placed[place] for place in range(len(model.coordinates)))
-
-
-def _dot(first: Iterable[sp.Expr], second: Iterable[sp.Expr]) -> sp.Expr:
-    return sp.Add(*(a * b for a, b in zip(first, second, strict=True)))

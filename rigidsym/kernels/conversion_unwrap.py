@@ -112,7 +112,7 @@ def _of_chain(
     constants: Sequence[sp.Expr],
     reserved: Iterable[str],
 ) -> Unwrapping:
-    is_triangle = len(rule.solved) == 3 and (not rule.mirror or rule.is_across)
+    is_triangle = rule.has_two_sets
     free = Names((*_LOCAL, *reserved))
     names = {symbol: free.fresh(symbol.name) for symbol in constants}
     samples = {q: free.fresh(f"sample_{k}") for k, q in enumerate(model.coordinates, 1)}

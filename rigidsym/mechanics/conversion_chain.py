@@ -61,6 +61,18 @@ class ChainTurns:
         return (*(turn for known in self.between for turn in known), *self.after)
 
     @property
+    def has_two_sets(self) -> bool:
+        """Whether there are two middle angles, those of triangles that mirror one another.
+
+        They have other outer angles. Where these are to be alike, e₁·e₂ = ±e₂·e₃ makes them so: it
+        makes the sides alike, and with them the angles at e₁ and e₃.
+        """
+        if not self.mirror:
+            return len(self.solved) == _MOST
+        first, middle, last = self.axes
+        return sp.expand(first.dot(middle) - self.mirror * middle.dot(last)) == 0
+
+    @property
     def is_across(self) -> bool:
         """Whether there are three turns, the middle one about an axis across the others."""
         if len(self.solved) < _MOST:
@@ -173,8 +185,16 @@ def _because(rule: ChainTurns) -> str:
     )
     if len(rule.solved) < _MOST:
         return f"{halves}, where e₃ is the second axis and m = 1."
+    halves = f"{halves}, where m = cos β/2 + e₂ sin β/2"
+    if not rule.has_two_sets:
+        fixed, angle = ("₋", "difference") if rule.mirror > 0 else ("₊", "sum")
+        return (
+            f"{halves}. As half the {angle} is 0, the middle angle is that of m{fixed} = p{fixed}, "
+            "which is linear in cos β/2 and sin β/2, with k₁ = e₁·e₂, k₃ = e₂·e₃ and "
+            "B = e₁·(e₂ × e₃)."
+        )
     return (
-        f"{halves}, where m = cos β/2 + e₂ sin β/2. The middle angle is that at e₂ of the "
+        f"{halves}. The middle angle is that at e₂ of the "
         "spherical triangle of e₁, e₂ and the turned e₃, whose third side is "
         "χ = 2 atan2(|p₋|, |p₊|), counted from where that triangle is flat, atan2(B, A). The other "
         "sides are θ₁, between e₁ and e₂, and θ₃, between e₂ and e₃; k₁ and k₃ are their cosines, "
@@ -184,17 +204,18 @@ def _because(rule: ChainTurns) -> str:
 
 def _branch(model: RotationModel, rule: ChainTurns) -> Iterator[str]:
     names = _names(model, rule.places)
-    if rule.mirror:
+    if rule.has_two_sets:
         yield (
             "The outer angles of the turns are in (−π, π]; the middle one is in the interval of "
             "length π that holds 0 and ends where the triangle is flat."
         )
-    elif len(rule.solved) == _MOST:
-        yield (
-            "The outer angles of the turns are in (−π, π]; the middle one is in the interval of "
-            "length π that holds 0 and ends where the triangle is flat. Where only the sum or the "
-            "difference of the outer angles is determined, the last is 0."
-        )
+        if not rule.mirror:
+            yield (
+                "Where only the sum or the difference of the outer angles is determined, the last "
+                "is 0."
+            )
+    elif len(rule.solved) == 1:
+        yield "The angle of the turn is in (−π, π]."
     else:
         yield "The angles of the turns are in (−π, π]."
     if rule.inverse != sp.eye(len(names)) or any(offset != 0 for offset in rule.offsets):

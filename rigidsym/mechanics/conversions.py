@@ -26,6 +26,7 @@ from rigidsym.mechanics.conversion_chain import (
 from rigidsym.mechanics.conversion_forms import ClosedForm, closed_form
 from rigidsym.mechanics.conversion_turns import ThreeTurns, three_turns, turns_claims
 from rigidsym.mechanics.davenport import (
+    half_claims,
     middle_claims,
     outer_claims,
     three_axes,
@@ -248,7 +249,7 @@ def _by_chain(model: RotationModel, rule: ChainTurns) -> Backward:
         proofs=(
             *_vanishing(model, known_claims(model, rule)),
             *_outer_turns(),
-            *(_middle_turn() if len(rule.solved) == 3 else ()),
+            *_middle(rule),
         ),
         source=DAVENPORT,
         given=(*(["parameters"] if model.constants else []), *(["kept"] if rule.kept else [])),
@@ -260,6 +261,19 @@ def _outer_turns() -> tuple[Proof, ...]:
     """What solves the outer turns about any axes, once for all models."""
     axes = three_axes()
     return _vanishing(axes, outer_claims(axes))
+
+
+def _middle(rule: ChainTurns) -> tuple[Proof, ...]:
+    if len(rule.solved) < 3:
+        return ()
+    return _middle_turn() if rule.has_two_sets else _middle_of_half()
+
+
+@cache
+def _middle_of_half() -> tuple[Proof, ...]:
+    """What solves it where the outer turns are by one angle."""
+    axes = three_axes()
+    return _vanishing(axes, half_claims(axes))
 
 
 @cache

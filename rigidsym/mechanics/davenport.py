@@ -82,6 +82,43 @@ def middle_claims(model: RotationModel) -> list[Claim]:
     ]
 
 
+def half_claims(model: RotationModel) -> list[Claim]:
+    """What m± = 1± cos β/2 + e₂± sin β/2 is by its components along 1± and e₁ 1±."""
+    first, middle, last = (sp.Matrix(turn.direction) for turn in model.turns)
+    zero, one = sp.S.Zero, (sp.S.One, sp.S.Zero, sp.S.Zero, sp.S.Zero)
+    squares, alongs, across = [], [], []
+    for sign in (1, -1):
+        unit = _half(one, first, last, -sign)
+        turned = quaternion_product((zero, *first), unit)
+        axis = _half((zero, *middle), first, last, -sign)
+        squares.append(_inner(unit, unit) - (1 + sign * first.dot(last)) / 2)
+        alongs.append(_inner(unit, axis) - sign * first.dot(middle.cross(last)) / 2)
+        across.append(_inner(turned, axis) - (first.dot(middle) + sign * middle.dot(last)) / 2)
+    return [
+        (
+            tuple(squares),
+            Markup(
+                r"2\,|\mathbf{1}_\pm|^2 = 1 \pm \mathbf{e}_1\cdot\mathbf{e}_3",
+                "2 |1±|² = 1 ± e₁·e₃",
+            ),
+        ),
+        (
+            tuple(alongs),
+            Markup(
+                r"2\,\mathbf{1}_\pm\cdot\mathbf{e}_{2\pm} = \pm B",
+                "2 1±·e₂± = ±B",
+            ),
+        ),
+        (
+            tuple(across),
+            Markup(
+                r"2\,(\mathbf{e}_1\mathbf{1}_\pm)\cdot\mathbf{e}_{2\pm} = k_1 \pm k_3",
+                "2 (e₁ 1±)·e₂± = k₁ ± k₃",
+            ),
+        ),
+    ]
+
+
 def triangle() -> RotationModel:
     """The sides of a spherical triangle, as angles of turns, for the ring to hold them."""
     return chain([axis_turn((0, 0, 1), time_function(n)) for n in ("chi", "theta_1", "theta_3")])
@@ -136,6 +173,10 @@ def _half(whole: Parts, first: sp.Matrix, last: sp.Matrix, sign: int) -> Parts:
 def _turned(axis: sp.Matrix, angle: sp.Expr, parts: Parts) -> Parts:
     """exp(e angle) parts."""
     return quaternion_product((sp.cos(angle), *(sp.sin(angle) * axis)), parts)
+
+
+def _inner(first: Parts, second: Parts) -> sp.Expr:
+    return sp.Add(*(a * b for a, b in zip(first, second, strict=True)))
 
 
 def _difference(first: Parts, second: Parts) -> Parts:

@@ -10,6 +10,7 @@ import sympy as sp
 from rigidsym.mechanics.conversions import SHEPPERD, Conversions, outer_product
 from rigidsym.mechanics.derivation import Derivation, Markup, Step
 from rigidsym.notes.compose import equation_of
+from rigidsym.notes.conversion_words import HOW, WHICH
 from rigidsym.notes.document import (
     Block,
     Cited,
@@ -63,8 +64,7 @@ def _blocks(
 
 def _quaternion(derivation: Derivation, step: Step, *, has_functions: bool) -> Iterator[Block]:
     """The unit quaternion as a formula, with the number after that of the last step."""
-    symbols = symbols_of(derivation)
-    sentence = with_symbols(step.because.removesuffix("."), symbols)
+    sentence = with_symbols(step.because.removesuffix("."), symbols_of(derivation) | HOW)
     source = step.quantity.source
     yield Paragraph((*sentence, *(("\u00a0", Cited(source)) if source else ()), "."))
     numbered = replace(step, number=len(derivation.steps) + 1)
@@ -101,9 +101,9 @@ def _coordinates(
         return
     symbols = symbols_of(derivation)
     source = (" ", Cited(backward.source)) if backward.source else ()
-    yield Paragraph((*with_symbols(backward.because, symbols), *source))
+    yield Paragraph((*with_symbols(backward.because, symbols | HOW), *source))
     yield from (Equation(sides=(proof.claim,)) for proof in backward.proofs)
-    yield Paragraph(with_symbols(backward.branch, symbols))
+    yield Paragraph(with_symbols(backward.branch, symbols | WHICH))
     if has_functions:
         given = "".join(f", {name}" for name in backward.given)
         yield Paragraph(_called([name.format(given) for name in _FUNCTIONS]))

@@ -44,6 +44,8 @@ _MATH = {
     "¹": "^{1}",
     **{superscript: f"^{{{digit}}}" for digit, superscript in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
     **{subscript: f"_{{{digit}}}" for digit, subscript in enumerate("₀₁₂₃₄₅₆₇₈₉")},
+    **{subscript: f"_{{{sign}}}" for sign, subscript in zip("+-", "₊₋", strict=True)},
+    "ₐ": "_{a}",
 }
 _GREEK = frozenset(
     (

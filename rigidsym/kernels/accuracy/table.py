@@ -91,6 +91,11 @@ class Measured:
         ordered = sorted(rows.items(), key=lambda named: named[1].function)
         return Measured(tools={**self.tools, **other.tools}, rows=dict(ordered))
 
+    def only(self, names: Collection[str]) -> Measured:
+        """The rows of some digests."""
+        kept = {name: row for name, row in self.rows.items() if name in names}
+        return replace(self, rows=kept)
+
     def lines(self) -> list[str]:
         """The text of a file, line by line."""
         columns = (*_FIXED, *self.tools)
