@@ -44,6 +44,7 @@ CASES = (
     Case("z(phi) [w,x,turn_1](theta) z(psi)"),
     Case("z(phi + psi) x(theta)", kept=1),
     Case("z(phi) z(psi) x(theta)", kept=1),
+    Case("z(phi) [0,0,-2](psi) x(theta)", kept=1),
     Case("z(phi) x(theta) z(phi)"),
     Case("z(phi) x(theta) z(-phi)"),
     Case("z(phi) [1,1,1](theta) z(phi)"),
@@ -52,6 +53,8 @@ CASES = (
     Case("z(phi) x(theta) [0,1,2](phi)"),
     Case("[1,2,2](phi) [1,0,1](theta) y(phi)"),
     Case("y(-phi) [a,b,c](theta) [1,2,2](phi)"),
+    Case("[0,1,-100](phi) [1,0,0](theta) y(-phi)"),
+    Case("[-300,300,-1](phi) y(theta) [1,1,0](phi)"),  # nearly two sets
     Case("[1,1,0](phi) [1,0,0](theta) z(psi)"),
     Case("[1,0,1](phi) z(theta) [0,1,1](psi)"),
     Case("z(phi) [1,1,1](theta) z(psi)"),
@@ -137,6 +140,20 @@ def test_scalar_twins_and_single_precision_agree(case):
     assert single.dtype == np.float32
     rebuilt = functions.rotation_matrix(single.astype(float), *found.constants)
     assert_allclose(rebuilt, found.matrix, atol=3e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("z(phi) x(pi) z(theta) x(psi)", "about one axis, once those between are taken off"),
+        ("z(phi) z(-phi)", "its turns undo one another"),
+        ("z(phi) [0,0,-1](phi)", "its turns undo one another"),
+    ],
+)
+def test_turns_that_determine_too_little_are_refused(text, why):
+    motion = rs.derive(rotation_from(text), ["rotation_matrix"])
+    assert why in motion.conversions.without
+    assert not hasattr(motion.kernels(conversions=True).load(), "from_quaternion")
 
 
 @pytest.mark.parametrize("apart", [1e-2, 1e-5, 1e-8])

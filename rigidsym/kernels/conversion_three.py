@@ -25,7 +25,8 @@ def three_turns(
     if rule.has_two_sets:
         _middle_of_triangle(writer, axes)
     else:
-        _middle_of_half(writer, by_difference if rule.mirror > 0 else by_sum)
+        fixed, free = (by_difference, by_sum) if rule.mirror > 0 else (by_sum, by_difference)
+        _middle_of_half(writer, fixed, free, "far" if rule.mirror > 0 else "near")
     writer.lines += [("cosine", "$cos(0.5 * middle)"), ("sine", "$sin(0.5 * middle)")]
     _outer(writer, "half_sum", by_sum)
     _outer(writer, "half_difference", by_difference)
@@ -83,11 +84,15 @@ class _Components:
         return (*self.given, *(_COSINE * a + _SINE * b for a, b in pairs))
 
     @property
-    def parts(self) -> tuple[sp.Expr, ...]:
-        return (*self.given, *self.by_cosine, *self.by_sine, self.square)
+    def matrix(self) -> tuple[sp.Expr, ...]:
+        """That of m±, column by column, and the square that its entries are measured by."""
+        return (*self.by_cosine, *self.by_sine, self.square)
 
 
-def _components(axes: Sequence[Vector], half: Vector, sign: int) -> tuple[_Components, _Components]:
+_Either = tuple[_Components, _Components]
+
+
+def _components(axes: Sequence[Vector], half: Vector, sign: int) -> _Either:
     """By the vectors 1± and e₂±: the longer serves where p± and m± are short too."""
     first, middle, last = axes
     scalar, *vector = half
@@ -112,7 +117,7 @@ def _components(axes: Sequence[Vector], half: Vector, sign: int) -> tuple[_Compo
     )
 
 
-def _outer(writer: LineWriter, name: str, either: tuple[_Components, _Components]) -> None:
+def _outer(writer: LineWriter, name: str, either: _Either) -> None:
     """The angle from m± to p±: half the sum or half the difference of the outer angles."""
     a, b, c, d = _longer(writer, either, [each.compared for each in either])
     writer.lines.append((name, f"$atan2({b} * {c} - {a} * {d}, {a} * {c} + {b} * {d})"))
@@ -120,7 +125,7 @@ def _outer(writer: LineWriter, name: str, either: tuple[_Components, _Components
 
 def _longer(
     writer: LineWriter,
-    either: tuple[_Components, _Components],
+    either: _Either,
     values: Sequence[Sequence[sp.Expr]],
 ) -> list[str]:
     """Names for the values by the vector that is longer: by one vector where that is known."""
@@ -141,33 +146,50 @@ def _longer(
     return names
 
 
-def _middle_of_half(writer: LineWriter, either: tuple[_Components, _Components]) -> None:
-    """The middle angle where p± = m±, and how far they are apart in radians.
+def _middle_of_half(writer: LineWriter, fixed: _Either, free: _Either, length: str) -> None:
+    """The middle angle where the fixed half of p is that of m, and how far they are apart.
 
-    The components of m± are a matrix times cos β/2 and sin β/2. Its inverse gives β, roughly where
-    the columns are nearly parallel; steps of least squares (Gauss, Newton) give it exactly.
+    The components of m± are a matrix times cos β/2 and sin β/2: an ellipse, of which the first
+    component tells β but for a sign, that of the second. Steps of least squares (Gauss, Newton)
+    make it exact; they compare the lengths of the free halves too, which tell more where these are
+    short.
     """
-    a, b, c1, c2, s1, s2, square = _longer(writer, either, [each.parts for each in either])
+    a, b, *m = _longer(writer, fixed, [(*each.given, *each.matrix) for each in fixed])
+    n = _longer(writer, free, [each.matrix for each in free])
     writer.lines += [
         ("size", "$hypot(near, far)"),
-        (a, f"{a} / size"),
-        (b, f"{b} / size"),
-        ("side", f"{c1} * {s2} - {c2} * {s1}"),
-        ("half", f"$atan2(side * ({c1} * {b} - {c2} * {a}), side * ({s2} * {a} - {s1} * {b}))"),
+        *((name, f"{name} / (size * $sqrt({m[4]}))") for name in (a, b)),
+        *((name, f"{name} / $sqrt({square})") for *names, square in (m, n) for name in names),
+        ("side", f"{m[0]} * {m[3]} - {m[1]} * {m[2]}"),
+        ("base", f"{m[0]} * {m[0]} + {m[2]} * {m[2]}"),
+        ("bend", f"(base * {b} - ({m[0]} * {m[1]} + {m[2]} * {m[3]}) * {a}) * side"),
+        ("opened", f"base - {a} * {a}"),
+        ("opened", "$sqrt($pick(opened < 0.0, 0.0, opened))"),
+        ("half", f"$atan2({m[2]}, {m[0]}) + $atan2($pick(bend < 0.0, -opened, opened), {a})"),
     ]
     for _ in range(_NEARER):
         writer.lines += [
             ("cosine", "$cos(half)"),
             ("sine", "$sin(half)"),
-            ("apart", f"{a} - cosine * {c1} - sine * {s1}"),
-            ("together", f"{b} - cosine * {c2} - sine * {s2}"),
-            ("near_side", f"cosine * {s1} - sine * {c1}"),
-            ("far_side", f"cosine * {s2} - sine * {c2}"),
-            ("bend", "(apart * near_side + together * far_side)"),
-            ("half", "half + bend / (near_side * near_side + far_side * far_side)"),
+            ("apart", f"{a} - (cosine * {m[0]} + sine * {m[2]})"),
+            ("together", f"{b} - (cosine * {m[1]} + sine * {m[3]})"),
+            ("near_side", f"cosine * {m[2]} - sine * {m[0]}"),
+            ("far_side", f"cosine * {m[3]} - sine * {m[1]}"),
+            ("opened", f"cosine * {n[0]} + sine * {n[2]}"),
+            ("closed", f"cosine * {n[1]} + sine * {n[3]}"),
+            ("side", "$hypot(opened, closed)"),
+            ("opened", f"opened * (cosine * {n[2]} - sine * {n[0]})"),
+            ("opened", f"opened + closed * (cosine * {n[3]} - sine * {n[1]})"),
+            ("opened", "opened / $pick(side == 0.0, 1.0, side)"),
+            (
+                "bend",
+                f"apart * near_side + together * far_side + ({length} / size - side) * opened",
+            ),
+            ("bend", "bend / (near_side * near_side + far_side * far_side + opened * opened)"),
+            ("half", "half + bend"),
         ]
     writer.lines += [
-        ("beyond", f"2.0 * $hypot(apart, together) / $sqrt({square})"),
+        ("beyond", "2.0 * $hypot(apart, together)"),
         ("middle", "$wrapped(half + half)"),
     ]
 

@@ -73,6 +73,16 @@ class ChainTurns:
         return sp.expand(first.dot(middle) - self.mirror * middle.dot(last)) == 0
 
     @property
+    def has_one_axis_twice(self) -> bool:
+        """Whether there are three turns, the middle one about the axis of a neighbour."""
+        if len(self.solved) < _MOST:
+            return False
+        return any(
+            not any(map(sp.expand, sp.Matrix(one).cross(sp.Matrix(other))))
+            for one, other in pairwise(self.axes)
+        )
+
+    @property
     def is_across(self) -> bool:
         """Whether there are three turns, the middle one about an axis across the others."""
         if len(self.solved) < _MOST:
@@ -87,6 +97,8 @@ def chain_turns(model: RotationModel) -> ChainTurns | str:
         return "its coordinates are entries or formulas of R"
     turns = _merged(model.turns)
     moving = [place for place, turn in enumerate(turns) if turn.angle.has(*model.coordinates)]
+    if not moving:
+        return "its turns undo one another"
     linear = {place: _linear(model, turns[place].angle) for place in moving}
     if any(row is None for row in linear.values()):
         return "an angle is not a sum of multiples of the coordinates by numbers"
@@ -95,15 +107,21 @@ def chain_turns(model: RotationModel) -> ChainTurns | str:
     ]
     if not found:
         return "a coordinate stands in several turns, whose angles do not determine it one by one"
-    return next((rule for rule in found if rule.is_across), found[0])
+    sound = [rule for rule in found if not rule.has_one_axis_twice]
+    if not sound:
+        return "turns that follow one another are about one axis, once those between are taken off"
+    return next((rule for rule in sound if rule.is_across), sound[0])
 
 
 def _merged(turns: Sequence[Turn]) -> tuple[Turn, ...]:
-    """The turns, those side by side about one axis as one."""
+    """The turns, those side by side about one axis, or its opposite, as one."""
     merged: list[Turn] = []
     for turn in turns:
-        if merged and merged[-1].direction == turn.direction:
-            merged[-1] = replace(merged[-1], angle=merged[-1].angle + turn.angle)
+        before = merged[-1] if merged else None
+        if before and before.direction == turn.direction:
+            merged[-1] = replace(before, angle=before.angle + turn.angle)
+        elif before and before.direction == tuple(-part for part in turn.direction):
+            merged[-1] = replace(before, angle=before.angle - turn.angle)
         else:
             merged.append(turn)
     return tuple(merged)
@@ -219,7 +237,7 @@ def _branch(model: RotationModel, rule: ChainTurns) -> Iterator[str]:
     else:
         yield "The angles of the turns are in (−π, π]."
     if rule.inverse != sp.eye(len(names)) or any(offset != 0 for offset in rule.offsets):
-        yield f"From them follow {_listed(names)}."
+        yield f"From {'them follow' if len(names) > 1 else 'it follows'} {_listed(names)}."
     if rule.kept:
         kept = _names(model, rule.kept)
         yield (
