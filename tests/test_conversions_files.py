@@ -142,7 +142,7 @@ def test_a_note_shows_them_before_the_proofs(text):
     latex = motion.note(conversions=True).latex()
     assert r"4\,\mathbf{p}\mathbf{p}^{\mathsf T}" in latex
     is_offered = motion.conversions.backward is not None
-    assert ("from\\_quaternion" in latex) is is_offered
+    assert (r"from\_\allowbreak quaternion" in latex) is is_offered
     without = [section.title for section in motion.note().document.sections]
     assert "Conversions" not in without
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from sympy import Rational, pi, symbols
 
+import rigidsym as rs
 from rigidsym import typeset as typesetting
 from rigidsym.errors import MissingTool, ToolFailed
 from rigidsym.mechanics.kinematics import derive
@@ -21,6 +22,7 @@ from rigidsym.notes.formula import latex
 from rigidsym.notes.measure import ems, matrix_ems
 from rigidsym.notes.notation import notation_of
 from rigidsym.notes.note import note
+from rigidsym.rotations import rotation_from
 from rigidsym.typeset import missing_programs, typeset
 
 GREEK = ("phi", "theta", "psi")
@@ -78,6 +80,24 @@ def test_chains_compile_without_a_warning(axis):
     oblique = axis_turn(axis, b) if axis else Turn(axis="y", angle=pi / 6)
     model = chain_of([oblique, Turn(axis="z", angle=a)])
     assert typeset(note(derive(model)).latex()).warnings == ()
+
+
+@pytest.mark.usefixtures("tex")
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[3,1,-1](psi) [0,-2,3](roll_rate) [2,1,-2](theta)", "Its entries, written out"),
+        ("[3,-1,-3](phi + pi/6) [-3,3,-3](theta)", r"{\freely\begin{align*}"),
+        ("davenport", r"from\_\allowbreak quaternion(\allowbreak p, parameters)"),
+    ],
+)
+def test_what_a_page_has_no_room_for_goes_on_on_the_next(text, says):
+    """Displays higher than a page, names in the text, words of which no part is in the fonts."""
+    motion = rs.derive(rotation_from(text, passive=True))
+    written = motion.note(conversions=True).latex()
+    assert says in written
+    assert "[U+" not in written
+    assert typeset(written).warnings == ()
 
 
 @pytest.mark.usefixtures("tex")

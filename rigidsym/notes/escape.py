@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from functools import cache
+from string import ascii_letters, digits
 
 _SPECIAL = {
     "\\": r"\textbackslash{}",
@@ -26,7 +27,6 @@ _SPECIAL = {
 _MATH = {
     "′": "'",
     "ᵀ": r"^{\mathsf T}",
-    "⁻": "^{-}",
     "−": "-",
     "×": r"\times",
     "·": r"\cdot",
@@ -39,14 +39,9 @@ _MATH = {
     "≠": r"\ne",
     "≈": r"\approx",
     "→": r"\to",
-    "²": "^{2}",
-    "³": "^{3}",
-    "¹": "^{1}",
-    **{superscript: f"^{{{digit}}}" for digit, superscript in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")},
-    **{subscript: f"_{{{digit}}}" for digit, subscript in enumerate("₀₁₂₃₄₅₆₇₈₉")},
-    **{subscript: f"_{{{sign}}}" for sign, subscript in zip("+-", "₊₋", strict=True)},
-    "ₐ": "_{a}",
 }
+_SCRIPTS = {"<super>": "^", "<sub>": "_"}  # as Unicode tells of ², ₀, ₊ and ₐ
+_PLAIN = frozenset(f"{ascii_letters}{digits}+-=()")  # what LaTeX writes there as it is
 _GREEK = frozenset(
     (
         *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa"),
@@ -85,8 +80,8 @@ def _cluster(base: str, marks: str) -> str:
 def _character(character: str) -> str:
     if character in _SPECIAL:
         return _SPECIAL[character]
-    if character in _MATH or _greek(character):
-        return rf"\ensuremath{{{_MATH.get(character) or _greek(character)}}}"
+    if formula := _formula(character):
+        return rf"\ensuremath{{{formula}}}"
     if character == "\u00a0":
         return "~"
     if character.isspace() or unicodedata.category(character).startswith("C"):
@@ -95,6 +90,18 @@ def _character(character: str) -> str:
         return character
     parts = unicodedata.normalize("NFD", character)
     return _cluster(parts[0], parts[1:]) if len(parts) > 1 else _code(character)
+
+
+def _formula(character: str) -> str:
+    """A character of formulas, also above or below the line, in LaTeX; empty for others."""
+    if character in _MATH:
+        return _MATH[character]
+    place, *codes = unicodedata.decomposition(character).split() or [""]
+    if place in _SCRIPTS and len(codes) == 1:
+        base = chr(int(codes[0], 16))
+        written = base if base in _PLAIN else _formula(base)
+        return f"{_SCRIPTS[place]}{{{written}}}" if written else ""
+    return _greek(character)
 
 
 def _is_in_font(character: str) -> bool:

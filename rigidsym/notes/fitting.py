@@ -29,6 +29,7 @@ from rigidsym.notes.vector_words import sum_of_vectors
 from rigidsym.notes.words import listed
 
 _MOST_LINES = 24  # of one quantity, where there is a short way to say it
+_MOST_OF_ROTATION = 48  # a page of R itself, which the others are for
 _MOST_NAMES = 3  # that a reader is reminded of one by one
 _ROOM_OF_A_NAME = 6.0  # ems
 
@@ -59,7 +60,8 @@ class Fitter:
             return
         form = self._shortest(equation)
         lines = sum(map(self._lines, self._blocks(form)))
-        if short is not None and lines > _MOST_LINES:
+        is_rotation = step.quantity.name == "rotation_matrix"
+        if short is not None and lines > (_MOST_OF_ROTATION if is_rotation else _MOST_LINES):
             self._namer.forget()
             yield from _said(equation, short, lines)
             return

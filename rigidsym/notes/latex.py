@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from rigidsym import __version__, resources
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.notes.document import (
@@ -24,7 +22,7 @@ from rigidsym.notes.document import (
     Text,
 )
 from rigidsym.notes.escape import escape
-from rigidsym.notes.layout import PAGE, display, pack
+from rigidsym.notes.layout import PAGE, Rows, display, pack
 from rigidsym.notes.paging import paged
 from rigidsym.notes.plain import cleaned
 from rigidsym.notes.prose import announcement
@@ -40,6 +38,8 @@ _DELIMITERS = {
     "comment_end_string": "=))",
 }
 _LINE = 41.5  # ems: 160 mm at 11 points
+_TALL = 30  # lines of text, of about fifty on a page: more than these may part
+_FREE = {"aligned": "align*", "gathered": "gather*"}  # what a page may end within
 
 
 def print_latex(document: Document) -> str:
@@ -114,16 +114,31 @@ class _Printer:
         shown = display(equation, self.document.notation, width)
         announced = self._text(announcement(equation, shown.done))
         lines = [announced] if announced else []
-        return "\n".join([*lines, *self._numbered(equation, shown.latex)])
+        if shown.rows and shown.rows.height > _TALL:
+            lines += self._over_pages(equation, shown.rows)
+        else:
+            lines += self._at_once(equation, shown.latex)
+        if equation.number:
+            lines.append(rf"\remark{{{self._claims(equation)}}}{{{self._function(equation)}}}")
+        return "\n".join(lines)
 
-    def _numbered(self, equation: Equation, inside: str) -> Iterator[str]:
+    def _at_once(self, equation: Equation, inside: str) -> list[str]:
         if not equation.number:
-            yield f"\\[\n{inside}\n\\]"
-            return
-        yield f"\\begin{{resultof}}{{{equation.number}}}{{{self._label(equation.label)}}}"
-        yield inside
-        yield r"\end{resultof}"
-        yield rf"\remark{{{self._claims(equation)}}}{{{self._function(equation)}}}"
+            return [f"\\[\n{inside}\n\\]"]
+        begin = f"\\begin{{resultof}}{{{equation.number}}}{{{self._label(equation.label)}}}"
+        return [begin, inside, r"\end{resultof}"]
+
+    def _over_pages(self, equation: Equation, rows: Rows) -> list[str]:
+        """Lines between which a page may end, which a box would keep together."""
+        environment = _FREE[rows.environment]
+        label = self._label(equation.label)
+        number = [rf"\tag{{{equation.number}}}\label{{{label}}}"] if equation.number else []
+        return [
+            rf"{{\freely\begin{{{environment}}}",
+            rows.inside,
+            *number,
+            rf"\end{{{environment}}}}}",
+        ]
 
     def _claims(self, equation: Equation) -> str:
         kinds = (("Proved", equation.proved), (r"\textbf{Unproved}", equation.unproved))
@@ -132,7 +147,7 @@ class _Printer:
         )
 
     def _function(self, equation: Equation) -> str:
-        return self._span(Code(equation.function)) if equation.function else ""
+        return rf"\texttt{{{escape(equation.function)}}}" if equation.function else ""
 
     def _table(self, table: Table) -> str:
         head, *rows = (
@@ -169,7 +184,7 @@ class _Printer:
             case Markup():
                 return f"${span.latex}$"
             case Code():
-                return rf"\texttt{{{escape(span.text)}}}"
+                return rf"\texttt{{{_breakable(escape(span.text))}}}"
             case Strong():
                 return rf"\textbf{{{escape(span.text)}}}"
             case EquationReference():
@@ -187,6 +202,11 @@ class _Printer:
 
     def _label(self, label: str) -> str:
         return f"{self.document.name}:{label}"
+
+
+def _breakable(code: str) -> str:
+    """Code that a line may end in: names in it are long, and no word of them has a hyphen."""
+    return code.replace(r"\_", r"\_\allowbreak ").replace("(", r"(\allowbreak ")
 
 
 def _columns(table: Table) -> str:

@@ -22,7 +22,7 @@ from rigidsym.notes.notation import Notation
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
 BOX = 0.65  # ems that the box around a result takes
 
-Rows = Sequence[Sequence[str]]
+Entries = Sequence[Sequence[str]]
 Done = Literal["", "abbreviated", "listed"]
 
 _EQUAL = ems("=")
@@ -35,13 +35,36 @@ _BELOW_ROOTS = r" \\[13pt]" + "\n"  # roots in fractions are deeper
 
 
 @dataclass(frozen=True, slots=True)
+class Rows:
+    """Lines below one another, between which a page may end where they are many."""
+
+    environment: Literal["aligned", "gathered"]
+    joint: str
+    lines: tuple[str, ...]
+
+    @property
+    def inside(self) -> str:
+        return self.joint.join(self.lines)
+
+    @property
+    def height(self) -> float:
+        """In lines of text."""
+        return sum(2.4 if r"\frac" in line else 1.3 for line in self.lines)
+
+
+@dataclass(frozen=True, slots=True)
 class Display:
     """The inside of a display, how wide it is, and what was done that the reader must know."""
 
     latex: str
     width: float  # ems; it may be more than was asked for, where there is no place to break
     done: Done = ""
-    lines: int = 1  # of a listing
+    rows: Rows | None = None
+
+    @property
+    def lines(self) -> int:
+        """Of a listing."""
+        return len(self.rows.lines) if self.rows else 1
 
 
 def display(equation: Equation, notation: Notation, width: float) -> Display:
@@ -71,7 +94,11 @@ def _display(equation: Equation, notation: Notation, width: float) -> Display:
             if needed <= width:
                 return Display(form, needed, "abbreviated")
     lines, widest = _listing(equation, full, width)
-    return Display(_environment("aligned", _ROW.join(lines)), widest, "listed", len(lines))
+    return _below(Rows("aligned", _ROW, tuple(lines)), widest, "listed")
+
+
+def _below(rows: Rows, width: float, done: Done = "") -> Display:
+    return Display(_environment(rows.environment, rows.inside), width, done, rows)
 
 
 def height(equation: Equation, notation: Notation) -> float:
@@ -100,11 +127,11 @@ def pack(equations: Sequence[Equation], notation: Notation, width: float) -> str
 
 
 @lru_cache(maxsize=256)
-def _rows(matrix: sp.ImmutableMatrix, notation: Notation, *, shorthand: bool) -> Rows:
+def _rows(matrix: sp.ImmutableMatrix, notation: Notation, *, shorthand: bool) -> Entries:
     return [[latex(e, notation, shorthand=shorthand) for e in row] for row in matrix.tolist()]
 
 
-def _forms(equation: Equation, rows: Rows) -> Iterator[tuple[str, float]]:
+def _forms(equation: Equation, rows: Entries) -> Iterator[tuple[str, float]]:
     """The equation on one line, and broken before its last equals sign; with their widths."""
     yield _one_line(equation, rows)
     if len(equation.sides) > 1:
@@ -115,13 +142,13 @@ def _forms(equation: Equation, rows: Rows) -> Iterator[tuple[str, float]]:
         yield _environment("aligned", lines), ems(first) + _EQUAL + widest
 
 
-def _one_line(equation: Equation, rows: Rows) -> tuple[str, float]:
+def _one_line(equation: Equation, rows: Entries) -> tuple[str, float]:
     sides = [side.latex for side in equation.sides]
     needed = sum(map(ems, sides)) + _EQUAL * len(sides) + matrix_ems(rows)
     return " = ".join([*sides, _matrix(rows)]), needed
 
 
-def _matrix(rows: Rows) -> str:
+def _matrix(rows: Entries) -> str:
     first, *others = (" & ".join(map(_tall, row)) for row in rows)
     text, above = first, first
     for line in others:
@@ -142,7 +169,7 @@ def _tall(entry: str) -> str:
     return rf"\displaystyle {entry}" if r"\frac" in entry else entry
 
 
-def _definitions(equation: Equation, rows: Rows, width: float) -> Display:
+def _definitions(equation: Equation, rows: Entries, width: float) -> Display:
     """Short ones side by side, as many as fit on a line; long ones broken, below one another."""
     lines: list[str] = []
     room = widest = 0.0
@@ -156,7 +183,7 @@ def _definitions(equation: Equation, rows: Rows, width: float) -> Display:
         lines += [line.replace("&=", "=", 1).replace("&", "", 1) for line in broken]
         room = width - own if len(broken) == 1 else 0.0
         widest = max(widest, own)
-    return Display(_environment("gathered", _ROW.join(lines)), widest, lines=len(lines))
+    return _below(Rows("gathered", _ROW, tuple(lines)), widest)
 
 
 def _one(name: Markup) -> Equation:
@@ -192,7 +219,7 @@ def _hung(formula: str, room: float) -> list[Line]:
     return lines
 
 
-def _listing(equation: Equation, rows: Rows, width: float) -> tuple[list[str], float]:
+def _listing(equation: Equation, rows: Entries, width: float) -> tuple[list[str], float]:
     """One entry after the other, long ones broken at + and −; with its width."""
     entries = [entry for row in rows for entry in row]
     head = max(ems(name.latex) for name in equation.entries) + _EQUAL
@@ -215,8 +242,8 @@ def _scalar(equation: Equation, value: str, width: float) -> Display:
     above = [" = ".join([*sides[1:], last])] if sides else []
     head = ems(first) + _EQUAL
     lines, widest = _hanging("=", [*above, value], width - head)
-    inside = first + _HIGH_ROW.join(lines)
-    return Display(_environment("aligned", inside), head + widest, lines=len(lines))
+    lines[0] = first + lines[0]
+    return _below(Rows("aligned", _HIGH_ROW, tuple(lines)), head + widest)
 
 
 def _chain(equation: Equation, width: float) -> Display:
@@ -226,10 +253,12 @@ def _chain(equation: Equation, width: float) -> Display:
     if ems(whole) <= width:
         return Display(whole, ems(whole))
     first, *others = sides
+    if not others:
+        return Display(whole, ems(whole))
     head = ems(first) + _EQUAL
     lines, widest = _hanging("=", others, width - head)
-    inside = first + _HIGH_ROW.join(lines)
-    return Display(_environment("aligned", inside), head + widest, lines=len(lines))
+    lines[0] = first + lines[0]
+    return _below(Rows("aligned", _HIGH_ROW, tuple(lines)), head + widest)
 
 
 def _hanging(sign: str, formulas: Sequence[str], room: float) -> tuple[list[str], float]:

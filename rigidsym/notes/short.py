@@ -5,7 +5,9 @@ from __future__ import annotations
 from rigidsym.mechanics.claims import fill, transpose_of
 from rigidsym.mechanics.derivation import Derivation, Markup, Step
 from rigidsym.mechanics.quantities import BODY, COSINES, RATES, ROTATION, SPACE, Frame
+from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.notation import Notation
+from rigidsym.notes.prose import product, turn
 from rigidsym.notes.vector_rates import rate_of_form
 from rigidsym.notes.vector_words import sum_of_vectors
 
@@ -27,6 +29,8 @@ _FRAMES = {frame.name: frame for frame in (SPACE, BODY)}
 def in_short(step: Step, derivation: Derivation, notation: Notation) -> tuple[Markup, ...] | None:
     """What a quantity is equal to, by other quantities; None where it is known by itself alone."""
     kind, _, frame = step.quantity.name.rpartition("_")
+    if step.quantity.name == "rotation_matrix" and derivation.model.turns:
+        return (_turns(derivation.model, notation),)
     if step.quantity.name == "rotation_rate":
         return (_poisson(passive=derivation.model.passive),)
     if step.quantity.name in _DEFINED or kind == "rates_from_angular_velocity":
@@ -36,6 +40,14 @@ def in_short(step: Step, derivation: Derivation, notation: Notation) -> tuple[Ma
     if kind == "angular_acceleration":
         return (_acceleration(derivation, _FRAMES[frame], notation),)
     return None
+
+
+def _turns(model: RotationModel, notation: Notation) -> Markup:
+    """R_z(φ) R_x(θ) R_z(ψ), and its transpose for A."""
+    whole = product([turn(each, notation) for each in model.turns])
+    if not model.passive:
+        return whole
+    return fill(r"\left({0}\right)^{{\mathsf T}}", "({0})ᵀ", whole)
 
 
 def _poisson(*, passive: bool) -> Markup:
