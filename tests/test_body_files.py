@@ -16,8 +16,9 @@ from click.testing import CliRunner
 
 import rigidsym as rs
 from rigidsym.cli import commands
-from rigidsym.errors import BodyError, SpecError
+from rigidsym.errors import BodyError, KernelError, SpecError
 from rigidsym.models.body import RigidBody, general_inertia, principal_moments
+from rigidsym.pipeline import motion_of, product
 from rigidsym.spec import DerivationSpec, read_file, read_spec
 
 A, B, C, M = sp.symbols("A B C M")
@@ -324,9 +325,63 @@ def test_a_wrong_body_is_refused_with_its_place(text, fault):
     assert fault in "\n".join(faults_of(f"[body]\n{text}"))
 
 
-@pytest.mark.parametrize("name", ["solid_cone", "composite_body"])
-def test_the_shipped_bodies_are_proved(name):
+@pytest.mark.parametrize(("name", "also"), [("solid_cone", ()), ("composite_body", ("mass",))])
+def test_the_shipped_bodies_are_proved(name, also):
     spec = read_file(name)
-    steps = ("mass", "centre_of_mass", "inertia_tensor", "principal_moments", "rotational_energy")
+    steps = (*also, "centre_of_mass", "inertia_tensor", "principal_moments", "rotational_energy")
     assert rs.derive(spec.models[0], steps, body=spec.body).is_proved
     assert DerivationSpec.from_data(spec.to_data()) == spec
+
+
+CONSTANT = """
+[body]
+shape = "sphere"
+radius = 1
+mass = 2
+[output]
+note = ["tex"]
+quantities = ["inertia_tensor"]
+{}
+"""
+
+
+def test_what_depends_on_nothing_has_no_function():
+    spec = read_spec(CONSTANT.format(""), source="a.toml", name="a")
+    with pytest.raises(KernelError, match=r"a: no function to write.*: inertia_tensor; expected"):
+        product(spec)
+    spec = read_spec(CONSTANT.format("kernels = []"), source="a.toml", name="a")
+    assert list(product(spec).files) == ["a.tex", "a.json"]
+
+
+ROOTS = """
+[rotation]
+sequence = "{}"
+[[body.parts]]
+shape = "hemisphere"
+[[body.parts]]
+shape = "box"
+turned = "x(pi/3)"
+[output]
+quantities = ["rotation_matrix", "inertia_tensor", "inertia_tensor_space", "radii_of_gyration"]
+"""
+
+
+@pytest.mark.parametrize("rotation", ["rotation_vector", "zyx", "z(phi) [1,1,1](theta)"])
+def test_roots_of_numbers_in_a_body_stand_beside_any_rotation(rotation):
+    """√415 of the radii of gyration, √3 of a part that is turned."""
+    spec = read_spec(ROOTS.format(rotation), source="a.toml", name="a")
+    motion = motion_of(spec)
+    assert motion.is_proved
+    module = motion.kernels().load()
+    rng = np.random.default_rng(3)
+    symbols = motion.argument("parameters").symbols
+    values = rng.uniform(1, 2, len(symbols))
+    q = rng.uniform(-1, 1, len(motion.model.coordinates))
+    numbers = dict(zip(symbols, values, strict=True))
+    tensor = np.array(spec.body.inertia.xreplace(numbers).evalf(), float)
+    turning = module.rotation_matrix(q)
+    found = module.inertia_tensor_space(q, values)
+    assert np.allclose(found, turning @ tensor @ turning.T)
+    radii = module.radii_of_gyration(values)
+    mass = float(spec.body.mass.xreplace(numbers))
+    assert np.allclose(radii**2 * mass, np.diag(tensor))

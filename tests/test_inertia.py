@@ -9,12 +9,13 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from rigidsym.errors import BodyError
+from rigidsym.errors import BodyError, QuantityError
 from rigidsym.mechanics.bodies import body_of
 from rigidsym.mechanics.inertia_quantities import INERTIA_QUANTITIES
 from rigidsym.mechanics.principal import principal_of
 from rigidsym.models.body import given_inertia
 from rigidsym.models.distribution import Composite, Part, Particle, Particles, Solid
+from rigidsym.models.so3 import elementary
 from rigidsym.models.solids import SHAPES, shaped
 
 A, B, C, M, a, b, c, d, h, m = sp.symbols("A B C M a b c d h m")
@@ -47,9 +48,18 @@ BODIES = {
 }
 
 
+OF_PRINCIPAL = ("principal_moments", "principal_axes", "inertia_ellipsoid")
+ABSENT = {
+    "general": ("mass", "centre_of_mass", *OF_PRINCIPAL),
+    "symmetric": ("mass", "centre_of_mass"),
+    "cylinder": ("mass",),
+    "cone": ("mass",),
+}
+
+
 @cache
 def motion(body: str) -> rs.Motion:
-    return rs.derive("ZXZ", NAMES, body=BODIES[body])
+    return rs.derive("ZXZ", [n for n in NAMES if n not in ABSENT.get(body, ())], body=BODIES[body])
 
 
 @pytest.mark.parametrize("body", BODIES)
@@ -132,6 +142,40 @@ def test_an_irreducible_polynomial_is_left_to_numbers():
     names = [step.quantity.name for step in motion("general").steps]
     assert "principal_moments" not in names
     assert "inertia_tensor_space" in names
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("mass", "it is given, not added up"),
+        ("centre_of_mass", "how its mass is distributed is not given"),
+        ("principal_moments", "no closed form was found, which a general tensor has not"),
+        ("principal_axes", "no closed form was found that is short enough for use"),
+        ("inertia_ellipsoid", "no principal moments were found, or one of them is 0"),
+    ],
+)
+def test_what_a_body_has_not_is_said_where_it_is_asked_for(name, why):
+    with pytest.raises(QuantityError, match=f"has no quantity {name}: {why}"):
+        rs.derive("ZXZ", ["inertia_tensor", name], body=BODIES["general"])
+    everything = rs.derive("ZXZ", body=BODIES["general"])
+    assert name not in [step.quantity.name for step in everything.steps]
+
+
+def test_axes_too_long_for_use_are_left_out_and_the_moments_proved():
+    ring = Part(what=shaped("torus", [b, b / 5], mass=M), at=column(-b / 2, -b / 2, a))
+    cone = Part(
+        what=shaped("cone", [2 * b, 2 * b], mass=m),
+        turned=elementary("y", sp.pi / 2),
+        at=column(2 * c, -b / 2, 2 * c),
+    )
+    body = rs.body_of(Composite(parts=(ring, cone)))
+    found = principal_of(body.inertia)
+    assert found.axes is None
+    assert "too long" in found.because
+    assert rs.derive("ZXZ", ["principal_moments"], body=body).is_proved
+    values = {a: 0.7, b: 0.45, c: 0.9, M: 2.3, m: 0.8}
+    expected = np.linalg.eigvalsh(np.array(body.inertia.xreplace(values), float))
+    assert np.allclose(sorted(float(moment.xreplace(values)) for moment in found.moments), expected)
 
 
 def test_kernels_evaluate_the_body():

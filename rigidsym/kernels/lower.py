@@ -15,6 +15,7 @@ from fractions import Fraction
 from functools import cached_property
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.entire import Entire, at_zero, rewriter_of
 from rigidsym.algebra.halves import halved
@@ -91,6 +92,13 @@ def _convention(model: RotationModel) -> tuple[str, ...]:
     return (*product, *model.convention, presented, *bound)
 
 
+def _roots(derivation: Derivation) -> list[sp.Expr]:
+    """The roots of numbers that a body adds to those of R, such as √3 where a part is turned."""
+    entries = (entry for step in derivation.steps for entry in step.expression)
+    powers = {power for entry in entries for power in entry.atoms(sp.Pow)}
+    return list(sp.ordered(p for p in powers if p.is_number and p.exp.is_Rational))
+
+
 def _named(vector: Vector, names: Names) -> ir.Argument:
     return ir.Argument(
         name=vector.name,
@@ -110,7 +118,7 @@ class _Lowering:
         self._names = names
         model = derivation.model
         inputs = [symbol for vector in derivation.arguments for symbol in vector.symbols]
-        self._given = [*model.matrix, *inputs]
+        self._given = [*model.matrix, *inputs, *_roots(derivation)]
         self._rewriter = rewriter_of(self._given, model.constraints)
 
     def of_step(self, step: Step) -> ir.Kernel:
@@ -200,8 +208,7 @@ class _Lowering:
         plain = list(entries)
         if self._rewriter is None:
             return halved(plain, self._given, self.derivation.model.constraints)
-        found = map(self._rewriter.rewritten, plain)
-        return [old if new is None else new for old, new in zip(plain, found, strict=True)]
+        return [self._rewriter.rewritten(e) or e if e.has(AppliedUndef) else e for e in plain]
 
     def _kernel(
         self, name: str, inputs: Sequence[str], entries: Iterable[sp.Expr], shape: tuple[int, ...]

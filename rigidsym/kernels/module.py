@@ -8,6 +8,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from rigidsym.errors import KernelError
 from rigidsym.kernels.accuracy.digest import digest
 from rigidsym.kernels.accuracy.table import Measured, shipped
 from rigidsym.kernels.derivatives import Asked, derivatives_of, read_requests
@@ -77,11 +78,18 @@ def generate(
     `conversions` adds those between the coordinates, the unit quaternion and the matrix,
     `derivatives` those that are asked for: ["angular_velocity_body by q"]; `measured` are errors
     to state, in place of those that are known of the catalogue. Raises KernelError for an unknown
-    target or derivative, and for an expression that kernels cannot hold.
+    target or derivative, for an expression that kernels cannot hold, and where nothing that is
+    derived depends on anything.
     """
     chosen = printer(target)
     wanted = derivatives_of(derivation, read_requests(derivatives))
     program = lower(derivation, chosen.RESERVED, wanted)
+    if not (program.kernels or conversions):
+        derived = ", ".join(step.quantity.name for step in derivation.steps)
+        raise KernelError(
+            f"{derivation.name}: no function to write, since what is derived depends on nothing: "
+            f"{derived}; expected kernels = [], or another quantity"
+        )
     converting: ConversionProgram | None = None
     ways: tuple[Way, ...] = ()
     if conversions:

@@ -39,7 +39,8 @@ def derive(model: RotationModel, body: RigidBody, only: Collection[str] = ()) ->
     """The kinematics of a rotation model, then the energies and momenta of a body that turns so.
 
     `only` names the quantities to derive; all there are where it is empty. Raises what
-    `kinematics.derive` raises, and ModelError where a name stands for two things.
+    `kinematics.derive` raises, ModelError where a name stands for two things, and QuantityError
+    for quantities that the body has not.
     """
     known = (*QUANTITY_NAMES, *BODY_QUANTITIES)
     unknown = ", ".join(name for name in only if name not in known)
@@ -49,8 +50,16 @@ def derive(model: RotationModel, body: RigidBody, only: Collection[str] = ()) ->
     turning = [name for name in only if name in QUANTITY_NAMES]
     motion = kinematics.derive(model, turning or ("rotation_matrix",) if only else ())
     steps = motion.steps if turning or not only else ()
-    found = _numbered(Values(model, body), only, first=len(steps) + 1)
+    found = tuple(_numbered(Values(model, body), only, first=len(steps) + 1))
+    _raise_if_absent(body, only, {step.quantity.name for step in found})
     return replace(motion, arguments=arguments, body=body, steps=(*steps, *found))
+
+
+def _raise_if_absent(body: RigidBody, only: Collection[str], found: Collection[str]) -> None:
+    absent = [name for name in BODY_QUANTITIES if name in only and name not in found]
+    if absent:
+        reasons = (f"no quantity {name}: {inertia.WITHOUT[name]}" for name in absent)
+        raise QuantityError(f"{body.name} has {'; '.join(reasons)}")
 
 
 def _numbered(values: Values, only: Collection[str], *, first: int) -> Iterator[Step]:

@@ -28,6 +28,15 @@ from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Composite, Known, Part
 
 _ONE = sp.eye(3)
+WITHOUT = MappingProxyType(  # why a body may not have a quantity
+    {
+        "mass": "it is given, not added up",
+        "centre_of_mass": "how its mass is distributed is not given",
+        "principal_moments": "no closed form was found, which a general tensor has not",
+        "principal_axes": "no closed form was found that is short enough for use",
+        "inertia_ellipsoid": "no principal moments were found, or one of them is 0",
+    }
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +216,7 @@ class _Inertia:
         name, inertia = self.body.name, self.body.inertia
         proofs = []
         if found.axes is None:
-            values = [(inertia - moment * _ONE).det(method="berkowitz") for moment in found.moments]
+            values = [_volume(inertia - moment * _ONE) for moment in found.moments]
             proofs.append(_vanishes(sp.Matrix(values), claims.CHARACTERISTIC, name))
         return Found(found.moments, found.because, tuple(proofs))
 
@@ -218,7 +227,7 @@ class _Inertia:
         axes, name = found.axes, self.body.name
         turned = self.body.inertia * axes - axes * sp.diag(*found.moments)
         unit = axes.T * axes - _ONE
-        whole = unit.col_join(sp.Matrix([[axes.det(method="berkowitz") - 1, 0, 0]]))
+        whole = unit.col_join(sp.Matrix([[_volume(axes) - 1, 0, 0]]))
         return Found(
             axes,
             "Each axis is a direction that the tensor keeps.",
@@ -261,6 +270,12 @@ class _Inertia:
 def _moved(mass: sp.Expr, by: sp.MatrixBase) -> sp.Matrix:
     """M (|d|² 1 − d dᵀ)."""
     return mass * (by.dot(by) * _ONE - by * by.T)
+
+
+def _volume(columns: sp.MatrixBase) -> sp.Expr:
+    """The determinant of a matrix (3, 3), as it comes: SymPy's own search for zeros in it."""
+    first, second, third = (columns[:, k] for k in range(3))
+    return first.dot(second.cross(third))
 
 
 def _scalar(value: sp.Expr) -> sp.ImmutableMatrix:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -10,6 +10,7 @@ from rigidsym.algebra.rational import Rationals
 
 _LAMBDA = sp.Symbol("lambda")
 _MOST_OPERATIONS = 200  # of a tensor whose characteristic polynomial is tried
+_MOST_OF_AXES = 1000  # operations of axes: longer ones fill pages, and take minutes to prove
 _LETTERS = ("x", "y", "z")
 
 
@@ -23,7 +24,18 @@ class Principal:
 
 
 def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
-    """The principal moments and axes; None where the characteristic polynomial does not factor."""
+    """The principal moments and axes; None where the characteristic polynomial does not factor.
+
+    There are no axes where they would be too long for use, which with numbers they never are.
+    """
+    found = _found(inertia)
+    if found is None or found.axes is None or sp.count_ops(found.axes) <= _MOST_OF_AXES:
+        return found
+    because = f"{found.because} The axes in symbols would be too long for use."
+    return replace(found, axes=None, because=because)
+
+
+def _found(inertia: sp.ImmutableMatrix) -> Principal | None:
     if inertia.is_diagonal():
         return _diagonal(inertia)
     for alone in (2, 1, 0):
