@@ -168,3 +168,11 @@ def test_formulas_in_its_sentences_are_formulas(text):
     ]
     for sentence in words:
         assert not re.search(r"[₀-₉₊₋α-ορ-ω|×=]|\b(sin|cos|tan|atan2)\b", sentence), sentence
+
+
+@pytest.mark.parametrize("text", ["davenport", "gibbs_vector", "modified_rodrigues"])
+def test_all_vectors_of_a_note_are_in_one_manner(text):
+    """Bold are the matrices and the coordinates alone, where vectors have arrows."""
+    motion = rs.derive(rotation_from(text), ["rotation_matrix"]).written(vectors="arrow")
+    bold = set(re.findall(r"\\mathbf\{(\w+)\}", motion.note(conversions=True).latex()))
+    assert not {letter for letter in bold if letter.islower()} - {"q"}

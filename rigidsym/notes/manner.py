@@ -58,7 +58,7 @@ _POWER_OF_BODY = re.compile(
     r"((?:\\[A-Za-z]+\{[^{}]*\}|\\[A-Za-z]+|\w))'\^\{(-?\d+|\+|\\mathsf T)\}"
 )
 # vectors; bold matrices and columns of coordinates stay so
-_BOLD = re.compile(r"\\(?:mathbf\{([uvwxyrpncdLe])\}|boldsymbol\{(\\[Oo]mega)\})")
+_BOLD = re.compile(r"\\(?:mathbf\{([uvwxyrpmngscdLe])\}|boldsymbol\{(\\[Oo]mega)\})")
 _VECTORS = re.compile(r"([Ωω])(?![₀-₉]|[′ᴮ][₀-₉])")
 _DOT = re.compile(
     r"\\(d?dot)"
