@@ -16,7 +16,7 @@ from rigidsym.mechanics.conversions import conversions_of
 from rigidsym.rotations import rotation_from
 
 EPS = np.finfo(np.float64).eps
-NUMBERS = {"a": 1 / 3, "b": 2 / 3, "c": 2 / 3, "alpha0": 0.7, "beta0": -0.4}
+NUMBERS = {"a": 1 / 3, "b": 2 / 3, "c": 2 / 3, "alpha0": 0.7, "beta0": -0.4, "tau0": 0.7}
 NUMBERS |= {"w": 0.48, "x": 0.64, "turn_1": 0.6}  # an axis whose parts are called like lines
 LEAN = {"b": 0.6, "c": 0.8}
 
@@ -53,8 +53,7 @@ CASES = (
     Case("z(phi) x(theta) [0,1,2](phi)"),
     Case("[1,2,2](phi) [1,0,1](theta) y(phi)"),
     Case("y(-phi) [a,b,c](theta) [1,2,2](phi)"),
-    Case("[0,1,-100](phi) [1,0,0](theta) y(-phi)"),
-    Case("[-300,300,-1](phi) y(theta) [1,1,0](phi)"),  # nearly two sets
+    Case("z(phi) y(tau0) x(theta) y(-tau0) z(phi)"),  # two sets, as the ring knows
     Case("[1,1,0](phi) [1,0,0](theta) z(psi)"),
     Case("[1,0,1](phi) z(theta) [0,1,1](psi)"),
     Case("z(phi) [1,1,1](theta) z(psi)"),
@@ -140,6 +139,47 @@ def test_scalar_twins_and_single_precision_agree(case):
     assert single.dtype == np.float32
     rebuilt = functions.rotation_matrix(single.astype(float), *found.constants)
     assert_allclose(rebuilt, found.matrix, atol=3e-6)
+
+
+MIDDLES = [
+    s * (at + d) for at in (0, np.pi) for d in (0, 1e-17, 1e-12, 1e-9, 3e-8, 1e-5) for s in (1, -1)
+]
+ONE_ANGLE = [
+    *((f"z(phi) x(theta) [1,0,{n}](-phi)", []) for n in (10, 1000, 10**5, 10**7)),
+    *((f"z(phi) x(theta) [1,1,-{n}](phi)", []) for n in (10, 1000, 10**5, 10**7)),
+    *((f"z(phi) [{n},0,1](theta) z(-phi)", []) for n in (10, 1000, 10**5, 10**7)),
+    ("[2,-3,3](phi) [-3,-3,-1](theta) [-3,4,-2](phi)", []),
+    *(("z(phi) [a,b,c](theta) z(-phi)", axis) for axis in ([1, 0, 0], [0.6, 0.8, 0])),
+    ("z(phi) y(tau0) x(theta) y(-tau0) z(-phi)", [0.0]),  # two sets for this tau alone
+    ("z(phi) x(theta) [b,0,c](phi)", [0.0, -1.0]),
+    ("z(phi) x(theta) [b,0,c](-phi)", [0.0, 1.0]),
+]
+
+
+@pytest.mark.parametrize(("text", "constants"), ONE_ANGLE, ids=str)
+def test_one_outer_angle_where_the_two_sets_nearly_meet(text, constants):
+    """No turn, half turns, and what is beside them: where the triangle or the half tells little."""
+    functions = module(text)
+    rng = np.random.default_rng(4)
+    near = np.array([[a, b] for a in (0.0, 0.5, -2.5, np.pi) for b in MIDDLES])
+    q = np.concatenate([near, rng.uniform(-3, 3, (500, 2))])
+    for dtype in (np.float64, np.float32):
+        eps = np.finfo(dtype).eps
+        beside = [np.asarray(constants, dtype)] if constants else []
+        exact = [values.astype(float) for values in beside]
+        matrix = functions.rotation_matrix(q.astype(dtype), *beside)
+        quaternion = functions.quaternion(q.astype(dtype), *beside)
+        for found in (
+            functions.from_rotation_matrix(matrix, *beside),
+            functions.from_quaternion(quaternion, *beside),
+        ):
+            rebuilt = functions.rotation_matrix(found.astype(float), *exact)
+            assert_allclose(rebuilt, matrix, atol=24 * eps, rtol=0)
+    exact = [constants] if constants else []
+    rows = np.asarray(functions.quaternion(q, *exact)).tolist()
+    one_by_one = [functions.from_quaternion_scalar(*row, *constants) for row in rows]
+    rebuilt = functions.rotation_matrix(one_by_one, *exact)
+    assert_allclose(rebuilt, functions.rotation_matrix(q, *exact), atol=24 * EPS, rtol=0)
 
 
 @pytest.mark.parametrize(

@@ -150,7 +150,7 @@ def test_an_irreducible_polynomial_is_left_to_numbers():
         ("mass", "it is given, not added up"),
         ("centre_of_mass", "how its mass is distributed is not given"),
         ("principal_moments", "no closed form was found, which a general tensor has not"),
-        ("principal_axes", "no closed form was found that is short enough for use"),
+        ("principal_axes", "no closed form was found, or none that is short enough"),
         ("inertia_ellipsoid", "no principal moments were found, or one of them is 0"),
     ],
 )

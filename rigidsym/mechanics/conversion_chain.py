@@ -19,6 +19,7 @@ from itertools import combinations, pairwise
 import sympy as sp
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
+from rigidsym.algebra.codec import codec_for
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import rodrigues
@@ -44,6 +45,7 @@ class ChainTurns:
     kept: tuple[int, ...]  # places of the coordinates that are given
     inverse: sp.ImmutableMatrix  # solved coordinates = inverse (angles − offsets); numbers
     offsets: tuple[sp.Expr, ...]  # of the angles, in constants and kept coordinates
+    constraints: tuple[sp.Expr, ...] = ()  # of the constants, which vanish
     mirror: int = 0  # ±1 where the angle of the third turn is that of the first, times this
 
     @property
@@ -70,7 +72,7 @@ class ChainTurns:
         if not self.mirror:
             return len(self.solved) == _MOST
         first, middle, last = self.axes
-        return sp.expand(first.dot(middle) - self.mirror * middle.dot(last)) == 0
+        return self._is_zero(first.dot(middle) - self.mirror * middle.dot(last))
 
     @property
     def has_one_axis_twice(self) -> bool:
@@ -78,7 +80,7 @@ class ChainTurns:
         if len(self.solved) < _MOST:
             return False
         return any(
-            not any(map(sp.expand, sp.Matrix(one).cross(sp.Matrix(other))))
+            all(map(self._is_zero, sp.Matrix(one).cross(sp.Matrix(other))))
             for one, other in pairwise(self.axes)
         )
 
@@ -88,7 +90,12 @@ class ChainTurns:
         if len(self.solved) < _MOST:
             return False
         first, middle, last = self.axes
-        return sp.expand(first.dot(middle)) == 0 and sp.expand(middle.dot(last)) == 0
+        return self._is_zero(first.dot(middle)) and self._is_zero(middle.dot(last))
+
+    def _is_zero(self, expression: sp.Expr) -> bool:
+        """Whether an expression in constants vanishes for all of them, as the ring decides."""
+        codec = codec_for([expression], constraints=self.constraints, order=0)
+        return not codec.encode_quotient(expression).numerator
 
 
 def chain_turns(model: RotationModel) -> ChainTurns | str:
@@ -167,6 +174,7 @@ def _solutions(
             kept=tuple(k for k in range(rows.cols) if k not in places),
             inverse=sp.ImmutableMatrix(square.inv()),
             offsets=tuple(turn.angle.xreplace(free) for turn in solved[: rows.rows]),
+            constraints=model.constraints,
             mirror=mirror,
         )
         return
@@ -236,6 +244,10 @@ def _branch(model: RotationModel, rule: ChainTurns) -> Iterator[str]:
         yield "The angle of the turn is in (−π, π]."
     else:
         yield "The angles of the turns are in (−π, π]."
+    if len(rule.solved) == 2:
+        yield "Where only their sum or their difference is determined, the last is 0."
+    if rule.mirror:
+        yield "Where any outer angle gives the rotation, it is 0."
     if rule.inverse != sp.eye(len(names)) or any(offset != 0 for offset in rule.offsets):
         yield f"From {'them follow' if len(names) > 1 else 'it follows'} {_listed(names)}."
     if rule.kept:

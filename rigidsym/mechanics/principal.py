@@ -26,7 +26,7 @@ class Principal:
 def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
     """The principal moments and axes; None where the characteristic polynomial does not factor.
 
-    There are no axes where they would be too long for use, which with numbers they never are.
+    There are no axes where they would be too long for use.
     """
     found = _found(inertia)
     if found is None or found.axes is None or sp.count_ops(found.axes) <= _MOST_OF_AXES:
