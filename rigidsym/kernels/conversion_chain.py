@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from rigidsym.kernels.conversion_halves import POLES, dot, halves
+from rigidsym.kernels.conversion_halves import POLES, halves
 from rigidsym.kernels.conversion_three import three_turns
 from rigidsym.kernels.formulas import QUATERNION, Line
 from rigidsym.kernels.naming import Names
 from rigidsym.kernels.writing_lines import LineWriter, Local, Vector
 from rigidsym.mechanics.conversion_chain import ChainTurns
-from rigidsym.mechanics.davenport import quaternion_product
+from rigidsym.mechanics.davenport import dot, quaternion_product
 from rigidsym.models.rotation import RotationModel, Turn
 
 _LOCAL = (

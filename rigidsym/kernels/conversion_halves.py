@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import sympy as sp
 
 from rigidsym.kernels.formulas import QUATERNION, Line
 from rigidsym.kernels.writing_lines import LineWriter, Local, Vector, number
-from rigidsym.mechanics.davenport import quaternion_product
+from rigidsym.mechanics.davenport import dot, quaternion_product
 
 _COSINE, _SINE = Local("cosine"), Local("sine")  # of half the middle angle
 POLES: tuple[Line, ...] = (  # where one half is not there, its angle is taken to be the other's
@@ -32,10 +32,6 @@ def halves(writer: LineWriter, parts: Vector, first: Vector, last: Vector) -> tu
         ]
     writer.lines.append(("swing", "2.0 * $atan2(near, far)"))
     return found[0], found[1]
-
-
-def dot(first: Iterable[sp.Expr], second: Iterable[sp.Expr]) -> sp.Expr:
-    return sp.Add(*(a * b for a, b in zip(first, second, strict=True)))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -208,7 +208,8 @@ class _Lowering:
         plain = list(entries)
         if self._rewriter is None:
             return halved(plain, self._given, self.derivation.model.constraints)
-        return [self._rewriter.rewritten(e) or e if e.has(AppliedUndef) else e for e in plain]
+        moving = ((e, self._rewriter.rewritten(e) if e.has(AppliedUndef) else None) for e in plain)
+        return [old if new is None else new for old, new in moving]  # a new one may be zero
 
     def _kernel(
         self, name: str, inputs: Sequence[str], entries: Iterable[sp.Expr], shape: tuple[int, ...]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import reduce
 
 import sympy as sp
@@ -91,9 +92,9 @@ def half_claims(model: RotationModel) -> list[Claim]:
         unit = _half(one, first, last, -sign)
         turned = quaternion_product((zero, *first), unit)
         axis = _half((zero, *middle), first, last, -sign)
-        squares.append(_inner(unit, unit) - (1 + sign * first.dot(last)) / 2)
-        alongs.append(_inner(unit, axis) - sign * first.dot(middle.cross(last)) / 2)
-        across.append(_inner(turned, axis) - (first.dot(middle) + sign * middle.dot(last)) / 2)
+        squares.append(dot(unit, unit) - (1 + sign * first.dot(last)) / 2)
+        alongs.append(dot(unit, axis) - sign * first.dot(middle.cross(last)) / 2)
+        across.append(dot(turned, axis) - (first.dot(middle) + sign * middle.dot(last)) / 2)
     return [
         (
             tuple(squares),
@@ -175,7 +176,8 @@ def _turned(axis: sp.Matrix, angle: sp.Expr, parts: Parts) -> Parts:
     return quaternion_product((sp.cos(angle), *(sp.sin(angle) * axis)), parts)
 
 
-def _inner(first: Parts, second: Parts) -> sp.Expr:
+def dot(first: Iterable[sp.Expr], second: Iterable[sp.Expr]) -> sp.Expr:
+    """The sum of products, part by part, as it comes."""
     return sp.Add(*(a * b for a, b in zip(first, second, strict=True)))
 
 

@@ -273,7 +273,7 @@ def _moved(mass: sp.Expr, by: sp.MatrixBase) -> sp.Matrix:
 
 
 def _volume(columns: sp.MatrixBase) -> sp.Expr:
-    """The determinant of a matrix (3, 3), as it comes: SymPy's own search for zeros in it."""
+    """The determinant of a matrix (3, 3), as it comes; SymPy's own would search for zeros in it."""
     first, second, third = (columns[:, k] for k in range(3))
     return first.dot(second.cross(third))
 
