@@ -36,7 +36,7 @@ _LOCAL = (
         "by_x",
         "by_z",
     ),
-    *("other", "third", "guess", "least", "sign", "along", "across", "step", "weight"),
+    *("whole", "other", "third", "guess", "least", "sign", "along", "across", "step", "weight"),
     *("miss", "miss_2", "miss_3", "slope", "slope_2", "slope_3"),
     *("wx", "wy", "wz", "xy", "xz", "yz", "second", "matrix", "p", "kept", "parameters"),
     *(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)),

@@ -56,8 +56,11 @@ def middle_of_half(writer: LineWriter, fixed: Either, free: Either, length: str,
     for *names, square in (m, n):
         writer.lines.append((square, f"$sqrt($pick({square} > 0.0, {square}, 1.0))"))
         writer.lines += [(name, f"{name} / {square}") for name in names]
-    writer.lines += [(name, f"{name} / ({m[4]} * $hypot(near, far))") for name in (a, b)]
-    writer.lines.append(("other", f"2.0 * {base} - middle"))
+    writer.lines += [
+        ("whole", "$hypot(near, far)"),
+        *((name, f"{name} / ({m[4]} * whole)") for name in (a, b)),
+        ("other", f"2.0 * {base} - middle"),
+    ]
     _choose(writer, (a, b), m)
     for _ in range(_STEPS):
         writer.lines += [
@@ -73,7 +76,7 @@ def middle_of_half(writer: LineWriter, fixed: Either, free: Either, length: str,
             ("slope_3", f"along * (cosine * {n[2]} - sine * {n[0]})"),
             ("slope_3", f"slope_3 + across * (cosine * {n[3]} - sine * {n[1]})"),
             ("slope_3", "slope_3 / $pick(size == 0.0, 1.0, size)"),
-            ("miss_3", f"{length} / $hypot(near, far) - size"),
+            ("miss_3", f"{length} / whole - size"),
             ("step", "miss * slope + miss_2 * slope_2 + miss_3 * slope_3"),
             ("weight", "slope * slope + slope_2 * slope_2 + slope_3 * slope_3"),
             ("half", "half + step / (weight + $tiny)"),  # no step that is rounding alone
@@ -102,8 +105,10 @@ def _choose(writer: LineWriter, given: tuple[str, str], m: Sequence[str]) -> Non
     ):
         writer.lines += [
             ("guess", guess),
-            ("along", f"$cos(guess) * {m[0]} + $sin(guess) * {m[2]}"),
-            ("across", f"$cos(guess) * {m[1]} + $sin(guess) * {m[3]}"),
+            ("cosine", "$cos(guess)"),
+            ("sine", "$sin(guess)"),
+            ("along", f"cosine * {m[0]} + sine * {m[2]}"),
+            ("across", f"cosine * {m[1]} + sine * {m[3]}"),
             ("sign", f"$pick({a} * along + {b} * across < 0.0, -1.0, 1.0)"),
             ("guess", "$pick(sign < 0.0, guess + $pi, guess)"),
             ("miss", f"$hypot({a} - sign * along, {b} - sign * across)"),
