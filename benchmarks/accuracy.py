@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from benchmarks import measured
 from benchmarks.measure import Settings, progress
 from benchmarks.report import Cell, Column, Figure, Report, Table
-from rigidsym.api import derive
-from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.motion import derive
 
 DIGITS = 50
 MOST = 4.0  # eps of the largest entry

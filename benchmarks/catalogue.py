@@ -13,10 +13,10 @@ from sympy.physics.vector import ReferenceFrame, dynamicsymbols
 
 from benchmarks.measure import Settings
 from benchmarks.report import Cell, Column, Figure, Report, Table
-from rigidsym.api import Motion, derive
-from rigidsym.models.catalogue import EULER_SEQUENCES
+from rigidsym.models.euler_angles import EULER_SEQUENCES
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
-from rigidsym.rotations import rotation_from
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.motion import Motion, derive
 
 MOST_SECONDS = 10.0
 MOST_SECONDS_FOR_EIGHT = 1.0

@@ -17,7 +17,9 @@ MOST_SECONDS = 0.150
 MOST_RATIO = 2.5
 REPEATS = 10
 
-_MAIN = "import sys; from rigidsym.cli import main; sys.argv[0] = 'rigidsym'; sys.exit(main())"
+_MAIN = (
+    "import sys; from rigidsym.commands.cli import main; sys.argv[0] = 'rigidsym'; sys.exit(main())"
+)
 
 
 def rigidsym_command() -> list[str]:

@@ -14,9 +14,9 @@ from benchmarks.measure import Settings, progress
 from benchmarks.report import Cell, Column, Figure, Report, Table
 from benchmarks.sympy_energy import BODIES, MOMENTS
 from benchmarks.sympy_forms import agree, operations, values
-from rigidsym.api import derive
 from rigidsym.models.body import principal_moments
-from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.motion import derive
 
 SYMBOLS = {
     "rotational_energy": "E_R",

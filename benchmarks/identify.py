@@ -12,11 +12,11 @@ import numpy as np
 from benchmarks.cold_start import rigidsym_command
 from benchmarks.measure import Settings, Spread, interleaved, peak_memory, run_process, timed
 from benchmarks.report import Column, Figure, Report, Table, spread_columns
-from rigidsym.api import derive
-from rigidsym.detective.identify import identify_file
-from rigidsym.detective.readings import Reading
-from rigidsym.detective.turns import Array
-from rigidsym.models.catalogue import EulerAngles
+from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.motion import derive
+from rigidsym.tools.identify.identify import identify_file
+from rigidsym.tools.identify.readings import Reading
+from rigidsym.tools.identify.turns import Array
 
 MOST_SECONDS = 1.0
 MOST_MEGABYTES = 32

@@ -20,10 +20,10 @@ from benchmarks.accuracy import SYMBOLS, angle_groups, exact, largest_error
 from benchmarks.measure import Spread, interleaved, peak_memory, progress, ratios, timed
 from benchmarks.peers import PEERS, Array, Task
 from benchmarks.report import Cell, Column, Figure, Table, spread_columns
-from rigidsym.api import Motion, derive
-from rigidsym.kernels.lower import lower
+from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.resources import folder
+from rigidsym.motion import Motion, derive
+from rigidsym.system.resources import folder
 
 BODY = "angular_velocity_body"
 CALLS = 500  # of a small function, timed together

@@ -31,8 +31,8 @@ from benchmarks.measure import Settings, Spread, interleaved, progress, ratios, 
 from benchmarks.node import node_side
 from benchmarks.peers import PEERS, Array, Side, Task, jitted
 from benchmarks.report import Cell, Column, Figure, Report, Table, spread_columns
-from rigidsym.api import Motion, derive
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.motion import Motion, derive
 
 SEQUENCE = "ZXZ"
 QUANTITIES = {"angular_velocity_body": "Ω′", "rotation_matrix": "R"}

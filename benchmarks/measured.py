@@ -13,18 +13,18 @@ from dataclasses import dataclass
 
 from benchmarks.measure import Settings, progress
 from benchmarks.report import Cell, Column, Report, Table
-from rigidsym import resources
-from rigidsym.api import Motion
 from rigidsym.kernels.accuracy.digest import digest
 from rigidsym.kernels.accuracy.measure import kernels_of, measure
 from rigidsym.kernels.accuracy.measure_ways import ways_in
 from rigidsym.kernels.accuracy.table import SHIPPED, Measured, Row, shipped
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.models.catalogue import EULER_SEQUENCES
+from rigidsym.models.euler_angles import EULER_SEQUENCES
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of
-from rigidsym.spec import spec_for, spec_of
-from rigidsym.writing import write_text
+from rigidsym.spec.derivation_file import spec_for, spec_of
+from rigidsym.system import resources
+from rigidsym.system.files import write_text
 
 COUNT = 2_000
 STAGES = (("numpy", "c", "javascript", "jax"), ("numba",))  # Numba compiles for seconds

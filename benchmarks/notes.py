@@ -13,10 +13,10 @@ from time import perf_counter
 
 from benchmarks.measure import Settings, interleaved, timed
 from benchmarks.report import Column, Figure, Report, Table
-from rigidsym.api import derive
-from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.motion import derive
+from rigidsym.notes.formats.pdf import missing_programs, typeset
 from rigidsym.notes.note import Note
-from rigidsym.typeset import missing_programs, typeset
 
 MOST_SECONDS = 5.0
 MOST_BEYOND_TEX = 3.0

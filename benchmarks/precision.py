@@ -20,10 +20,10 @@ from benchmarks.measure import Settings, progress
 from benchmarks.report import Cell, Column, Report, Table
 from benchmarks.truth import Truth, mp, turns_of
 from rigidsym.algebra.series import FIRST_SERIES, series_of
-from rigidsym.api import Motion, derive
-from rigidsym.models.catalogue import EULER_SEQUENCES
+from rigidsym.models.euler_angles import EULER_SEQUENCES
 from rigidsym.models.library import PARAMETRISATIONS
-from rigidsym.rotations import rotation_from
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.motion import Motion, derive
 
 Float = type[np.floating[Any]]
 

@@ -13,26 +13,26 @@ Names are loaded on first use, so that `rigidsym --help` imports neither SymPy n
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from rigidsym.version import __version__
 
 _HOMES = {
-    "derive": "rigidsym.api",
-    "identify": "rigidsym.detective.identify",
-    "inertia_of": "rigidsym.measured.inertia",
-    "principal_axes_of": "rigidsym.measured.axes",
+    "derive": "rigidsym.motion",
+    "identify": "rigidsym.tools.identify.identify",
+    "inertia_of": "rigidsym.data.mass.inertia",
+    "principal_axes_of": "rigidsym.data.mass.principal_axes",
     "RigidBody": "rigidsym.models.body",
     "principal_moments": "rigidsym.models.body",
     "general_inertia": "rigidsym.models.body",
-    "solid": "rigidsym.mechanics.bodies",
-    "body_of": "rigidsym.mechanics.bodies",
+    "solid": "rigidsym.mechanics.mass.bodies",
+    "body_of": "rigidsym.mechanics.mass.bodies",
     "Particle": "rigidsym.models.distribution",
     "Particles": "rigidsym.models.distribution",
     "Composite": "rigidsym.models.distribution",
     "Part": "rigidsym.models.distribution",
-    "Identification": "rigidsym.detective.identify",
-    "Motion": "rigidsym.api",
-    "EulerAngles": "rigidsym.models.catalogue",
-    "EULER_SEQUENCES": "rigidsym.models.catalogue",
+    "Identification": "rigidsym.tools.identify.identify",
+    "Motion": "rigidsym.motion",
+    "EulerAngles": "rigidsym.models.euler_angles",
+    "EULER_SEQUENCES": "rigidsym.models.euler_angles",
     "RotationModel": "rigidsym.models.rotation",
     "Turn": "rigidsym.models.rotation",
     "chain": "rigidsym.models.chain",
@@ -45,7 +45,7 @@ _HOMES = {
     "ModifiedRodrigues": "rigidsym.models.vectors",
     "DirectionCosines": "rigidsym.models.matrices",
     "given": "rigidsym.models.matrices",
-    "rotation_from": "rigidsym.rotations",
+    "rotation_from": "rigidsym.models.rotation_text",
     "Citation": "rigidsym.models.rotation",
     "Derivation": "rigidsym.mechanics.derivation",
     "RigidsymError": "rigidsym.errors",
@@ -76,6 +76,7 @@ __all__ = [
     "RotationVector",
     "Turn",
     "UnitQuaternion",
+    "__version__",
     "body_of",
     "chain",
     "derive",
@@ -90,22 +91,22 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from rigidsym.api import Motion, derive
-    from rigidsym.detective.identify import Identification, identify
+    from rigidsym.data.mass.inertia import inertia_of
+    from rigidsym.data.mass.principal_axes import principal_axes_of
     from rigidsym.errors import NotARotation, RigidsymError
-    from rigidsym.measured.axes import principal_axes_of
-    from rigidsym.measured.inertia import inertia_of
-    from rigidsym.mechanics.bodies import body_of, solid
     from rigidsym.mechanics.derivation import Derivation
+    from rigidsym.mechanics.mass.bodies import body_of, solid
     from rigidsym.models.body import RigidBody, general_inertia, principal_moments
-    from rigidsym.models.catalogue import EULER_SEQUENCES, EulerAngles
     from rigidsym.models.chain import chain
     from rigidsym.models.distribution import Composite, Part, Particle, Particles
+    from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
     from rigidsym.models.matrices import DirectionCosines, given
     from rigidsym.models.quaternions import AxisAngle, CayleyKlein, Quaternion, UnitQuaternion
     from rigidsym.models.rotation import Citation, RotationModel, Turn
+    from rigidsym.models.rotation_text import rotation_from
     from rigidsym.models.vectors import GibbsVector, ModifiedRodrigues, RotationVector
-    from rigidsym.rotations import rotation_from
+    from rigidsym.motion import Motion, derive
+    from rigidsym.tools.identify.identify import Identification, identify
 
 
 def __getattr__(name: str) -> Any:

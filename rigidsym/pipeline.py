@@ -10,14 +10,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
-from rigidsym.api import Motion, derive
 from rigidsym.mechanics.derivation import Proof
+from rigidsym.motion import Motion, derive
+from rigidsym.notes.formats.record import record
 from rigidsym.notes.note import Note
-from rigidsym.record import record
-from rigidsym.spec import DerivationSpec
+from rigidsym.spec.derivation_file import DerivationSpec
 
 if TYPE_CHECKING:
-    from rigidsym.mechanics.conversions import Conversions
+    from rigidsym.mechanics.conversions.conversions import Conversions
 
 PDF = "pdf"  # made from the LaTeX, which is written beside it
 PAGE = "page"  # NAME_page.html: the note with a figure that moves

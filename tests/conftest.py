@@ -11,7 +11,7 @@ import pytest
 from hypothesis import settings
 
 import rigidsym as rs
-from rigidsym.api import derive
+from rigidsym.motion import derive
 
 # The same examples in every run: a suite that is red today was red yesterday.
 settings.register_profile("same", derandomize=True, deadline=None)

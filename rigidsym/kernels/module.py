@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 from rigidsym.errors import KernelError
 from rigidsym.kernels.accuracy.digest import digest
 from rigidsym.kernels.accuracy.table import Measured, shipped
-from rigidsym.kernels.derivatives import Asked, derivatives_of, read_requests
-from rigidsym.kernels.lower import lower
+from rigidsym.kernels.lowering.derivatives import Asked, derivatives_of, read_requests
+from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets import printer
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.writing import write_text
+from rigidsym.system.files import write_text
 
 if TYPE_CHECKING:
     from rigidsym.kernels.accuracy.ways import Way
-    from rigidsym.kernels.conversions import ConversionProgram
+    from rigidsym.kernels.conversions.conversions import ConversionProgram
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -94,8 +94,8 @@ def generate(
     ways: tuple[Way, ...] = ()
     if conversions:
         from rigidsym.kernels.accuracy.ways import stated, ways_of
-        from rigidsym.kernels.conversions import lower_conversions
-        from rigidsym.mechanics.conversions import conversions_of
+        from rigidsym.kernels.conversions.conversions import lower_conversions
+        from rigidsym.mechanics.conversions.conversions import conversions_of
 
         converting = lower_conversions(
             derivation, conversions_of(derivation.model), chosen.RESERVED

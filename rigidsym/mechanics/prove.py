@@ -10,8 +10,8 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import DerivationError, NotARotation
+from rigidsym.mechanics.counterexamples import is_nonzero_somewhere
 from rigidsym.mechanics.derivation import Markup, Proof
-from rigidsym.mechanics.points import is_nonzero_somewhere
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
 

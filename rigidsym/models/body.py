@@ -12,7 +12,7 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import BodyError
 from rigidsym.models.distribution import Distribution
-from rigidsym.models.physical import check_inertia, check_mass
+from rigidsym.models.plausibility import check_inertia, check_mass
 from rigidsym.models.rotation import Citation, lecture
 from rigidsym.models.so3 import TIME
 

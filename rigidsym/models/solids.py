@@ -14,7 +14,7 @@ from sympy import Rational, cos, pi, sin
 
 from rigidsym.errors import BodyError
 from rigidsym.models.distribution import Bounds, Solid
-from rigidsym.names import offer
+from rigidsym.text.names import offer
 
 _HALF = Rational(1, 2)
 Geometry = tuple[Sequence[sp.Symbol], Sequence[sp.Expr], Sequence[Bounds], sp.Expr | None]

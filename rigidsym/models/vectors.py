@@ -13,7 +13,7 @@ import sympy as sp
 from rigidsym.errors import ModelError
 from rigidsym.models.rotation import Citation, RotationModel
 from rigidsym.models.so3 import hat, time_function
-from rigidsym.names import check_name
+from rigidsym.text.names import check_name
 
 _SHUSTER = Citation(
     text="M. Shuster, A Survey of Attitude Representations, Journal of the Astronautical "

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.notes.compose import compose
-from rigidsym.notes.document import Document
-from rigidsym.notes.latex import print_latex
-from rigidsym.notes.manner import DEFAULT, Manner
+from rigidsym.notes.document.compose import compose
+from rigidsym.notes.document.document import Document
+from rigidsym.notes.formats.latex import print_latex
+from rigidsym.notes.formula.manner import DEFAULT, Manner
 
 if TYPE_CHECKING:
-    from rigidsym.mechanics.conversions import Conversions
+    from rigidsym.mechanics.conversions.conversions import Conversions
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,19 +36,19 @@ class Note:
 
     def html(self) -> str:
         """A complete HTML file with MathML, for any screen; it loads nothing."""
-        from rigidsym.notes.html import print_html
+        from rigidsym.notes.formats.html import print_html
 
         return print_html(self.document)
 
     def markdown(self) -> str:
         """Markdown with mathematics between dollar signs, as GitHub and Jupyter read it."""
-        from rigidsym.notes.markdown import print_markdown
+        from rigidsym.notes.formats.markdown import print_markdown
 
         return print_markdown(self.document)
 
     def notebook(self) -> str:
         """A Jupyter notebook (.ipynb); raises MissingExtra without nbformat."""
-        from rigidsym.notes.notebook import print_notebook
+        from rigidsym.notes.formats.notebook import print_notebook
 
         return print_notebook(self.document)
 
@@ -73,7 +73,7 @@ def note(
     )
     if conversions is None:
         return Note(document)
-    from rigidsym.notes.conversions import with_conversions
+    from rigidsym.notes.document.conversion_section import with_conversions
 
     return Note(
         with_conversions(
@@ -86,6 +86,6 @@ def _composed(derivation: Derivation) -> Callable[..., Document]:
     """How a derivation is composed, with its theory or without."""
     if not derivation.theory:
         return compose
-    from rigidsym.notes.lecture import compose_lecture
+    from rigidsym.notes.document.lecture_note import compose_lecture
 
     return compose_lecture

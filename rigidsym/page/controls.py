@@ -11,8 +11,8 @@ import sympy as sp
 
 from rigidsym.mechanics.derivation import Argument, Derivation, Markup
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.notation import Notation
-from rigidsym.notes.words import unit_in_words
+from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.prose.words import unit_in_words
 
 _DEGREE = pi / 180
 _SECTIONS = {"q": "Coordinates", "q_dot": "Rates", "parameters": "Constants"}

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from rigidsym.kernels.lower import lower
-from rigidsym.kernels.targets import c, numpy
+from rigidsym.kernels.lowering.lower import lower
+from rigidsym.kernels.targets.c import printer as c
+from rigidsym.kernels.targets.numpy import printer as numpy
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.notes.document import Document
-from rigidsym.notes.layout import display
-from rigidsym.page.c import c_of
-from rigidsym.page.python import python_of
-from rigidsym.page.series import series_for
+from rigidsym.notes.document.document import Document
+from rigidsym.notes.layout.layout import display
+from rigidsym.page.copy_c import c_of
+from rigidsym.page.copy_python import python_of
+from rigidsym.page.copy_series import series_for
 
 LANGUAGES: Mapping[str, str] = {"latex": "LaTeX", "python": "Python", "c": "C"}  # as shown
 

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from rigidsym.kernels.ir import Kernel
-from rigidsym.kernels.lower import lower
-from rigidsym.kernels.targets import javascript
-from rigidsym.mechanics import kinematics
+from rigidsym.kernels.lowering.lower import lower
+from rigidsym.kernels.targets.javascript import printer as javascript
 from rigidsym.mechanics.derivation import Derivation, Markup, Quantity, Step
+from rigidsym.mechanics.kinematics import derive as kinematics
 from rigidsym.models.rotation import RotationModel
 from rigidsym.page.stage import has_turns
 

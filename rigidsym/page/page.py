@@ -12,21 +12,21 @@ from collections.abc import Iterator, Sequence
 from itertools import accumulate
 from typing import Any
 
-from rigidsym import resources
-from rigidsym.kernels.lower import MARGIN
+from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Markup, Step
-from rigidsym.notes.document import Document, Equation, Paragraph
-from rigidsym.notes.html import escape, rendered
-from rigidsym.notes.mathml import mathml
-from rigidsym.notes.measure import ems
-from rigidsym.notes.singular_words import singular
-from rigidsym.notes.words import unit_in_words
+from rigidsym.notes.document.document import Document, Equation, Paragraph
+from rigidsym.notes.formats.html import escape, rendered
+from rigidsym.notes.formats.mathml import mathml
+from rigidsym.notes.layout.text_width import ems
+from rigidsym.notes.prose.singular_words import singular
+from rigidsym.notes.prose.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
 from rigidsym.page.copies import LANGUAGES, copies_of
 from rigidsym.page.functions import SHOWN, functions_of
 from rigidsym.page.packing import pack
 from rigidsym.page.printer import Packable, PagePrinter
 from rigidsym.page.stage import shown_angles, stage_of
+from rigidsym.system import resources
 
 TEMPLATE = "page.html.jinja"
 SCRIPT = "page.mjs.jinja"

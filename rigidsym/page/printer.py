@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from rigidsym.mechanics.derivation import Markup
-from rigidsym.notes.document import (
+from rigidsym.notes.document.document import (
     Block,
     Document,
     Equation,
@@ -14,7 +14,7 @@ from rigidsym.notes.document import (
     Table,
     Text,
 )
-from rigidsym.notes.html import Printer, escape
+from rigidsym.notes.formats.html import Printer, escape
 
 Packable = Equation | EquationRow | Paragraph | Table
 

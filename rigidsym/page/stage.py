@@ -9,15 +9,15 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.mechanics.derivation import Markup
-from rigidsym.mechanics.quantities import SPACE
+from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import AXES
-from rigidsym.notes.figure import MOST_TURNS, turns_of, view_of
-from rigidsym.notes.formula import markup
-from rigidsym.notes.notation import Notation
-from rigidsym.notes.scene import BODY
-from rigidsym.notes.svg import as_in_formulas
-from rigidsym.notes.words import VECTOR
+from rigidsym.notes.figure.figure import MOST_TURNS, turns_of, view_of
+from rigidsym.notes.figure.scene import BODY
+from rigidsym.notes.figure.svg import as_in_formulas
+from rigidsym.notes.formula.formula import markup
+from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.prose.words import VECTOR
 
 _AZIMUTH, _ELEVATION = 35, 22  # degrees, where no figure says better
 _AXIS = Markup(r"\mathbf{e}", "e")  # of the one turn that any rotation is

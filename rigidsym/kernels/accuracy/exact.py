@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from rigidsym.kernels.derivatives import Derivative
-from rigidsym.kernels.lower import MARGIN, margins_of, rewritten
+from rigidsym.kernels.lowering.derivatives import Derivative
+from rigidsym.kernels.lowering.lower import MARGIN, margins_of, rewritten
 from rigidsym.mechanics.derivation import Argument, Derivation
 
 

@@ -18,14 +18,14 @@ from rigidsym.kernels.accuracy.points import NEAREST, Points
 from rigidsym.kernels.accuracy.table import Measured, Row, rounded_up
 from rigidsym.kernels.accuracy.tools import caller, tool
 from rigidsym.kernels.accuracy.truth import Truth, precise
-from rigidsym.kernels.conversions import in_closed_form
-from rigidsym.kernels.derivatives import Asked, Derivative, derivatives_of, read_requests
+from rigidsym.kernels.conversions.conversions import in_closed_form
 from rigidsym.kernels.ir import Kernel
-from rigidsym.kernels.lower import lower
+from rigidsym.kernels.lowering.derivatives import Asked, Derivative, derivatives_of, read_requests
+from rigidsym.kernels.lowering.lower import lower
+from rigidsym.kernels.lowering.rounding import used_plainly
 from rigidsym.kernels.module import generate
-from rigidsym.kernels.rounding import used_plainly
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.kernels.targets.numpy_singular import calls_of, guards_of, kinds
+from rigidsym.kernels.targets.singular import calls_of, guards_of, kinds
 from rigidsym.mechanics.derivation import Derivation
 
 POINTS = 1000
@@ -162,7 +162,7 @@ def _parts(
     """Derivations, each with points of its own, and the derivatives that are asked for."""
     yield derivation, derivatives_of(derivation, read_requests(derivatives))
     if conversions:
-        from rigidsym.mechanics.conversions import conversions_of
+        from rigidsym.mechanics.conversions.conversions import conversions_of
 
         yield in_closed_form(derivation, conversions_of(derivation.model)), ()
 

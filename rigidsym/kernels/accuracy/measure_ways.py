@@ -16,10 +16,10 @@ from rigidsym.kernels.accuracy.rotations import Given, Rotations, rotation_of
 from rigidsym.kernels.accuracy.table import Row, rounded_up
 from rigidsym.kernels.accuracy.tools import called, caller
 from rigidsym.kernels.accuracy.ways import Way, ways_of
-from rigidsym.kernels.conversions import lower_conversions
-from rigidsym.kernels.lower import lower
+from rigidsym.kernels.conversions.conversions import lower_conversions
+from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.mechanics.conversions import conversions_of
+from rigidsym.mechanics.conversions.conversions import conversions_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.quaternions import UnitQuaternion
 

@@ -24,9 +24,9 @@ from rigidsym.kernels.accuracy.points import NEAREST, Points
 from rigidsym.kernels.accuracy.table import SMALL
 from rigidsym.kernels.accuracy.truth import FLOATS, Truth, precise
 from rigidsym.kernels.accuracy.ways import LONGEST, NEAREST_SINGLE, SHORTEST
-from rigidsym.mechanics.conversion_chain import ChainTurns, chain_turns
-from rigidsym.mechanics.conversion_forms import ClosedForm
-from rigidsym.mechanics.conversions import conversions_of, outer_product
+from rigidsym.mechanics.conversions.closed_forms import ClosedForm
+from rigidsym.mechanics.conversions.conversions import conversions_of, outer_product
+from rigidsym.mechanics.conversions.turn_chain import ChainTurns, chain_turns
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.quaternions import Quaternion
 from rigidsym.models.rotation import RotationModel

@@ -13,10 +13,10 @@ from functools import cache
 from math import ceil, floor, log10
 from pathlib import Path
 
-from rigidsym import resources
 from rigidsym.errors import CheckError
 from rigidsym.kernels.accuracy.digest import DIGITS, digest
 from rigidsym.kernels.ir import Kernel, Program
+from rigidsym.system import resources
 
 SHIPPED = Path(__file__).with_name("measured.csv")
 SMALL, LARGE, LARGEST = 3.0, 1e4, 1e15  # sizes of coordinates that points are taken from

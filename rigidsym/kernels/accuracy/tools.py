@@ -56,7 +56,7 @@ def _jitted(function: Function) -> Function:
 
 
 def _compiler() -> str:
-    from rigidsym.kernels.targets.c_build import compiler
+    from rigidsym.kernels.targets.c.build import compiler
 
     return _first_line(compiler(), "--version")
 

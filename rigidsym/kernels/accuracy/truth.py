@@ -16,8 +16,8 @@ import sympy as sp
 from mpmath import MPContext
 from numpy.typing import NDArray
 
-from rigidsym.algebra.entire import Entire
 from rigidsym.algebra.series import closed_form
+from rigidsym.algebra.stumpff import Entire
 from rigidsym.errors import KernelError
 
 DIGITS = 50

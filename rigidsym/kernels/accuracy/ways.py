@@ -15,14 +15,14 @@ from typing import TypeVar
 
 import sympy as sp
 
-from rigidsym import resources
 from rigidsym.kernels.accuracy.digest import DIGITS, digest
 from rigidsym.kernels.accuracy.table import SMALL, Measured, Row
-from rigidsym.kernels.conversion_unwrap import Unwrapping
-from rigidsym.kernels.conversions import ConversionProgram, Formula
+from rigidsym.kernels.conversions.conversions import ConversionProgram, Formula
+from rigidsym.kernels.conversions.unwrap import Unwrapping
 from rigidsym.kernels.ir import Kernel
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.rotation import RotationModel
+from rigidsym.system import resources
 
 Told = TypeVar("Told", Formula, Unwrapping)
 

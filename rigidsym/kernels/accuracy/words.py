@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from rigidsym.kernels.ir import Kernel
-from rigidsym.kernels.rounding import SINE, adds_angles, rounding
-from rigidsym.kernels.targets.numpy_singular import calls_of
+from rigidsym.kernels.lowering.rounding import SINE, adds_angles, rounding
+from rigidsym.kernels.targets.singular import calls_of
 
 _LARGE = "Angles of any size are right."
 _ADDED = (

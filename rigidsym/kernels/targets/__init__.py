@@ -19,7 +19,7 @@ from rigidsym.errors import KernelError
 from rigidsym.kernels.ir import Program
 
 if TYPE_CHECKING:
-    from rigidsym.kernels.conversions import ConversionProgram
+    from rigidsym.kernels.conversions.conversions import ConversionProgram
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -91,4 +91,4 @@ def check_target(target: str) -> None:
 def printer(target: str) -> Printer:
     """The file of a target; raises KernelError where there is none of this name."""
     check_target(target)
-    return cast(Printer, import_module(f"{__name__}.{target}"))
+    return cast(Printer, import_module(f"{__name__}.{target}.printer"))

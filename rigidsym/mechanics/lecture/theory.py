@@ -18,8 +18,8 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.present import presenter_for
-from rigidsym.mechanics.composition import hat, unhat
 from rigidsym.mechanics.derivation import Markup, Proof, Statement
+from rigidsym.mechanics.kinematics.composition import hat, unhat
 from rigidsym.mechanics.lecture import bases, bodies, momenta
 from rigidsym.mechanics.particles import IN_BODY, MASS, Sum
 from rigidsym.mechanics.prove import Prover

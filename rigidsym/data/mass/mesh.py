@@ -1,0 +1,126 @@
+"""A closed triangle mesh as a solid of uniform density: STL, OBJ, PLY and what else trimesh reads.
+
+Sums over signed tetrahedra between a place inside and each triangle, after D. Eberly, Polyhedral
+Mass Properties (2002), whose integrals are those over the unit simplex.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidsym.data.mass.blocks import inertia_from
+from rigidsym.data.mass.principal_axes import principal_axes_of
+from rigidsym.data.mass.properties import Measured
+from rigidsym.errors import BodyError, MissingExtra
+
+Array = NDArray[np.float64]
+ENDINGS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf")
+_SIMPLEX = 1 / 6, 1 / 24, 1 / 120  # ∫ 1, ∫ u, ∫ u v over the unit simplex; ∫ u² is twice the last
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Mesh:
+    """Corners (n, 3), in m, and triangles (k, 3) of their numbers."""
+
+    vertices: Array
+    faces: NDArray[np.int64]
+
+
+def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
+    """A mesh from a file; lengths in it times `scale` are metres.
+
+    Raises MissingExtra without trimesh, BodyError for a file that holds no mesh of finite numbers.
+    """
+    try:
+        import trimesh
+    except ImportError:
+        raise MissingExtra("reading meshes", "mesh") from None
+    if not path.is_file():
+        raise BodyError(f"{path}: no such mesh")
+    try:
+        loaded = trimesh.load(path, force="mesh", process=True)
+    except (ValueError, IndexError, KeyError, TypeError, NotImplementedError) as error:
+        raise BodyError(f"{path}: cannot be read as a mesh: {error}") from None
+    loaded.merge_vertices(merge_tex=True, merge_norm=True)
+    vertices = np.asarray(loaded.vertices, dtype=float) * scale
+    faces = np.asarray(loaded.faces, dtype=np.int64)
+    if not len(faces):
+        raise BodyError(f"{path}: no triangles in it")
+    if not np.isfinite(vertices).all():
+        wrong = int(np.argmin(np.isfinite(vertices).all(axis=1)))
+        raise BodyError(f"{path}: corner {wrong} is not finite: {vertices[wrong].tolist()}")
+    return Mesh(vertices=vertices, faces=faces)
+
+
+def mesh_inertia(
+    mesh: Mesh, *, mass: float | None = None, density: float | None = None, allow: bool = False
+) -> Measured:
+    """Mass, centre, inertia tensor and principal axes of a mesh that is filled uniformly.
+
+    `mass` in kg or `density` in kg/m³. Raises BodyError for a surface that is open, whose faces
+    do not all look outwards, or that is inside out; `allow` takes it as it is.
+    """
+    if (mass is None) == (density is None):
+        raise BodyError("mesh: expected either the mass or the density")
+    for what, given, unit in (("mass", mass, "kg"), ("density", density, "kg/m³")):
+        if given is not None and not (np.isfinite(given) and given > 0):
+            raise BodyError(f"mesh: the {what} is {given:g} {unit}; expected a positive number")
+    if not allow:
+        check_closed(mesh)
+    inside = mesh.vertices.mean(axis=0)
+    triangles = (mesh.vertices - inside)[mesh.faces]
+    six = np.linalg.det(triangles)
+    volume = float(six.sum() * _SIMPLEX[0])
+    if not volume > 0:
+        raise BodyError(
+            f"mesh: the surface is inside out: its volume is {volume:.6g} m³; turn its faces over"
+            if volume
+            else "mesh: it holds no volume"
+        )
+    corners = triangles.sum(axis=1)
+    first = (six[:, None] * corners).sum(axis=0) * _SIMPLEX[1]
+    own = np.einsum("t,tpi,tpj->ij", six, triangles, triangles, optimize=True)
+    both = np.einsum("t,ti,tj->ij", six, corners, corners, optimize=True)
+    second = (own + both) * _SIMPLEX[2] - np.outer(first, first) / volume
+    factor = mass / volume if mass is not None else density
+    assert factor is not None
+    second = (second + second.T) * (factor / 2)
+    inertia = inertia_from(second)
+    return Measured(
+        count=len(mesh.faces),
+        mass=volume * factor,
+        centre=inside + first / volume,
+        inertia=inertia,
+        principal=principal_axes_of(inertia),
+    )
+
+
+def check_closed(mesh: Mesh) -> None:
+    """Raises BodyError, with the edge, where an edge is not between two faces of one sense."""
+    faces = mesh.faces
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    count = len(mesh.vertices)
+    forward, backward = edges @ (count, 1), edges @ (1, count)
+    found, times = np.unique(forward, return_counts=True)
+    if times.max() > 1:
+        edge = int(found[np.argmax(times)])
+        raise BodyError(
+            f"mesh: {int((times > 1).sum())} edges have two faces that go along them in the same "
+            f"direction, such as {_edge(edge, mesh)}: some faces are turned over"
+        )
+    open_edges = np.setdiff1d(backward, found)
+    if len(open_edges):
+        raise BodyError(
+            f"mesh: the surface is open: {len(open_edges)} edges have one face alone, such as "
+            f"{_edge(int(open_edges[0]), mesh)}"
+        )
+
+
+def _edge(code: int, mesh: Mesh) -> str:
+    start, end = divmod(code, len(mesh.vertices))
+    places = (", ".join(f"{x:.6g}" for x in mesh.vertices[k]) for k in (start, end))
+    return " to ".join(f"({place})" for place in places)

@@ -1,0 +1,83 @@
+"""What was measured of a body, and how it is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidsym.data.column_names import counted
+from rigidsym.data.mass.principal_axes import PrincipalAxes
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Measured:
+    """A body in numbers, SI units."""
+
+    count: int  # particles, or faces of a mesh
+    mass: float  # kg
+    centre: Array  # (3,), m
+    inertia: Array  # (3, 3), about the centre of mass, kg m²
+    principal: PrincipalAxes
+
+    @property
+    def radii(self) -> Array:
+        """Radii of gyration about the principal axes, (3,), m: √(Iₖ/M)."""
+        return np.sqrt(np.maximum(self.principal.moments, 0) / self.mass)
+
+    def text(self, noun: str = "particle") -> str:
+        """A few lines for a terminal; `noun` is what was counted."""
+        return f"{counted(self.count, noun)}\n{self._in_numbers()}"
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        """What Jupyter shows: what a terminal does, but for what was counted."""
+        return {"text/plain": self._in_numbers()}
+
+    def _in_numbers(self) -> str:
+        principal = self.principal
+        lines = [
+            f"mass                 M = {_number(self.mass)} kg",
+            f"centre of mass       c = ({_row(self.centre)}) m",
+            "inertia tensor about the centre of mass, kg m²",
+            *_grid(self.inertia),
+            f"principal moments    {_row(principal.moments)} kg m²",
+            "principal axes, one a column, right-handed",
+            *_grid(principal.axes),
+            f"radii of gyration    {_row(self.radii)} m",
+        ]
+        return "\n".join([*lines, *([principal.repeated] if principal.repeated else [])])
+
+    def record(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        return {
+            **({"count": self.count} if self.count else {}),
+            "mass": self.mass,
+            "centre_of_mass": self.centre.tolist(),
+            "inertia_tensor": self.inertia.tolist(),
+            "principal_moments": self.principal.moments.tolist(),
+            "principal_axes": self.principal.axes.tolist(),
+            "radii_of_gyration": self.radii.tolist(),
+            "repeated": self.principal.repeated,
+        }
+
+
+def _number(value: float) -> str:
+    return f"{value + 0.0:.15g}"  # −0 + 0 is 0
+
+
+def _row(values: Iterable[float]) -> str:
+    return ", ".join(map(_number, values))
+
+
+def _grid(matrix: Array) -> list[str]:
+    rows = [[f"{entry + 0.0: .12g}" for entry in row] for row in matrix]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  " + "  ".join(e.ljust(width) for e, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]

@@ -1,0 +1,347 @@
+"""Expressions of a derivation -> kernels.
+
+Tangents and their like become sines over cosines, the sine and the cosine of an angle are taken
+once, and what the outputs of a kernel have in common is computed once. Where n = √(v·v) leaves a
+removable singularity, it is written in the entire functions of n²; where 1 ± cos θ divides, in
+θ/2; and divisors that can vanish are guarded. Nothing else is changed: put back into each other,
+the assignments are the derivation's own expression.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from functools import cached_property
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from rigidsym.algebra.halves import halved
+from rigidsym.algebra.stumpff import Entire, at_zero, rewriter_of
+from rigidsym.errors import KernelError
+from rigidsym.kernels import ir
+from rigidsym.kernels.lowering.cse import Factors, Graph, Weighted
+from rigidsym.kernels.lowering.derivatives import Derivative
+from rigidsym.kernels.lowering.guard import guarded
+from rigidsym.kernels.lowering.naming import Names
+from rigidsym.kernels.lowering.schedule import write
+from rigidsym.mechanics.derivation import Argument as Vector
+from rigidsym.mechanics.derivation import Derivation, Measure, Singularities, Step
+from rigidsym.mechanics.quantities.energy import body_in_words
+from rigidsym.models.rotation import RotationModel
+
+MARGIN = "singularity_margin"
+Monomial = tuple[Fraction, Factors]  # a number times nodes of the graph, ~node dividing
+
+_QUOTIENTS: Mapping[type, tuple[str, str]] = {  # numerator and denominator; "" for one
+    sp.tan: ("sin", "cos"),
+    sp.cot: ("cos", "sin"),
+    sp.sec: ("", "cos"),
+    sp.csc: ("", "sin"),
+    sp.sin: ("sin", ""),
+    sp.cos: ("cos", ""),
+}
+
+
+def lower(
+    derivation: Derivation, reserved: Iterable[str] = (), derivatives: Iterable[Derivative] = ()
+) -> ir.Program:
+    """The kernels of a derivation, one a quantity, in the order of its equations; derivatives last.
+
+    `reserved` are the words of the target that no name may be. Raises KernelError for an
+    expression that kernels cannot hold.
+    """
+    kernels = _Lowering(derivation, Names(reserved))
+    # a tensor given in numbers takes no arguments, and is no function
+    found = tuple(kernels.of_step(step) for step in derivation.steps if step.quantity.inputs)
+    found += tuple(kernels.margin())
+    found += tuple(map(kernels.of_derivative, derivatives))
+    used = {argument.name for kernel in found for argument in kernel.arguments}
+    model = derivation.model
+    return ir.Program(
+        name=derivation.name,
+        title=derivation.title,
+        convention=(*_convention(model), *body_in_words(derivation.body)),
+        source=str(model.source),
+        arguments=tuple(a for name, a in kernels.arguments.items() if name in used),
+        kernels=found,
+    )
+
+
+def rewritten(derivation: Derivation, entries: Iterable[sp.Expr]) -> list[sp.Expr]:
+    """Expressions in the form that kernels evaluate them in."""
+    return _Lowering(derivation, Names()).rewritten(entries)
+
+
+def margins_of(derivation: Derivation) -> tuple[sp.Expr, sp.Expr] | None:
+    """What `singularity_margin` is, exactly and as evaluated; None where there is none."""
+    return _Lowering(derivation, Names()).margins()
+
+
+def _convention(model: RotationModel) -> tuple[str, ...]:
+    """The convention in sentences, the frames of R among them."""
+    presented = (
+        "Passive: rotation_matrix is the direction cosine matrix A = Rᵀ, which takes space "
+        "components to body components, x′ = A x; R itself turns the body."
+        if model.passive
+        else "Active: R takes body components to space components, x = R x′."
+    )
+    product = (f"R = {model.product}.",) if model.turns else ()
+    bound = tuple(f"R is a rotation where {condition}." for condition in model.conditions)
+    return (*product, *model.convention, presented, *bound)
+
+
+def _roots(derivation: Derivation) -> list[sp.Expr]:
+    """The roots of numbers that a body adds to those of R, such as √3 where a part is turned."""
+    entries = (entry for step in derivation.steps for entry in step.expression)
+    powers = {power for entry in entries for power in entry.atoms(sp.Pow)}
+    return list(sp.ordered(p for p in powers if p.is_number and p.exp.is_Rational))
+
+
+def _named(vector: Vector, names: Names) -> ir.Argument:
+    return ir.Argument(
+        name=vector.name,
+        components=tuple(names.fresh(name) for name in vector.names),
+        units=vector.units,
+        about=vector.about,
+    )
+
+
+class _Lowering:
+    """The kernels of one derivation, over the same names."""
+
+    def __init__(self, derivation: Derivation, names: Names) -> None:
+        self.derivation = derivation
+        self._vectors = {vector.name: vector for vector in derivation.arguments}
+        self.arguments = {vector.name: _named(vector, names) for vector in derivation.arguments}
+        self._names = names
+        model = derivation.model
+        inputs = [symbol for vector in derivation.arguments for symbol in vector.symbols]
+        self._given = [*model.matrix, *inputs, *_roots(derivation)]
+        self._rewriter = rewriter_of(self._given, model.constraints)
+
+    def of_step(self, step: Step) -> ir.Kernel:
+        """The kernel of one quantity."""
+        quantity = step.quantity
+        entries = self.rewritten(map(self._over_squares, step.expression))
+        kernel = self._kernel(quantity.name, quantity.inputs, entries, step.shape)
+        return replace(
+            kernel,
+            equation=step.number,
+            symbol=quantity.symbol.text,
+            definition=quantity.definition.text,
+            about=quantity.about,
+            unit=quantity.unit,
+        )
+
+    def of_derivative(self, derivative: Derivative) -> ir.Kernel:
+        """The kernel of a value and its derivative, one after the other."""
+        for vector in derivative.vectors:
+            if vector.name not in self.arguments:
+                self._vectors[vector.name] = vector
+                self.arguments[vector.name] = _named(vector, self._names)
+        step = derivative.step
+        count = len(step.expression)
+        entries = self.rewritten([*step.expression, *derivative.jacobian()])
+        entries = [*entries[:count], *derivative.results(entries[count:])]
+        inputs = [vector.name for vector in derivative.vectors]
+        kernel = self._kernel(derivative.request.name, inputs, entries, (len(entries),))
+        return replace(
+            kernel,
+            symbol=f"{step.quantity.symbol.text} by {derivative.by.name}",
+            about=derivative.about,
+            unit=step.quantity.unit,
+            parts=derivative.parts,
+        )
+
+    def margin(self) -> Iterator[ir.Kernel]:
+        """How far the rate matrix is from failing, where it is among the quantities and may."""
+        found = self._failing
+        if found is None:
+            return
+        minors = self.rewritten(found.minors)
+        scale, about = _scaled(minors, found)
+        value = _size(minors, scale)
+        is_free = value.free_symbols.isdisjoint(self.derivation.model.constants)
+        inputs = ("q",) if is_free else ("q", "parameters")
+        kernel = self._kernel(MARGIN, inputs, [value], ())
+        yield replace(kernel, symbol=_symbol(found.measure) + _over(scale), about=about)
+
+    def margins(self) -> tuple[sp.Expr, sp.Expr] | None:
+        """The same in the derivation's own minors, and as the kernel evaluates it."""
+        found = self._failing
+        if found is None:
+            return None
+        minors = self.rewritten(found.minors)
+        scale, _ = _scaled(minors, found)
+        return _size(found.minors, scale), _size(minors, scale)
+
+    @property
+    def _failing(self) -> Singularities | None:
+        found = self.derivation.singularities
+        return found if found is not None and _can_fail(found) else None
+
+    def _over_squares(self, entry: sp.Expr) -> sp.Expr:
+        """The entry with the minors squared in place of the determinant that divides.
+
+        They are equal, but a sum of squares keeps its digits where it is nearly zero.
+        """
+        for below in entry.atoms(sp.Pow) if self._squares else ():
+            number, base = below.base.as_content_primitive()
+            if below.exp == -1 and base in self._squares:
+                entry = entry.xreplace({below: 1 / (number * self._squares[base])})
+        return entry
+
+    @cached_property
+    def _squares(self) -> dict[sp.Expr, sp.Expr]:
+        """The determinant but for a number, either sign: the same as a sum of squares."""
+        found = self.derivation.singularities
+        if found is None or found.determinant is None or len(found.minors) < 2:
+            return {}
+        number, base = found.determinant.as_content_primitive()
+        squares = sp.Add(*(minor**2 for minor in found.minors)) / number
+        return {base: squares, -base: -squares}
+
+    def rewritten(self, entries: Iterable[sp.Expr]) -> list[sp.Expr]:
+        """The entries in forms that keep their digits where they can: see `algebra`."""
+        plain = list(entries)
+        if self._rewriter is None:
+            return halved(plain, self._given, self.derivation.model.constraints)
+        moving = ((e, self._rewriter.rewritten(e) if e.has(AppliedUndef) else None) for e in plain)
+        return [old if new is None else new for old, new in moving]  # a new one may be zero
+
+    def _kernel(
+        self, name: str, inputs: Sequence[str], entries: Iterable[sp.Expr], shape: tuple[int, ...]
+    ) -> ir.Kernel:
+        arguments = tuple(self.arguments[vector] for vector in inputs)
+        known = {
+            symbol: component
+            for argument in arguments
+            for symbol, component in zip(
+                self._vectors[argument.name].symbols, argument.components, strict=True
+            )
+        }
+        reader = _Reader(name, known)
+        weighted = [reader.weighted(entry) for entry in entries]
+        reader.graph.share(node for _, node in weighted)
+        names = self._names.copy()
+        assignments, outputs = write(reader.graph, weighted, list(known.values()), names)
+        kernel = ir.Kernel(
+            name=name, arguments=arguments, assignments=assignments, outputs=outputs, shape=shape
+        )
+        return guarded(kernel, names)
+
+
+def _can_fail(found: Singularities) -> bool:
+    return any(point.places for point in found.points) or not found.is_solved
+
+
+def _size(minors: Sequence[sp.Expr], scale: sp.Rational) -> sp.Expr:
+    """The size of the only minor over a scale; of several, the root of the sum of their squares."""
+    if len(minors) == 1:
+        return sp.Abs(minors[0] / scale, evaluate=False)
+    return sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
+
+
+def _symbol(measure: Measure) -> str:
+    roots = {"det W Wᵀ": "√det(W Wᵀ)", "det Wᵀ W": "√det(Wᵀ W)", "det [W, J]": "|det [W; J]|"}
+    return roots.get(measure, "|det W|" if measure == "det W" else "√Σ minors²")
+
+
+def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rational, str]:
+    """The number that scales the margin to at most 1, and what the margin is in words.
+
+    A product of sines, cosines and entire functions is largest where each of them is; of anything
+    else the determinant is taken as it is.
+    """
+    about = "how far the rates are from failing"
+    if found.measure not in ("det W", "det [W, J]"):
+        return sp.S.One, f"{about}, the product of the singular values of W; 0 where they do"
+    number, rest = minors[0].as_coeff_Mul()
+    factors = [factor.as_base_exp()[0] for factor in sp.Mul.make_args(rest)]
+    if not all(isinstance(factor, sp.sin | sp.cos | Entire) for factor in factors):
+        return sp.S.One, f"{about}; 0 where they do"
+    value = at_zero(rest) if rest.has(Entire) else sp.S.One
+    scale = abs(number) * (value if value.is_Rational and value else 1)
+    return scale, f"{about}; 1 at most, 0 where they do"
+
+
+def _over(scale: sp.Rational) -> str:
+    return "" if scale == 1 else f"/({scale})"
+
+
+class _Reader:
+    """From SymPy to one graph; inputs are its atoms, by their names."""
+
+    def __init__(self, kernel: str, inputs: Mapping[sp.Expr, str]) -> None:
+        self.graph = Graph()
+        self._kernel = kernel
+        self._inputs = inputs
+        self._known: dict[sp.Expr, Monomial] = {
+            symbol: (Fraction(1), (self.graph.atom(name),)) for symbol, name in inputs.items()
+        }
+
+    def weighted(self, expression: sp.Expr) -> Weighted:
+        """The expression as one node of the graph with a number before it."""
+        coefficient, factors = self._monomial(expression)
+        return coefficient, self.graph.product(factors)
+
+    def _monomial(self, expression: sp.Expr) -> Monomial:
+        known = self._known.get(expression)
+        if known is None:
+            known = self._known[expression] = self._read(expression)
+        return known
+
+    def _read(self, expression: sp.Expr) -> Monomial:
+        if expression.is_Rational:
+            return Fraction(int(expression.p), int(expression.q)), ()
+        if expression.is_number and expression.is_real:
+            return Fraction(1), (self.graph.irrational(float(expression)),)
+        if expression.is_Mul:
+            return self._times(self._monomial(factor) for factor in expression.args)
+        if expression.is_Add:
+            return self._factored(self.graph.sum(map(self.weighted, expression.args)))
+        if expression.is_Pow and (2 * expression.exp).is_Integer:
+            return self._power(expression.base, expression.exp)
+        if isinstance(expression, Entire):
+            order, square = expression.args
+            return Fraction(1), (self.graph.call(f"c{order}", self.weighted(square)),)
+        if isinstance(expression, sp.Abs):
+            number, node = self.weighted(expression.args[0])
+            return abs(number), (self.graph.call("abs", (Fraction(1), node)),)
+        if type(expression) in _QUOTIENTS:
+            above, below = _QUOTIENTS[type(expression)]
+            (argument,) = map(self.weighted, expression.args)
+            factors = [self.graph.call(above, argument)] if above else []
+            factors += [~self.graph.call(below, argument)] if below else []
+            return Fraction(1), tuple(factors)
+        raise KernelError(
+            f"{self._kernel}: no kernel can compute {expression} ({type(expression).__name__}); "
+            "expected sums, products, roots, sines and cosines of "
+            + ", ".join(map(str, self._inputs))
+        )
+
+    def _power(self, base: sp.Expr, exponent: sp.Rational) -> Monomial:
+        if not exponent.is_Integer:
+            root = self.graph.call("sqrt", self.weighted(base))
+            coefficient, factors = Fraction(1), _factors(root)
+        else:
+            coefficient, factors = self._monomial(base)
+        times = int(exponent) if exponent.is_Integer else int(2 * exponent)
+        factors = factors if times > 0 else tuple(~factor for factor in factors)
+        return coefficient**times, factors * abs(times)
+
+    def _times(self, monomials: Iterable[Monomial]) -> Monomial:
+        coefficient, factors = Fraction(1), _factors()
+        for number, more in monomials:
+            coefficient, factors = coefficient * number, factors + more
+        return coefficient, factors
+
+    def _factored(self, weighted: Weighted) -> Monomial:
+        coefficient, node = weighted
+        return coefficient, self.graph.factors(node)
+
+
+def _factors(*nodes: int) -> Factors:
+    return nodes

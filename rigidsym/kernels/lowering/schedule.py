@@ -1,0 +1,209 @@
+"""A graph with its common parts -> assignments in order, and outputs, as people would write them.
+
+Factors stand in the order numbers, inputs, intermediate values, sines and cosines, sums; terms
+with a plus come before terms with a minus.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from fractions import Fraction
+
+from rigidsym.kernels.ir import (
+    FUNCTIONS,
+    Assignment,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Product,
+    Sum,
+)
+from rigidsym.kernels.lowering.cse import Graph, Weighted
+from rigidsym.kernels.lowering.naming import Names
+
+Rank = tuple[tuple[int, int], ...]
+
+_NUMBER, _INPUT, _VALUE, _CALL, _SUM = range(5)
+_LONGEST_ARGUMENT = 20  # that the name of its sine repeats
+_ONE = Number(Fraction(1))
+_CALL_ORDER = {function: place for place, function in enumerate(FUNCTIONS)}
+
+
+def write(
+    graph: Graph, outputs: Sequence[Weighted], inputs: Sequence[str], names: Names
+) -> tuple[tuple[Assignment, ...], tuple[Expression, ...]]:
+    """Assignments for what is used twice, and the outputs in terms of them."""
+    writer = _Writer(graph, outputs, inputs, names)
+    writer.calls_on_inputs()
+    written = tuple(writer.weighted(*output) for output in outputs)
+    return tuple(writer.assignments), written
+
+
+class _Writer:
+    def __init__(
+        self, graph: Graph, outputs: Sequence[Weighted], inputs: Sequence[str], names: Names
+    ) -> None:
+        self.graph = graph
+        self.names = names
+        self.assignments: list[Assignment] = []
+        self._named: dict[int, Expression] = {graph.one: _ONE}
+        self._ranks: dict[str, tuple[int, int]] = {}
+        self._arguments: dict[Weighted, Name] = {}
+        for place, name in enumerate(inputs):
+            self._named[graph.atom(name)] = Name(name)
+            self._ranks[name] = (_INPUT, place)
+        roots = [node for _, node in outputs]
+        self._reachable = graph.reachable(roots)
+        self._sines = {
+            argument: node
+            for node, (function, argument) in graph.calls.items()
+            if function == "sin" and node in self._reachable
+        }
+        parts = (part for node in sorted(self._reachable) for part in graph.parts(node))
+        self._uses = Counter([*roots, *parts])
+
+    def calls_on_inputs(self) -> None:
+        """Sines and cosines of inputs come first, angle by angle."""
+        calls = [
+            (argument, _CALL_ORDER.get(function, len(_CALL_ORDER)), node)
+            for node, (function, (scale, argument)) in self.graph.calls.items()
+            if node in self._reachable and scale == 1 and argument in self._named
+        ]
+        for _, _, node in sorted(calls):
+            self._node(node)
+
+    def weighted(self, coefficient: Fraction, node: int) -> Expression:
+        """A number times a node, with the sign where it costs least."""
+        if node == self.graph.one or not coefficient:
+            number = Number(abs(coefficient))
+            return Negative(number) if coefficient < 0 else number
+        expression = _scaled(abs(coefficient), self._node(node))
+        return self._negated(expression) if coefficient < 0 else expression
+
+    def _negated(self, expression: Expression) -> Expression:
+        """Minus an expression, without a change of sign where a sum can be turned around."""
+        match expression:
+            case Negative(operand):
+                return operand
+            case Sum(terms):
+                return self._sum([self._negated(term) for term in terms])
+            case Product(factors, divisors):
+                for place, factor in enumerate(factors):
+                    if _has_both_signs(factor):
+                        turned = self._negated(factor)
+                        return Product((*factors[:place], turned, *factors[place + 1 :]), divisors)
+        return Negative(expression)
+
+    def _node(self, node: int) -> Expression:
+        """The name of a node that has or deserves one, else what it is made of."""
+        if node not in self._named:
+            expression = self._build(node)
+            if node not in self.graph.calls and self._uses[node] < 2:
+                return expression
+            self._named[node] = self._assigned(expression)
+        return self._named[node]
+
+    def _assigned(self, value: Expression) -> Name:
+        if isinstance(value, Call):
+            name = self._name_of(value)
+            self._ranks[name] = (_CALL, len(self._ranks))
+        else:
+            name = self.names.numbered("x")
+            self._ranks[name] = (_VALUE, len(self._ranks))
+        self.assignments.append(Assignment(name, value))
+        return Name(name)
+
+    def _name_of(self, call: Call) -> str:
+        """sin_phi for sin(phi); a number for a long argument."""
+        if len(call.argument.text) > _LONGEST_ARGUMENT:
+            return self.names.numbered(f"{call.function}_")
+        return self.names.fresh(f"{call.function}_{call.argument.text}")
+
+    def _argument(self, weighted: Weighted) -> Name:
+        """The name of what functions are called with: half an angle has one for all of them."""
+        if weighted not in self._arguments:
+            value = self.weighted(*weighted)
+            self._arguments[weighted] = value if isinstance(value, Name) else self._assigned(value)
+        return self._arguments[weighted]
+
+    def _build(self, node: int) -> Expression:
+        if node in self.graph.calls:
+            function, argument = self.graph.calls[node]
+            name = self._argument(argument)
+            if function == "cos" and argument in self._sines:
+                self._node(self._sines[argument])  # first, so that both can be taken in one call
+            return Call(function, name)
+        if node in self.graph.products:
+            return self._product(node)
+        if node in self.graph.sums:
+            return self._sum(self._terms(node, Fraction(1)))
+        return Number(self.graph.irrationals[node])
+
+    def _product(self, node: int) -> Expression:
+        factors: list[Expression] = []
+        divisors: list[Expression] = []
+        for factor in self.graph.products[node]:
+            if factor < 0:
+                divisors.append(self._node(~factor))
+            else:
+                above, below = _split(self._node(factor))
+                factors += above
+                divisors += below
+        factors = factors or [_ONE]
+        return Product(
+            tuple(sorted(factors, key=self._rank)), tuple(sorted(divisors, key=self._rank))
+        )
+
+    def _sum(self, terms: list[Expression]) -> Expression:
+        if len(terms) == 1:
+            return terms[0]
+        by_sign = sorted(terms, key=lambda term: (isinstance(term, Negative), self._rank(term)))
+        return Sum(tuple(by_sign))
+
+    def _terms(self, node: int, scale: Fraction) -> list[Expression]:
+        """The terms of a sum; a sum among them that has no name of its own is taken apart."""
+        terms: list[Expression] = []
+        for coefficient, part in self.graph.sums[node]:
+            if part in self.graph.sums and self._uses[part] < 2:
+                terms += self._terms(part, scale * coefficient)
+            else:
+                terms.append(self.weighted(scale * coefficient, part))
+        return terms
+
+    def _rank(self, expression: Expression) -> Rank:
+        match expression:
+            case Name(text):
+                return (self._ranks[text],)
+            case Number():
+                return ((_NUMBER, 0),)
+            case Product(factors, _):
+                ranks = [self._rank(f) for f in factors if not isinstance(f, Number)]
+                return tuple(place for rank in ranks for place in rank)
+            case Negative(operand):
+                return self._rank(operand)
+        return ((_SUM, 0),)
+
+
+def _has_both_signs(expression: Expression) -> bool:
+    return isinstance(expression, Sum) and any(isinstance(t, Negative) for t in expression.terms)
+
+
+def _scaled(size: Fraction, expression: Expression) -> Expression:
+    """A positive number times an expression: one literal where a double holds it exactly."""
+    if size == 1:
+        return expression
+    factors, divisors = _split(expression)
+    if Fraction(float(size)) == size:
+        return Product((Number(size), *factors), divisors)
+    above = (*([] if size.numerator == 1 else [Number(Fraction(size.numerator))]), *factors)
+    return Product(above or (_ONE,), (*divisors, Number(Fraction(size.denominator))))
+
+
+def _split(expression: Expression) -> tuple[tuple[Expression, ...], tuple[Expression, ...]]:
+    """Factors and divisors, without a factor of one."""
+    if not isinstance(expression, Product):
+        return (expression,), ()
+    return tuple(f for f in expression.factors if f != _ONE), expression.divisors

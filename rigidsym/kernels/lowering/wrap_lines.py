@@ -1,0 +1,96 @@
+"""Kernels whose every line fits a page: what is too wide for one line gets a name of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from rigidsym.kernels.ir import (
+    Assignment,
+    Expression,
+    Kernel,
+    Name,
+    Negative,
+    Product,
+    Sum,
+    parts,
+)
+from rigidsym.kernels.lowering.naming import Names
+
+_BETWEEN = len(" = ")
+
+
+def narrowed(
+    kernel: Kernel, show: Callable[[Expression], str], *, line: int, output: int
+) -> Kernel:
+    """The same kernel, the same operations, in lines that fit.
+
+    `show` is how the target writes an expression; an assignment takes at most `line` characters
+    and an output at most `output`. The widest part of a wide line is named first; an assignment of
+    long names alone stays as wide as it is.
+    """
+    narrower = _Narrower(kernel, show, line)
+    for assignment in kernel.assignments:
+        narrower.assign(assignment.name, assignment.value)
+    outputs = tuple(narrower.output(value, output) for value in kernel.outputs)
+    return replace(kernel, assignments=tuple(narrower.assignments), outputs=outputs)
+
+
+class _Narrower:
+    def __init__(self, kernel: Kernel, show: Callable[[Expression], str], line: int) -> None:
+        self.assignments: list[Assignment] = []
+        self._names = Names([*kernel.components, *(a.name for a in kernel.assignments)])
+        self._show = show
+        self._line = line
+
+    def assign(self, name: str, value: Expression) -> None:
+        room = self._line - len(name) - _BETWEEN
+        self.assignments.append(Assignment(name, self.shortened(value, room)))
+
+    def output(self, value: Expression, room: int) -> Expression:
+        """An output in at most `room` characters, as a name where it must be."""
+        short = self.shortened(value, room)
+        if len(self._show(short)) <= room or isinstance(short, Name):
+            return short
+        name = self._names.numbered("x")
+        self.assign(name, short)
+        return Name(name)
+
+    def shortened(self, expression: Expression, room: int) -> Expression:
+        """The expression in at most `room` characters, after assignments for its widest parts."""
+        while len(self._show(expression)) > room:
+            wide = [part for part in _operands(expression) if isinstance(part, Sum | Product)]
+            if not wide:
+                break
+            widest = max(wide, key=lambda part: len(self._show(part)))
+            name = self._names.numbered("x")
+            self.assign(name, widest)
+            expression = _replaced(expression, widest, Name(name))
+        return expression
+
+
+def _operands(expression: Expression) -> tuple[Expression, ...]:
+    """The parts of an expression, without their signs."""
+    whole = expression.operand if isinstance(expression, Negative) else expression
+    return tuple(p.operand if isinstance(p, Negative) else p for p in parts(whole))
+
+
+def _replaced(expression: Expression, old: Expression, new: Expression) -> Expression:
+    """The expression with one of its operands exchanged."""
+    if expression == old:
+        return new
+    match expression:
+        case Negative(operand):
+            return Negative(_replaced(operand, old, new))
+        case Sum(terms):
+            return Sum(tuple(_replaced(t, old, new) if _is(t, old) else t for t in terms))
+        case Product(factors, divisors):
+            return Product(
+                tuple(new if factor == old else factor for factor in factors),
+                tuple(new if divisor == old else divisor for divisor in divisors),
+            )
+    return expression
+
+
+def _is(term: Expression, old: Expression) -> bool:
+    return old in (term, term.operand if isinstance(term, Negative) else term)

@@ -1,0 +1,45 @@
+"""The two files that make a Python module of a C source: its interface, and its way into C."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from rigidsym.kernels.conversions.conversions import ConversionProgram
+from rigidsym.kernels.ir import Kernel, Program
+from rigidsym.kernels.targets.c.precision import PRECISIONS
+from rigidsym.kernels.targets.numpy import printer as numpy
+from rigidsym.system import resources
+
+_LETTERS = {"double": "NPY_DOUBLE", "float": "NPY_FLOAT"}
+
+
+def module_files(
+    program: Program, kernels: Sequence[Kernel], conversions: ConversionProgram | None
+) -> dict[str, str]:
+    """NAME_c.py, with the interface of the NumPy module, and NAME_module.c behind it."""
+    environment = resources.environment(trim_blocks=True, lstrip_blocks=True)
+    name = program.name
+    functions = [_ufunc(kernel) for kernel in kernels]
+    glue = environment.get_template("kernels_c_module.c.jinja").render(
+        name=name,
+        functions=functions,
+        types=[(p.real, p.suffix) for p in PRECISIONS],
+        most_types=max(len(function["types"].split(",")) for function in functions),
+    )
+    face = numpy.module_text(
+        program, conversions, "kernels_c.py.jinja", fill="_fill_compiled", name=name
+    )
+    return {f"{name}_c.py": face, f"{name}_module.c": glue}
+
+
+def _ufunc(kernel: Kernel) -> dict[str, Any]:
+    """A kernel as a generalised ufunc; a matrix is a vector of its rows."""
+    inputs = ",".join(f"({len(argument.components)})" for argument in kernel.arguments)
+    each = [_LETTERS[p.real] for p in PRECISIONS]
+    return {
+        "name": kernel.name,
+        "arguments": len(kernel.arguments),
+        "signature": f"{inputs}->({len(kernel.outputs)})",
+        "types": ", ".join(t for t in each for _ in range(len(kernel.arguments) + 1)),
+    }

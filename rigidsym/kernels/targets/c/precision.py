@@ -1,0 +1,105 @@
+"""What differs between double and float in the C target."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import pi
+from typing import Any
+
+from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
+from rigidsym.kernels.lowering.sincos import reduction
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Precision:
+    """A type of C, the unsigned type of its size, and its numbers."""
+
+    real: str
+    word: str
+    suffix: str  # of functions and of literals
+    bits: int  # of the type
+    digits: int  # of its significand
+    packed: tuple[str, str]  # the letters of both types for `struct`
+    nan: str
+    tiny: float  # the smallest normal number
+
+    @property
+    def eps(self) -> float:
+        return float(2.0 ** (1 - self.digits))
+
+    @property
+    def reach(self) -> str:
+        """The largest angle of the fast reduction, cut to two digits."""
+        text = f"{reduction(self.digits).reach:.0f}"
+        return text[:2] + "0" * (len(text) - 2)
+
+    def literal(self, value: float) -> str:
+        return f"{value!r}{self.suffix}"
+
+    def filled(self, last: int) -> dict[str, Any]:
+        """What the template needs; `last` is the highest order of the functions c_k."""
+        found = reduction(self.digits)
+        sine, cosine = self.falling(found.sine), self.falling(found.cosine)
+        magic = 1.5 * 2.0 ** (self.digits - 1)  # a float of this size has no fraction
+        letters, words = self.packed
+        (word,) = struct.unpack(words, struct.pack(letters, magic))
+        return {
+            "real": self.real,
+            "word": self.word,
+            "suffix": self.suffix,
+            "point": f".0{self.suffix}",
+            "bits": self.bits,
+            "reach": self.reach,
+            "turns": found.turns,
+            "magic": self.literal(magic),
+            "least_word": f"{word - 2**found.turns:#x}u",
+            "pi": self.literal(pi),
+            "two_over_pi": self.literal(2 / pi),
+            "parts": [float(part).hex() + self.suffix for part in found.parts],
+            "first": (sine[0], cosine[0]),
+            "rest": list(zip(sine[1:], cosine[1:], strict=True)),
+            "nan": self.nan,
+            "series": [self._series(order) for order in range(FIRST_SERIES, last + 1)],
+        }
+
+    def falling(self, coefficients: Sequence[Fraction]) -> list[str]:
+        """The literals of a polynomial from the highest power down, as Horner's rule takes them."""
+        return [self.literal(float(coefficient)) for coefficient in reversed(coefficients)]
+
+    def _series(self, order: int) -> dict[str, Any]:
+        """c_k below its switch and above it."""
+        series = series_of(order)
+        return {
+            "order": order,
+            "before": order - 2,
+            "near": self.falling(series.coefficients),
+            "start": self.literal(float(taylor(order - 2)[0])),
+            "switch": self.literal(float(series.switch)),
+        }
+
+
+PRECISIONS = (
+    Precision(
+        real="double",
+        word="uint64_t",
+        suffix="",
+        bits=64,
+        digits=53,
+        packed=("d", "Q"),
+        nan="0x7ff8000000000000u",
+        tiny=2.0**-1022,
+    ),
+    Precision(
+        real="float",
+        word="uint32_t",
+        suffix="f",
+        bits=32,
+        digits=24,
+        packed=("f", "I"),
+        nan="0x7fc00000u",
+        tiny=2.0**-126,
+    ),
+)

@@ -1,0 +1,224 @@
+"""Kernels in C99: a header and a source that need nothing but the language.
+
+No function allocates, recurses or keeps a state; all take and fill what the caller owns. Beside
+them stand the two files with which `rigidsym build` makes a Python module of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import pi
+from types import ModuleType
+
+from rigidsym.kernels.accuracy import words as accurate
+from rigidsym.kernels.conversions.conversions import ConversionProgram, Formula
+from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program
+from rigidsym.kernels.lowering.sincos import two_over_pi
+from rigidsym.kernels.lowering.wrap_lines import narrowed
+from rigidsym.kernels.targets import singular
+from rigidsym.kernels.targets.c.c_function import Function, function, show
+from rigidsym.kernels.targets.c.module_files import module_files
+from rigidsym.kernels.targets.c.precision import PRECISIONS
+from rigidsym.kernels.targets.layout import filled
+from rigidsym.system import resources
+from rigidsym.version import __version__
+
+_WORDS = (
+    "auto break case char const continue default do double else enum extern float for goto if "
+    "inline int long register restrict return short signed sizeof static struct switch typedef "
+    "union unsigned void volatile while asm typeof "
+    "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf nan "
+    "NULL NAN INFINITY HUGE_VAL HUGE_VALF HUGE_VALL SIZE_MAX PTRDIFF_MAX math_errhandling "
+    "size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED PICK always wrapped wrappedf tile "
+    "found rows count at i j "
+)
+RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
+_WIDTH = 92
+_TILE = 32  # orientations that are evaluated side by side
+_WHOLE = frozenset({1, 2, 3, 4, 8})  # lengths of rows that compilers put together by whole vectors
+
+
+def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
+    """The source, the header, and what makes a Python module of them."""
+    converting = conversions.kernels if conversions else ()
+    kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
+    functions = [function(program.name, kernel) for kernel in kernels]
+    outlines, more = _converted(program, conversions)
+    both = [*kernels, *outlines]
+    return {
+        f"{program.name}.c": _source(program, both, [*functions, *more], conversions),
+        f"{program.name}.h": _header(program, both, [*functions, *more], conversions),
+        **module_files(program, kernels, conversions),
+    }
+
+
+def _converted(
+    program: Program, conversions: ConversionProgram | None
+) -> tuple[list[Kernel], list[Function]]:
+    """The formulas of the conversions: what they take and give, and their text."""
+    known = {argument.name: argument for argument in program.arguments}
+    if conversions is None or "q" not in known:
+        return [], []
+    from rigidsym.kernels.targets.c.c_conversions import converting, outline
+
+    known |= {argument.name: argument for argument in conversions.arguments}
+    outlines = [outline(formula, known) for formula in conversions.formulas]
+    pairs = zip(conversions.formulas, outlines, strict=True)
+    return outlines, [converting(program.name, formula, kernel) for formula, kernel in pairs]
+
+
+def load(name: str, files: Mapping[str, str]) -> ModuleType:
+    """The Python module, built in a folder that goes away with the process."""
+    from rigidsym.kernels.targets.c.build import load_built
+
+    return load_built(name, files)
+
+
+def _fitted(kernel: Kernel) -> Kernel:
+    room = _WIDTH - len("    const double  = ;")
+    return narrowed(kernel, show, line=room, output=room)
+
+
+def _source(
+    program: Program,
+    kernels: Sequence[Kernel],
+    functions: Sequence[Function],
+    conversions: ConversionProgram | None,
+) -> str:
+    calls = [call for kernel in kernels for call in singular.calls_of(kernel).values()]
+    orders = [call.order for call in calls if call.order is not None]
+    called = {call.function for call in calls}
+    given = sorted({len(kernel.outputs) for kernel in kernels})
+    formulas = conversions.formulas if conversions else ()
+    texts = [v for f in formulas for v in (*(value for _, value in f.lines), *f.outputs)]
+    return _template("kernels_c.c.jinja").render(
+        title=_safe(program.title),
+        name=program.name,
+        tile=_TILE,
+        has_angles=bool(orders) or not called.isdisjoint(("sin", "cos")),
+        has_choices=any("$pick(" in text for text in texts),
+        has_wraps=any("$wrapped(" in text for text in texts),
+        has_roots=bool(formulas) or bool(orders) or not called.isdisjoint(("sqrt", "abs")),
+        has_guards=any(map(singular.guards_of, kernels)),
+        has_series=bool(orders),
+        orders=max(2, *orders) + 1 if orders else 0,
+        precisions=[precision.filled(max(orders, default=0)) for precision in PRECISIONS],
+        two_over_pi=_words(),
+        half_pi=repr(pi / 2),
+        counts=sorted({len(a.components) for kernel in kernels for a in kernel.arguments}),
+        given=given,
+        whole=_WHOLE,
+        has_fours=not _WHOLE.issuperset(given),
+        functions=functions,
+    )
+
+
+def _words() -> str:
+    words = [f"0x{word:08x}" for word in two_over_pi()]
+    return ",\n".join("    " + ", ".join(words[k : k + 6]) for k in range(0, len(words), 6))
+
+
+def _header(
+    program: Program,
+    kernels: Sequence[Kernel],
+    functions: Sequence[Function],
+    conversions: ConversionProgram | None,
+) -> str:
+    about = [*_about(program), *singular.remarks(kernels), *_without(conversions)]
+    formulas = {f.name: f for f in conversions.formulas} if conversions else {}
+    generated = f"Generated by rigidsym {__version__}; do not edit."
+    return _template("kernels_c.h.jinja").render(
+        about=comment([*about, f"{generated} The equations are those of the note of this name."]),
+        guard=f"{program.name.upper()}_H",
+        precisions=PRECISIONS,
+        functions=[
+            {"about": comment(_said(kernel, formulas.get(kernel.name))), **made.declared()}
+            for kernel, made in zip(kernels, functions, strict=True)
+        ],
+    )
+
+
+def _template(name: str):  # type: ignore[no-untyped-def]  # Jinja's own type
+    return resources.environment(trim_blocks=True, lstrip_blocks=True).get_template(name)
+
+
+def _about(program: Program) -> list[str | Sequence[str]]:
+    """The paragraphs at the head of the header."""
+    return [
+        f"{program.title}: functions in C99.",
+        " ".join(program.convention),
+        f"Source: {program.source}.",
+        "Arguments, in radians and SI units:",
+        [f"  {a.name}[{len(a.components)}]  {a.about}" for a in program.arguments],
+        "Matrices are filled row by row. Names that end in f are of type float. An array function "
+        "serves `count` orientations: from one to the next an argument goes on by its `step` (0 "
+        "repeats one), from one component to the next by its `stride`, both in elements; rows "
+        "without gaps, a step of the row's length and a stride of 1, are the fastest. `out` may "
+        "not overlap an argument.",
+        "Sine and cosine are evaluated here, within 2 eps of their size (eps is 2^-52 in double, "
+        "2^-23 in float) at any finite angle.",
+        *accurate.remarks(program.kernels, program.measured_with),
+        "No function allocates, recurses or keeps a state; an array function takes room for "
+        f"{_TILE} orientations on the stack.",
+    ]
+
+
+def _about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
+    is_named = kernel.definition and kernel.definition != kernel.symbol
+    definition = f" = {kernel.definition}" if is_named else ""
+    place = f"Equation ({kernel.equation}) of the note; " if kernel.equation else ""
+    return [
+        f"{kernel.symbol}{definition}: {kernel.about}.",
+        _vectors(kernel),
+        f"{place}{kernel.operations}.",
+        *accurate.accuracy(kernel),
+        *singular.poles(kernel),
+    ]
+
+
+def _said(kernel: Kernel, formula: Formula | None) -> list[str | Sequence[str]]:
+    return _about_formula(kernel, formula) if formula else _about_kernel(kernel)
+
+
+def _about_formula(kernel: Kernel, formula: Formula) -> list[str | Sequence[str]]:
+    return [formula.about, _vectors(kernel), *formula.remarks]
+
+
+def _vectors(kernel: Kernel) -> list[str]:
+    """Lines that say what a function takes and fills."""
+    rows = [
+        f"  {a.name}[{len(a.components)}]  {', '.join(a.components)}{_units(a.units)}"
+        for a in kernel.arguments
+    ]
+    unit = f"  in {kernel.unit}" if kernel.unit else ""
+    shape = f"  {' by '.join(map(str, kernel.shape))}, row by row" if len(kernel.shape) > 1 else ""
+    return [*rows, f"  out[{len(kernel.outputs)}]{shape}{unit}"]
+
+
+def _units(units: Sequence[str]) -> str:
+    distinct = list(dict.fromkeys(unit or "1" for unit in units))
+    return f" in {', '.join(distinct)}" if any(units) else ""
+
+
+def _without(conversions: ConversionProgram | None) -> Iterator[str]:
+    if conversions is None:
+        return
+    yield from conversions.remarks
+    if conversions.formulas:
+        yield "Conversions call atan2, hypot, sqrt, sin and cos of the C library."
+    if conversions.unwrapping:
+        yield (
+            "In the Python module alone: unwrap, which goes over a trajectory several times and "
+            "needs room for it."
+        )
+
+
+def comment(paragraphs: Sequence[str | Sequence[str]]) -> str:
+    """Lines of a comment, which no text can end."""
+    blocks = (filled(paragraph, _WIDTH - 3) for paragraph in paragraphs)
+    text = _safe("\n\n".join("\n".join(block) for block in blocks))
+    return "\n".join(f" * {line}".rstrip() for line in text.split("\n"))
+
+
+def _safe(text: str) -> str:
+    return text.replace("*/", "* /").replace("/*", "/ *").replace("\\", "\\\\").replace("??", "? ?")

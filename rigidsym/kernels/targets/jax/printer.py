@@ -1,0 +1,182 @@
+"""Kernels as a Python module of functions for JAX: pure, so that jit, vmap and grad apply."""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from types import ModuleType
+
+from rigidsym.algebra.series import FIRST_SERIES
+from rigidsym.errors import MissingExtra
+from rigidsym.kernels.accuracy import words as accurate
+from rigidsym.kernels.conversions.conversions import ConversionProgram
+from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Program, names_in
+from rigidsym.kernels.lowering.wrap_lines import narrowed
+from rigidsym.kernels.targets import singular
+from rigidsym.kernels.targets.infix import infix
+from rigidsym.kernels.targets.layout import WIDTH, assignment_lines, bracketed, docstring
+from rigidsym.kernels.targets.numpy import printer as python
+from rigidsym.system import resources
+from rigidsym.version import __version__
+
+TEMPLATE = "kernels_jax.py.jinja"
+RESERVED = frozenset(
+    {*keyword.kwlist, *FUNCTIONS, "jax", "jnp", "like", "parts", "both", "l", "O", "I"}
+)
+_DERIVATIVES = 2  # that functions of n = |v| have: each takes two functions c_k more
+
+_show = partial(infix, functions={name: f"jnp.{name}" for name in FUNCTIONS})
+
+
+def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
+    """The module, with the conversions where they are asked for."""
+    converting = conversions.kernels if conversions else ()
+    kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
+    last = singular.last_order(kernels)
+    has_parts = any(kernel.parts for kernel in kernels)
+    orders = range(FIRST_SERIES, last + 2 * _DERIVATIVES + 1) if last >= 0 else ()
+    added = _converted(program, conversions)
+    functions = [*map(_function, kernels), *added.functions]
+    names = [function["name"] for function in functions] + ["unwrap"] * bool(added.unwrap)
+    text = (
+        resources.environment()
+        .get_template(TEMPLATE)
+        .render(
+            about=docstring([*_about(program), *added.remarks]),
+            imports=_imports(
+                has_parts=has_parts, has_series=bool(orders), has_unwrap=bool(added.unwrap)
+            ),
+            exports=python.lines(f'"{name}",' for name in sorted(names)),
+            components=python.lines(
+                (*map(python.entry, python.arguments(program, conversions)), *added.components)
+            ),
+            functions=functions,
+            has_parts=has_parts,
+            has_divisors=any(map(singular.guards_of, kernels)),
+            series="\n".join(map(singular.entry, orders)),
+            has_formulas=bool(added.functions),
+            unwrap=added.unwrap,
+            np="jnp",
+        )
+    )
+    return {f"{program.name}_jax.py": text}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Converted:
+    """What conversions add to a module."""
+
+    functions: Sequence[Mapping[str, str]] = ()
+    components: Sequence[str] = ()  # lines of the table of arguments
+    remarks: Sequence[str] = ()
+    unwrap: str = ""
+
+
+def _converted(program: Program, conversions: ConversionProgram | None) -> Converted:
+    coordinates = [argument for argument in program.arguments if argument.name == "q"]
+    if conversions is None or not coordinates:
+        return Converted()
+    from rigidsym.kernels.targets.jax import jax_conversions
+
+    return Converted(
+        functions=jax_conversions.functions(conversions, len(coordinates[0].components)),
+        components=jax_conversions.entries(conversions),
+        remarks=conversions.remarks,
+        unwrap=jax_conversions.unwrap(conversions),
+    )
+
+
+def load(name: str, files: Mapping[str, str]) -> ModuleType:
+    """The module itself; raises MissingExtra where JAX is not installed."""
+    (source,) = files.values()
+    try:
+        return python.python_module(f"{name}_jax", source)
+    except ModuleNotFoundError as error:
+        raise MissingExtra("the target jax", "jax") from error
+
+
+def _imports(*, has_parts: bool, has_series: bool, has_unwrap: bool) -> str:
+    """The lines before that of jax.numpy."""
+    standard = ["from functools import cache"] * has_series + ["from math import prod"] * has_parts
+    jax = ["import jax"] * (has_series or has_unwrap)
+    return "".join(f"{line}\n" for line in [*standard, *[""] * bool(standard), *jax])
+
+
+def _fitted(kernel: Kernel) -> Kernel:
+    return narrowed(kernel, _show, line=WIDTH - 4, output=WIDTH - 8 - len(","))
+
+
+def _function(kernel: Kernel) -> dict[str, str]:
+    vectors = [argument.name for argument in kernel.arguments]
+    given = [f"{name}={name}" for name in vectors]
+    taken = list(_taken(kernel))
+    return {
+        "name": kernel.name,
+        "ufunc": f'{kernel.name}.signature = "{python.ufunc(kernel)}"',
+        "signature": bracketed(0, f"def {kernel.name}(", vectors, "):"),
+        "about": docstring(python.about_kernel(kernel), indent=4),
+        "body": "\n".join(
+            [
+                bracketed(4, f"like, {'parts' if taken else '_'} = _components(", given, ")"),
+                *taken,
+                *_lines(kernel),
+                *_returned(kernel),
+            ]
+        ),
+    }
+
+
+def _returned(kernel: Kernel) -> Iterator[str]:
+    """The result, or several results as parts of one array."""
+    entries = ["like", str(kernel.shape), *map(_show, kernel.outputs)]
+    yield bracketed(4, f"{'both =' if kernel.parts else 'return'} _together(", entries, ")")
+    if kernel.parts:
+        yield bracketed(4, "return _parted(", ["both", *map(str, kernel.parts)], ")")
+
+
+def _taken(kernel: Kernel) -> Iterator[str]:
+    """_, theta, psi = parts["q"]: the components that are used, by argument."""
+    values = [*(assignment.value for assignment in kernel.assignments), *kernel.outputs]
+    used = {name for value in values for name in names_in(value)}
+    for argument in kernel.arguments:
+        names = [name if name in used else "_" for name in argument.components]
+        if used.intersection(names):
+            yield python.unpacked(names, f'parts["{argument.name}"]')
+
+
+def _lines(kernel: Kernel) -> Iterator[str]:
+    for name, value in singular.grouped(kernel):
+        match value:
+            case Guarded():
+                yield singular.guard_line(4, name, value, "_or_nan")
+            case dict():
+                yield singular.entire_line(4, value, "_entire")
+            case Call(function, argument):
+                yield bracketed(4, f"{name} = jnp.{function}(", [argument.text], ")")
+            case _:
+                yield assignment_lines(4, name, _show(value))
+
+
+def _about(program: Program) -> Iterator[str | Sequence[str]]:
+    """The paragraphs of the module's docstring."""
+    yield f"{program.title}: functions for JAX."
+    yield " ".join(program.convention)
+    yield f"Source: {program.source}."
+    yield "Arguments, with the components on the last axis, in radians and SI units:"
+    yield python.arguments_table(program)
+    yield (
+        "All other axes broadcast. The functions are pure: jax.jit, vmap, grad, jvp and vjp "
+        "apply. Types are those of JAX: float32, or float64 where jax_enable_x64 is set and an "
+        "argument is float64. They run where JAX does, on a GPU too; tested on processors alone. "
+        "What the NumPy module has beside is not here: `out` and `threads`, since arrays of JAX "
+        "do not change and it shares work by itself, and scalar twins, since jax.jit of one "
+        "orientation is that."
+    )
+    yield from accurate.remarks(program.kernels, program.measured_with)
+    yield from singular.remarks(program.kernels)
+    yield (
+        f"Generated by rigidsym {__version__}; do not edit. The equations are those of the note "
+        "of the same name."
+    )

@@ -1,0 +1,372 @@
+"""R → dR/dt → dR/dt Rᵀ → Ω → Ω′, rate matrices and their inverses, angular accelerations.
+
+One algorithm for every rotation model, in the model's ring (lecture, eq. 15 and 16).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import sympy as sp
+from sympy.polys.rings import PolyElement
+
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.present import presenter_for
+from rigidsym.errors import QuantityError
+from rigidsym.mechanics import claims
+from rigidsym.mechanics.derivation import (
+    OF_RATES,
+    Derivation,
+    Markup,
+    Proof,
+    Quantity,
+    Singularities,
+    Step,
+    VectorForm,
+)
+from rigidsym.mechanics.kinematics import composition
+from rigidsym.mechanics.kinematics.composition import hat
+from rigidsym.mechanics.kinematics.isotropic import applied, matrix_form
+from rigidsym.mechanics.kinematics.rates import Inverse
+from rigidsym.mechanics.kinematics.vectors import vector_form
+from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.quantities.kinematics import (
+    ALPHA,
+    ALPHA_BODY,
+    BODY,
+    COSINES,
+    RATES,
+    ROTATION,
+    SPACE,
+    Frame,
+    quantities,
+)
+from rigidsym.mechanics.singularities.singularities import singularities_of
+from rigidsym.models.rotation import RotationModel
+
+
+def derive(model: RotationModel, only: Collection[str] = ()) -> Derivation:
+    """The kinematics of a rotation model, each step proved.
+
+    `only` names the quantities to derive; all that the model has where it is empty.
+
+    Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over,
+    AlgebraError for expressions that the ring cannot hold, and QuantityError for unknown names
+    and for quantities that the model has not.
+    """
+    unknown = ", ".join(name for name in only if name not in _STEPS)
+    if unknown:
+        raise QuantityError(f"no quantity {unknown}; there are {', '.join(_STEPS)}")
+    work = _Kinematics(Values(model))
+    steps = tuple(_numbered(work, only))
+    absent = ", ".join(sorted(set(only) - {step.quantity.name for step in steps}))
+    if absent:
+        raise QuantityError(
+            f"{model.name} has no quantity {absent}: its rate matrix has no inverse, since its "
+            "rates do not give every angular velocity"
+        )
+    return Derivation(
+        name=model.name,
+        title=model.title,
+        model=model,
+        arguments=tuple(work.values.arguments.values()),
+        steps=steps,
+        singularities=None if only and OF_RATES.isdisjoint(only) else work.singularities(),
+    )
+
+
+def _numbered(work: _Kinematics, only: Collection[str]) -> Iterator[Step]:
+    """The steps that are wanted and that the model has."""
+    units = set(work.values.arguments["q_dot"].units)
+    table = quantities(
+        passive=work.model.passive,
+        coordinates=len(work.model.coordinates),
+        rate_unit=units.pop() if len(units) == 1 else "",
+    )
+    rotation = work.rotation_matrix()  # in any case: all else rests on its being a rotation
+    constants = work.model.constants
+    number = 0
+    for name, find in _STEPS.items():
+        if only and name not in only:
+            continue
+        found = rotation if name == "rotation_matrix" else find(work)
+        if found is not None:
+            number += 1
+            yield Step(
+                number=number,
+                quantity=_with_parameters(table[name], found.expression, constants),
+                expression=found.expression,
+                because=found.because,
+                proofs=found.proofs,
+                vector_form=found.vector_form,
+            )
+
+
+def _with_parameters(
+    quantity: Quantity, expression: sp.ImmutableMatrix, constants: Collection[sp.Symbol]
+) -> Quantity:
+    """The quantity, with the constants of the model among its inputs where it holds any."""
+    if not constants or expression.free_symbols.isdisjoint(constants):
+        return quantity
+    return replace(quantity, inputs=(*quantity.inputs, "parameters"))
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """What one step comes to."""
+
+    expression: sp.ImmutableMatrix
+    because: str
+    proofs: tuple[Proof, ...]
+    vector_form: VectorForm | None = None
+
+
+class _Kinematics:
+    """The steps of one derivation; each is worked out by its own method."""
+
+    def __init__(self, values: Values) -> None:
+        self.values = values
+        self.model = values.model
+        self.present = presenter_for(values.codec)
+        self.prove = Prover(values.model, values.codec)
+
+    def rotation_matrix(self) -> _Found:
+        values, symbol = self.values, self._shown_symbol
+        if values.factors:
+            residual = composition.orthogonality(values.factors)
+            determinant = composition.determinants(values.factors)
+        else:
+            residual = self._shown(values.R).gram() - values.one
+            determinant = values.column([values.R.det() - 1])
+        proofs = (
+            self.prove.is_rotation(residual, claims.orthogonal(symbol)),
+            self.prove.is_rotation(determinant, claims.proper(symbol)),
+        )
+        return self._matrix(
+            self._shown(values.R),
+            self._given_as(),
+            *proofs,
+            symbol=symbol,
+        )
+
+    def _given_as(self) -> str:
+        """Where the matrix that is shown comes from."""
+        turned_over = " and transposed" if self.model.passive else ""
+        match len(self.model.turns):
+            case 0:
+                return f"The rotation is given{turned_over}."
+            case 1:
+                return f"The matrix of the turn is written out{turned_over}."
+        return f"The turns are multiplied from left to right{turned_over}."
+
+    def rotation_rate(self) -> _Found:
+        spin = self._shown_spin
+        return _Found(
+            self.present.matrix(self._shown(self.values.R_dot)),
+            "The matrix is differentiated entry by entry, by the chain rule.",
+            (
+                self.prove.vanishes(spin + spin.T, claims.stays_orthogonal(self._shown_symbol)),
+                *self._composed(),
+            ),
+        )
+
+    def spin_matrix(self) -> _Found:
+        spin, symbol = self._shown_spin, claims.spin_of(self._shown_symbol)
+        proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol)), *self._composed()]
+        because = "The derivative is multiplied by the transpose; the product is skew"
+        if self.model.passive:
+            operator = claims.is_operator(BODY.omega, symbol, "-")
+            proofs.append(self.prove.vanishes(spin + hat(self.values.omega_body), operator))
+            because += ", and it is the operator of −Ω′, not of Ω"
+        return _Found(self.present.matrix(spin), f"{because}.", tuple(proofs))
+
+    def _composed(self) -> tuple[Proof, ...]:
+        """Where Ω was composed turn by turn: that it is the vector of dR/dt Rᵀ."""
+        factors = self.values.factors
+        if not factors:
+            return ()
+        residual = composition.operators(factors, self.values.argument("omega_space"))
+        claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
+        return (self.prove.vanishes(residual, claim),)
+
+    def angular_velocity_space(self) -> _Found:
+        values = self.values
+        if values.factors:
+            (proof,) = self._composed()
+            because = (
+                "Each turn adds its own axis, as the turns before it have moved it; for so many "
+                "turns the product is not multiplied out."
+            )
+        else:
+            because = (
+                "C⁻¹ takes the vector of a skew matrix from its entries (3,2), (1,3) and (2,1)."
+            )
+            if self.model.passive:
+                because = (
+                    "The derivative of the transpose times the matrix is the operator of Ω, as "
+                    "the transpose is R. " + because
+                )
+            claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
+            proof = self.prove.vanishes(values.spin - hat(values.omega_space), claim)
+        return self._vector(SPACE, values.omega_space, because, proof)
+
+    def angular_velocity_body(self) -> _Found:
+        values = self.values
+        return self._vector(
+            BODY,
+            values.omega_body,
+            "The components along the axes of the body follow by the "
+            + ("direction cosine matrix." if self.model.passive else "transposed rotation."),
+            self.prove.vanishes(
+                values.R @ values.omega_body - values.omega_space,
+                claims.rotates(ROTATION, BODY.omega, SPACE.omega),
+            ),
+        )
+
+    def rate_matrix(self, frame: Frame, matrix: RingMatrix, omega: RingMatrix) -> _Found:
+        residual = matrix @ self.values.argument("q_dot") - omega
+        claim = claims.maps_rates(frame.matrix, RATES, frame.omega)
+        return self._matrix(
+            matrix,
+            "The angular velocity is linear in the rates; their coefficients are the columns."
+            if len(self.model.coordinates) > 1
+            else "The angular velocity is the rate times the axis.",
+            self.prove.vanishes(residual, claim),
+            symbol=frame.matrix,
+        )
+
+    def inverse(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> _Found | None:
+        if inverse is None:
+            return None
+        above, below = inverse
+        proof = self.prove.vanishes(
+            matrix @ above - self.values.one.scale(below),
+            claims.inverse_of(frame.matrix, self._inverse_symbol(frame)),
+            divided_by=below,
+        )
+        return self._matrix(
+            above,
+            "The adjugate is divided by the determinant."
+            if matrix.shape == (3, 3)
+            else self._of_all_rates(),
+            proof,
+            symbol=self._inverse_symbol(frame),
+            below=below,
+        )
+
+    def _of_all_rates(self) -> str:
+        is_bound = self.values.bound is not None
+        choice = "those that keep to the conditions" if is_bound else "the smallest"
+        return f"Of all rates that give an angular velocity, {choice} are taken."
+
+    def rates(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> _Found | None:
+        if inverse is None:
+            return None
+        above, below = inverse
+        given = self.values.argument(f"omega_{frame.name}")
+        rates = above @ given
+        proof = self.prove.vanishes(
+            matrix @ rates - given.scale(below),
+            claims.solves(frame.matrix, self._inverse_symbol(frame), frame.omega),
+            divided_by=below,
+        )
+        whole = matrix_form(self.model, above, self.values.codec, frame.inverse, below)
+        form = whole and applied(whole, RATES, frame.omega)
+        return _Found(
+            self.present.matrix(rates, below),
+            "The inverse rate matrix is applied to a given angular velocity.",
+            (proof,) if form is None else (proof, form.proof),
+            form,
+        )
+
+    def angular_acceleration_space(self) -> _Found:
+        space = self.values.omega_space.dt()
+        claim = claims.is_operator(ALPHA, claims.rate_of_whole(claims.spin_of(ROTATION)))
+        return _Found(
+            self.present.matrix(space),
+            "The space components of the angular velocity are differentiated.",
+            (self.prove.vanishes(self.values.spin.dt() - hat(space), claim), *self._composed()),
+        )
+
+    def angular_acceleration_body(self) -> _Found:
+        values = self.values
+        body = values.omega_body.dt()
+        residual = values.R @ body - values.omega_space.dt()
+        claim = claims.rotates(ROTATION, ALPHA_BODY, ALPHA)
+        return _Found(
+            self.present.matrix(body),
+            "Its body components are the derivatives of those of the angular velocity, since "
+            "Ω × Ω vanishes.",
+            (self.prove.vanishes(residual, claim),),
+        )
+
+    def singularities(self) -> Singularities:
+        """Where the rate matrix loses rank."""
+        return singularities_of(self.values, self.present)
+
+    def _matrix(
+        self,
+        matrix: RingMatrix,
+        because: str,
+        *proofs: Proof,
+        symbol: Markup,
+        below: PolyElement | None = None,
+    ) -> _Found:
+        """A matrix over `below`, as a function of the vector too where it is one."""
+        over = self.values.ring.one if below is None else below
+        form = matrix_form(self.model, matrix, self.values.codec, symbol, over)
+        proved = proofs if form is None else (*proofs, form.proof)
+        return _Found(self.present.matrix(matrix, below), because, proved, form)
+
+    def _vector(self, frame: Frame, omega: RingMatrix, because: str, proof: Proof) -> _Found:
+        form = vector_form(self.model, omega, self.values.codec, frame.omega)
+        proofs = (proof,) if form is None else (proof, form.proof)
+        return _Found(self.present.matrix(omega), because, proofs, form)
+
+    @property
+    def _shown_symbol(self) -> Markup:
+        return COSINES if self.model.passive else ROTATION
+
+    def _shown(self, matrix: RingMatrix) -> RingMatrix:
+        return matrix.T if self.model.passive else matrix
+
+    @property
+    def _shown_spin(self) -> RingMatrix:
+        return self.values.spin_of_transpose if self.model.passive else self.values.spin
+
+    def _inverse_symbol(self, frame: Frame) -> Markup:
+        return frame.inverse if len(self.model.coordinates) == 3 else frame.right_inverse
+
+
+_STEPS: Mapping[str, Callable[[_Kinematics], _Found | None]] = MappingProxyType(
+    {
+        "rotation_matrix": _Kinematics.rotation_matrix,
+        "rotation_rate": _Kinematics.rotation_rate,
+        "spin_matrix": _Kinematics.spin_matrix,
+        "angular_velocity_space": _Kinematics.angular_velocity_space,
+        "angular_velocity_body": _Kinematics.angular_velocity_body,
+        "rate_matrix_space": lambda work: work.rate_matrix(
+            SPACE, work.values.rate_matrix_space, work.values.omega_space
+        ),
+        "inverse_rate_matrix_space": lambda work: work.inverse(
+            SPACE, work.values.rate_matrix_space, work.values.inverse_space
+        ),
+        "rates_from_angular_velocity_space": lambda work: work.rates(
+            SPACE, work.values.rate_matrix_space, work.values.inverse_space
+        ),
+        "rate_matrix_body": lambda work: work.rate_matrix(
+            BODY, work.values.rate_matrix_body, work.values.omega_body
+        ),
+        "inverse_rate_matrix_body": lambda work: work.inverse(
+            BODY, work.values.rate_matrix_body, work.values.inverse_body
+        ),
+        "rates_from_angular_velocity_body": lambda work: work.rates(
+            BODY, work.values.rate_matrix_body, work.values.inverse_body
+        ),
+        "angular_acceleration_space": _Kinematics.angular_acceleration_space,
+        "angular_acceleration_body": _Kinematics.angular_acceleration_body,
+    }
+)

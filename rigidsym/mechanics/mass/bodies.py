@@ -1,0 +1,112 @@
+"""Distribution of mass -> rigid body: its mass, its centre, its inertia tensor about the centre."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.rational import Rationals
+from rigidsym.errors import BodyError
+from rigidsym.mechanics.mass.moments import Moments, moments_of
+from rigidsym.models.body import Parameter, RigidBody, described
+from rigidsym.models.distribution import Distribution, Solid
+from rigidsym.models.solids import shape_of, shaped
+
+Rows = list[list[Quotient]]
+
+
+def body_of(
+    distribution: Distribution,
+    *,
+    name: str = "body",
+    title: str = "",
+    parameters: Sequence[Parameter] = (),
+    allow: bool = False,
+) -> RigidBody:
+    """The body that a distribution of mass makes, with the inertia tensor about its centre.
+
+    `parameters` describes the symbols. Raises BodyError where the mass is zero, and for numbers
+    that no body has, unless they are to `allow`.
+    """
+    moments = moments_of(distribution)
+    if moments.mass == 0:
+        raise BodyError(f"{name}: the mass is zero; expected a positive mass")
+    field = Rationals(moments.expressions)
+    centre, about_centre = central(field, moments)
+    symbols = [(entry, "") for entry in moments.expressions]
+    return RigidBody(
+        name=name,
+        title=title or title_of(distribution),
+        mass=moments.mass,
+        inertia=sp.ImmutableMatrix(3, 3, [field.write(e) for row in about_centre for e in row]),
+        centre=sp.ImmutableMatrix([field.write(entry) for entry in centre]),
+        parameters=described(parameters, *symbols),
+        allow=allow,
+        distribution=distribution,
+    )
+
+
+def title_of(distribution: Distribution) -> str:
+    if isinstance(distribution, Solid):
+        return distribution.title
+    return {"Particles": "System of particles", "Composite": "Composite body"}.get(
+        type(distribution).__name__, type(distribution).__name__
+    )
+
+
+def central(field: Rationals, moments: Moments) -> tuple[list[Quotient], Rows]:
+    """The centre c = S/M, and the inertia tensor about it, from J − S Sᵀ/M."""
+    inverse = field.read(moments.mass).inverse()
+    first = [field.read(entry) for entry in moments.first]
+    second = field.read_matrix(moments.second)
+    about_centre = [
+        [second[i][j] + field.negative(first[i] * first[j] * inverse) for j in range(3)]
+        for i in range(3)
+    ]
+    return [entry * inverse for entry in first], inertia_from(field, about_centre)
+
+
+def inertia_from(field: Rationals, second: Rows) -> Rows:
+    """tr(J) 1 − J."""
+    return [
+        [
+            second[(i + 1) % 3][(i + 1) % 3] + second[(i + 2) % 3][(i + 2) % 3]
+            if i == j
+            else field.negative(second[i][j])
+            for j in range(3)
+        ]
+        for i in range(3)
+    ]
+
+
+def solid(
+    shape: str,
+    *,
+    mass: sp.Expr | None = None,
+    density: sp.Expr | None = None,
+    name: str = "",
+    allow: bool = False,
+    **lengths: sp.Expr | Sequence[sp.Expr],
+) -> RigidBody:
+    """A shipped solid as a rigid body: `solid("cylinder", radius=a, height=h)`.
+
+    Lengths (m) that are not given are symbols; so is the mass M (kg), unless there is a density
+    (kg per m, m² or m³). Raises BodyError for an unknown shape or length, and for lengths that are
+    numbers and not positive.
+    """
+    chosen = shape_of(shape)
+    unknown = set(lengths) - {length.key for length in chosen.lengths}
+    if unknown:
+        known = ", ".join(length.key for length in chosen.lengths)
+        raise BodyError(f"{shape} has no {', '.join(sorted(unknown))}; it has {known}")
+    values: list[sp.Expr] = []
+    for length in chosen.lengths:
+        given = lengths.get(length.key, [sp.Symbol(letter) for letter in length.names])
+        values += [
+            sp.sympify(e, strict=True) for e in (given if isinstance(given, Sequence) else [given])
+        ]
+    total = sp.Symbol("M") if mass is None and density is None else mass
+    made = shaped(shape, values, mass=total, density=density)
+    return body_of(made, name=name or shape, allow=allow)

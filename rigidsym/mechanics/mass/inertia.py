@@ -1,0 +1,301 @@
+"""Mass, centre, inertia tensors, moments about lines, principal axes: the body by itself.
+
+The sums over the mass are those of `moments`; what follows from them is proved over the ring of
+the body's constants, and, for the tensor in space, over the ring of the rotation too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+
+import sympy as sp
+
+from rigidsym.algebra.present import presenter_for
+from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.rational import Rationals
+from rigidsym.errors import DerivationError
+from rigidsym.mechanics.arguments import DIRECTION, POINT
+from rigidsym.mechanics.derivation import Markup, Proof
+from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.mass.moments import Moments, moments_of
+from rigidsym.mechanics.mass.principal import Principal, principal_of
+from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.quantities import mass as claims
+from rigidsym.models.body import RigidBody
+from rigidsym.models.distribution import Composite, Known, Part
+
+_ONE = sp.eye(3)
+WITHOUT = MappingProxyType(  # why a body may not have a quantity
+    {
+        "mass": "it is given, not added up",
+        "centre_of_mass": "how its mass is distributed is not given",
+        "principal_moments": "no closed form was found, which a general tensor has not",
+        "principal_axes": "no closed form was found, or none that is short enough for use",
+        "inertia_ellipsoid": "no principal moments were found, or one of them is 0",
+    }
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What one step comes to."""
+
+    expression: sp.ImmutableMatrix
+    because: str
+    proofs: tuple[Proof, ...] = ()
+    definition: Markup | None = None  # where the step says better what it follows from
+
+
+def steps_of(values: Values, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
+    """(name, step) of the quantities that are wanted and that the body has."""
+    assert values.body is not None
+    work = _Inertia(values.body, values)
+    for name in wanted:
+        found = _STEPS[name](work)
+        if found is not None:
+            yield name, found
+
+
+class _Inertia:
+    """The steps of one body; each is worked out by its own method."""
+
+    def __init__(self, body: RigidBody, values: Values) -> None:
+        self.body, self.values = body, values
+        self.point, self.direction = sp.Matrix(POINT), sp.Matrix(DIRECTION)
+
+    @cached_property
+    def moments(self) -> Moments:
+        """Those of the distribution; of a body that is given, those that say the same."""
+        body = self.body
+        known = Known(mass=body.mass, centre=body.centre, inertia=body.inertia)
+        return moments_of(body.distribution or known)
+
+    @cached_property
+    def principal(self) -> Principal | None:
+        return principal_of(self.body.inertia)
+
+    def mass(self) -> Found | None:
+        if self.body.distribution is None or self.body.mass.is_Symbol:
+            return None
+        return Found(_scalar(self.body.mass), "The mass is added up.", self.moments.proofs)
+
+    def centre_of_mass(self) -> Found | None:
+        if self.body.distribution is None:
+            return None
+        rest = self.moments.first - self.body.mass * self.body.centre
+        proofs = () if not self.body.mass.is_Symbol else self.moments.proofs
+        return Found(
+            self.body.centre,
+            "The centre of mass is the mean of the places, each with its mass.",
+            (*proofs, _vanishes(rest, claims.CENTRED, self.body.name)),
+        )
+
+    def inertia_tensor(self) -> Found:
+        body, moments = self.body, self.moments
+        proofs = [_vanishes(body.inertia - body.inertia.T, claims.SYMMETRIC, body.name)]
+        if body.distribution is None:
+            because = "The inertia tensor of the body is given, about its centre of mass."
+            return Found(body.inertia, because, tuple(proofs))
+        about_origin = moments.second.trace() * _ONE - moments.second
+        rest = about_origin - body.inertia - _moved(body.mass, body.centre)
+        proofs.append(_vanishes(rest, claims.ABOUT_ORIGIN, body.name))
+        because = "The inertia tensor is that of the lecture, about the centre of mass."
+        if isinstance(body.distribution, Composite):
+            rest = self._of_parts(body.distribution.parts) - body.inertia
+            conditions = body.distribution.conditions
+            proofs.append(_vanishes(rest, claims.OF_PARTS, body.name, conditions))
+            because = (
+                "The tensors of the parts are turned, moved to the common centre of mass by the "
+                "theorem of parallel axes, and added."
+            )
+        return Found(body.inertia, because, tuple(proofs), claims.TENSOR_INTEGRAL)
+
+    def _of_parts(self, parts: Sequence[Part]) -> sp.Matrix:
+        """Σ (R I R ᵀ + m (|d|² 1 − d dᵀ)), a hole with a minus sign."""
+        total = sp.zeros(3)
+        for part in parts:
+            m = moments_of(part.what)
+            centre = m.first / m.mass
+            second = m.second - m.mass * centre * centre.T
+            own = part.turned * (second.trace() * _ONE - second) * part.turned.T
+            away = part.turned * centre + part.at - self.body.centre
+            total += (own + _moved(m.mass, away)) * (-1 if part.hole else 1)
+        return total
+
+    def inertia_tensor_point(self) -> Found:
+        body = self.body
+        rest = self._about_point - body.inertia - _moved(body.mass, self.point - body.centre)
+        return Found(
+            sp.ImmutableMatrix(body.inertia + self._shift),
+            "About another point the whole mass, put into the centre of mass, is added.",
+            (_vanishes(rest, claims.OF_POINT, body.name),),
+        )
+
+    @property
+    def _shift(self) -> sp.Matrix:
+        """M (|d|² 1 − d dᵀ) from the centre to the point, written entry by entry."""
+        d, mass = self.point - self.body.centre, self.body.mass
+        return sp.Matrix(
+            3,
+            3,
+            lambda i, j: (
+                mass * (sum(d[k] ** 2 for k in range(3) if k != i) if i == j else -d[i] * d[j])
+            ),
+        )
+
+    @property
+    def _about_point(self) -> sp.Matrix:
+        """∫ (|x − p|² 1 − (x − p)(x − p)ᵀ) dm, from the moments."""
+        m, p = self.moments, self.point
+        second = m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
+        return second.trace() * _ONE - second
+
+    def moment_of_inertia(self) -> Found:
+        moment = self._line
+        rest = _scalar(self._from_moments - moment)
+        return Found(
+            _scalar(moment),
+            "The moment about a line is the quadratic form of the tensor about a point p of it. "
+            "The direction is a unit vector, and n × (x′ − p) is as long as the distance from the "
+            "line.",
+            (_vanishes(rest, claims.OF_LINE, self.body.name),),
+        )
+
+    @property
+    def _line(self) -> sp.Expr:
+        """nᵀ I′ n, and the mass times the square of the distance of its centre."""
+        n, body = self.direction, self.body
+        squares: dict[sp.Expr, sp.Expr] = {}
+        for k, entry in enumerate(body.inertia.diagonal()):
+            squares[entry] = squares.get(entry, sp.S.Zero) + n[k] ** 2
+        about_centre = sp.Add(*(entry * square for entry, square in squares.items()))
+        about_centre += sp.Add(
+            *(2 * body.inertia[i, j] * n[i] * n[j] for i in range(3) for j in range(i + 1, 3))
+        )
+        crossed = n.cross(self.point - body.centre)
+        return about_centre + body.mass * crossed.dot(crossed)
+
+    @property
+    def _from_moments(self) -> sp.Expr:
+        """∫ |n × (x − p)|² dm, where |n × y|² = n·n y·y − (n·y)²."""
+        m, p, n = self.moments, self.point, self.direction
+        second = m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
+        return n.dot(n) * second.trace() - (n.T * second * n)[0]
+
+    def radii_of_gyration(self) -> Found:
+        body = self.body
+        moments = sp.Matrix(body.inertia.diagonal()).reshape(3, 1)
+        field = Rationals([*moments, body.mass])
+        inverse = field.read(body.mass).inverse()
+        squares = [field.write(field.read(moment) * inverse) for moment in moments]
+        radii = sp.ImmutableMatrix([self._root(square) for square in squares])
+        rest = sp.Matrix([body.mass * radius**2 for radius in radii]) - moments
+        return Found(
+            radii,
+            "At this distance from the axis the whole mass would have the same moment.",
+            (_vanishes(rest, claims.OF_RADII, body.name),),
+        )
+
+    def _root(self, square: sp.Expr) -> sp.Expr:
+        """The square root, in which √(a²) is a for a parameter that is positive."""
+        positive = {
+            p.symbol: sp.Symbol(p.symbol.name, positive=True)
+            for p in self.body.parameters
+            if p.positive
+        }
+        back = {new: old for old, new in positive.items()}
+        return sp.sqrt(square.xreplace(positive)).xreplace(back)
+
+    def principal_moments(self) -> Found | None:
+        found = self.principal
+        if found is None:
+            return None
+        name, inertia = self.body.name, self.body.inertia
+        proofs = []
+        if found.axes is None:
+            values = [_volume(inertia - moment * _ONE) for moment in found.moments]
+            proofs.append(_vanishes(sp.Matrix(values), claims.CHARACTERISTIC, name))
+        return Found(found.moments, found.because, tuple(proofs))
+
+    def principal_axes(self) -> Found | None:
+        found = self.principal
+        if found is None or found.axes is None:
+            return None
+        axes, name = found.axes, self.body.name
+        turned = self.body.inertia * axes - axes * sp.diag(*found.moments)
+        unit = axes.T * axes - _ONE
+        whole = unit.col_join(sp.Matrix([[_volume(axes) - 1, 0, 0]]))
+        return Found(
+            axes,
+            "Each axis is a direction that the tensor keeps.",
+            (
+                _vanishes(turned, claims.DIAGONAL, name),
+                _vanishes(whole, claims.ORTHOGONAL_AXES, name),
+            ),
+        )
+
+    def inertia_ellipsoid(self) -> Found | None:
+        found = self.principal
+        if found is None or any(moment == 0 for moment in found.moments):
+            return None
+        semi_axes = found.moments.applyfunc(lambda moment: 1 / self._root(moment))
+        rest = sp.Matrix(
+            [a**2 * moment - 1 for a, moment in zip(semi_axes, found.moments, strict=True)]
+        )
+        return Found(
+            sp.ImmutableMatrix(semi_axes),
+            "The ellipsoid is that of all x′ for which x′·I′ x′ = 1.",
+            (_vanishes(rest, claims.ELLIPSOID, self.body.name),),
+        )
+
+    def inertia_tensor_space(self) -> Found:
+        values = self.values
+        body = values.encoded(self.body.inertia)
+        space = values.R @ (body @ values.R.T)
+        trace = values.column([sum((space[k, k] - body[k, k] for k in range(3)), values.ring.zero)])
+        prove = Prover(values.model, values.codec)
+        return Found(
+            presenter_for(values.codec).matrix(space),
+            "The components along the axes of space follow by the rotation, on both sides.",
+            (
+                prove.vanishes(values.R.T @ (space @ values.R) - body, claims.BACK),
+                prove.vanishes(trace, claims.TRACE),
+            ),
+        )
+
+
+def _moved(mass: sp.Expr, by: sp.MatrixBase) -> sp.Matrix:
+    """M (|d|² 1 − d dᵀ)."""
+    return mass * (by.dot(by) * _ONE - by * by.T)
+
+
+def _volume(columns: sp.MatrixBase) -> sp.Expr:
+    """The determinant of a matrix (3, 3), as it comes; SymPy's own would search for zeros in it."""
+    first, second, third = (columns[:, k] for k in range(3))
+    return first.dot(second.cross(third))
+
+
+def _scalar(value: sp.Expr) -> sp.ImmutableMatrix:
+    return sp.ImmutableMatrix([[value]])
+
+
+def _vanishes(
+    rest: sp.MatrixBase, claim: Markup, name: str, conditions: Sequence[sp.Expr] = ()
+) -> Proof:
+    """The proof that a matrix is zero; raises DerivationError where it is shown not to be."""
+    field = Rationals(rest, conditions)
+    left: list[Quotient] = [field.read(entry) for entry in rest]
+    if not any(entry.numerator for entry in left):
+        return Proof(claim=claim, status="exact")
+    shown = sp.ImmutableMatrix(*rest.shape, [field.write(entry) for entry in left])
+    if field.ring.complete and not conditions:
+        raise DerivationError(f"{name}: {claim.text} is false; left over: {shown}")
+    return Proof(claim=claim, status="unproved", residual=shown)
+
+
+_STEPS: Mapping[str, Callable[[_Inertia], Found | None]] = MappingProxyType(
+    {name: getattr(_Inertia, name) for name in claims.INERTIA_QUANTITIES}
+)

@@ -1,0 +1,104 @@
+"""The rotations that come with the package: Euler angles in all 24 conventions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sympy.printing.pretty.pretty_symbology import pretty_symbol
+
+from rigidsym.errors import ExpressionError, ModelError
+from rigidsym.models.rotation import Citation, RotationModel, Turn, lecture, product_of
+from rigidsym.models.so3 import AXES, time_function
+from rigidsym.text.names import check_name
+
+AXIS_SEQUENCES = tuple(
+    first + second + third
+    for first in AXES
+    for second in AXES
+    for third in AXES
+    if first != second != third
+)
+EULER_SEQUENCES = tuple(s.upper() for s in AXIS_SEQUENCES) + AXIS_SEQUENCES
+DEFAULT_ANGLES = ("phi", "theta", "psi")
+
+_DIGITS = str.maketrans("123", "XYZ")
+_ZXZ_SOURCE = lecture("17", "section 3.2")
+_SOURCE = Citation(
+    text="J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation "
+    "Vectors (2006), section 5"
+)
+
+
+def EulerAngles(
+    sequence: str, angles: Sequence[str] = DEFAULT_ANGLES, *, passive: bool = False
+) -> RotationModel:
+    """Three turns about coordinate axes, in radians.
+
+    `sequence` is intrinsic in upper case or digits (`ZXZ`, `313`: about the turning axes, with
+    R = R_z(q1) R_x(q2) R_z(q3), lecture eq. 17) and extrinsic in lower case (`zxz`: about the
+    fixed axes, with R = R_z(q3) R_x(q2) R_z(q1)). `angles` are taken in the order of the turns.
+
+    Raises ModelError for a sequence that is not one of the 24, and for angles that are not three
+    different names.
+    """
+    letters = euler_sequence(sequence)
+    coordinates = tuple(time_function(name) for name in _three_names(angles))
+    in_order = [
+        Turn(axis=axis, angle=angle)
+        for axis, angle in zip(letters.lower(), coordinates, strict=True)
+    ]
+    manner = "intrinsic" if letters.isupper() else "extrinsic"
+    turns = tuple(in_order if manner == "intrinsic" else reversed(in_order))
+    return RotationModel(
+        name=f"euler_{letters.lower()}_{manner}" + ("_passive" if passive else ""),
+        title=f"Euler angles {letters}, {manner}" + (", passive" if passive else ""),
+        convention=(_order_in_words(manner, in_order),),
+        coordinates=coordinates,
+        matrix=product_of(turns),
+        turns=turns,
+        source=_ZXZ_SOURCE if letters == "ZXZ" else _SOURCE,
+        passive=passive,
+        request={
+            "sequence": letters,
+            "angles": [coordinate.func.__name__ for coordinate in coordinates],
+            "passive": passive,
+        },
+    )
+
+
+def euler_sequence(text: str) -> str:
+    """The sequence in letters: `313` becomes `ZXZ`. Raises ModelError for what is not one."""
+    letters = text.translate(_DIGITS)
+    if letters not in EULER_SEQUENCES:
+        raise ModelError(f"{text!r} is not an Euler sequence: {_what_is_wrong(text)}")
+    return letters
+
+
+def _what_is_wrong(text: str) -> str:
+    letters = text.translate(_DIGITS)
+    if letters.upper() == letters or letters.lower() == letters:
+        if len(letters) == 3 and set(letters.lower()) <= set(AXES):
+            return "two turns in a row are about one axis; neighbours must differ"
+        return "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
+    return "upper case is intrinsic and lower case extrinsic; do not mix them"
+
+
+def _three_names(angles: Sequence[str]) -> Sequence[str]:
+    try:
+        plain = [check_name(angle) for angle in angles]
+    except ExpressionError as error:
+        raise ModelError(f"an angle has no good name: {error}") from error
+    if len(plain) != 3 or len(set(plain)) != 3:
+        raise ModelError(f"Euler angles need three different names, got {', '.join(angles)}")
+    return plain
+
+
+def _order_in_words(manner: str, turns: Sequence[Turn]) -> str:
+    """The turns in the order in which the body makes them."""
+    angles = [pretty_symbol(turn.angle.func.__name__) for turn in turns]
+    if manner == "extrinsic":
+        about = [f"{a} about the fixed {t.axis}" for a, t in zip(angles, turns, strict=True)]
+    else:
+        about = [f"{a} about the turned {t.axis}" for a, t in zip(angles, turns, strict=True)]
+        about[0] = about[0].replace("the turned ", "")
+    return f"{manner.capitalize()} turns: first {about[0]}, then {about[1]}, then {about[2]}."

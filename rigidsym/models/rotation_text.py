@@ -1,0 +1,205 @@
+"""What a file or a command asks for -> a rotation model."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from rigidsym.errors import ExpressionError, ModelError
+from rigidsym.models.chain import axis_turn, chain, direction
+from rigidsym.models.euler_angles import (
+    DEFAULT_ANGLES,
+    EULER_SEQUENCES,
+    EulerAngles,
+    euler_sequence,
+)
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.models.matrices import given
+from rigidsym.models.rotation import RotationModel, Turn
+from rigidsym.models.so3 import AXES, time_function
+from rigidsym.text.expression import names_in, parse_expression, parse_turns
+from rigidsym.text.names import check_name, offer
+
+LONGEST = 200  # characters of a sequence or of turns
+_AT_REST = re.compile(r".*\D0")  # a name that ends in nought: alpha0, b_0; not a_10
+_A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name from the list'
+
+
+def rotation_from(
+    text: str,
+    *,
+    names: Sequence[str] | None = None,
+    constants: Sequence[str] = (),
+    scalar_last: bool = False,
+    passive: bool = False,
+) -> RotationModel:
+    """The model that a text asks for: an Euler sequence, turns, a parametrisation, a preset.
+
+    `names` are those of the coordinates; turns name theirs themselves. In turns a name is a
+    coordinate, unless it is among `constants` or ends in nought (`alpha0`, but not `a_10`), and
+    the components of an axis are constants. Raises ModelError or ExpressionError, which say what
+    was expected.
+    """
+    if len(text) > LONGEST:
+        raise ModelError(f"expected {_A_ROTATION}, got {len(text)} characters")
+    asked: dict[str, Any] = {"sequence": text, "angles": names and list(names)}
+    asked |= {"constants": list(constants), "scalar_last": scalar_last, "passive": passive}
+    if constants and "(" not in text:
+        raise ModelError(f"{text} has no constants; they go with turns such as z(phi) x(incline)")
+    name = text.strip().lower().replace("-", "_").replace(" ", "_")
+    if "(" in text:
+        model = _turned(text, names, constants, passive)
+    elif name in PARAMETRISATIONS:
+        model = _parametrised(name, names, scalar_last, passive)
+    elif name in PRESETS:
+        model = _preset(name, names, passive)
+    else:
+        model = EulerAngles(
+            _sequence(text), DEFAULT_ANGLES if names is None else names, passive=passive
+        )
+    if scalar_last and not (name in PARAMETRISATIONS and PARAMETRISATIONS[name].has_scalar):
+        raise ModelError(f"{text} has no scalar that could stand last")
+    if model.request and name not in PRESETS:
+        return model  # Euler angles know what asks for them
+    kept = {key: value for key, value in asked.items() if value or key == "sequence"}
+    return replace(model, request=kept)
+
+
+def rotation_given(
+    rows: Sequence[Sequence[str]],
+    *,
+    name: str,
+    coordinates: Sequence[str],
+    constraints: Sequence[str] = (),
+    passive: bool = False,
+) -> RotationModel:
+    """Your own R(q): nine expressions by rows, in the coordinates; other names are constants.
+
+    `constraints` are expressions that vanish for all time. Raises ModelError or ExpressionError.
+    """
+    if len(rows) != 3 or any(len(row) != 3 for row in rows):
+        raise ModelError("a rotation matrix has three rows of three expressions")
+    functions = {check_name(q): time_function(check_name(q)) for q in coordinates}
+    if len(functions) != len(coordinates):
+        raise ModelError(f"a coordinate is named twice: {', '.join(coordinates)}")
+    texts = [*(entry for row in rows for entry in row), *constraints]
+    used = {n: functions.get(n) or sp.Symbol(check_name(n)) for t in texts for n in names_in(t)}
+    entries = [parse_expression(text, used) for text in texts]
+    model = given(
+        sp.Matrix(3, 3, entries[:9]),
+        name=name,
+        coordinates=tuple(functions.values()),
+        constraints=tuple(entries[9:]),
+        passive=passive,
+    )
+    asked = {"matrix": [list(row) for row in rows], "coordinates": list(functions)}
+    asked |= {"constraints": list(constraints), "passive": passive}
+    return replace(model, request={key: value for key, value in asked.items() if value})
+
+
+def faults_in(
+    rows: Sequence[Sequence[str]], coordinates: Sequence[str], constraints: Sequence[str] = ()
+) -> dict[tuple[str | int, ...], str]:
+    """{place: fault} of the texts that `rotation_given` cannot read."""
+    texts: dict[tuple[str | int, ...], str] = {
+        ("matrix", i, j): text for i, row in enumerate(rows) for j, text in enumerate(row)
+    }
+    texts |= {("constraints", k): text for k, text in enumerate(constraints)}
+    moving = {q: time_function(q) for q in coordinates}
+    faults: dict[tuple[str | int, ...], str] = {}
+    for place, text in texts.items():
+        try:
+            names = {n: moving.get(n) or sp.Symbol(check_name(n)) for n in names_in(text)}
+            parse_expression(text, names)
+        except ExpressionError as error:
+            faults[place] = f"column {error.column}: {error.message}"
+    return faults
+
+
+def request_of(model: RotationModel) -> Mapping[str, Any]:
+    """What asks for the model again; raises ModelError for one that no text asks for."""
+    if model.request:
+        return model.request
+    raise ModelError(f"{model.name} was made in Python; no derivation file can ask for it")
+
+
+def _sequence(text: str) -> str:
+    try:
+        return euler_sequence(text)
+    except ModelError as error:
+        if len(text) <= 3 or text.lower() in map(str.lower, EULER_SEQUENCES):
+            raise
+        known = (*PARAMETRISATIONS, *PRESETS)
+        raise ModelError(f"{error}; or a name, {offer(text.lower(), known)}") from None
+
+
+def _parametrised(
+    name: str, names: Sequence[str] | None, scalar_last: bool, passive: bool
+) -> RotationModel:
+    entry = PARAMETRISATIONS[name]
+    options: dict[str, Any] = {"passive": passive}
+    if names is not None:
+        options["names"] = tuple(names)
+    if scalar_last and entry.has_scalar:
+        options["scalar_last"] = True
+    return entry.build(**options)
+
+
+def _preset(name: str, names: Sequence[str] | None, passive: bool) -> RotationModel:
+    """The rotation of a text under its own name; `passive` turns its presentation over."""
+    preset = PRESETS[name]
+    model = rotation_from(
+        preset.rotation, names=names or preset.names or None, passive=preset.passive != passive
+    )
+    return replace(
+        model,
+        name=name + ("_transposed" if passive else ""),
+        title=preset.about[0].upper() + preset.about[1:] + (", transposed" if passive else ""),
+        source=preset.source,
+    )
+
+
+def _turned(
+    text: str, names: Sequence[str] | None, constants: Sequence[str], passive: bool
+) -> RotationModel:
+    if names is not None:
+        raise ModelError(f"{text} names its angles itself; leave the other names out")
+    try:
+        turns = [_turn(axis, angle, constants) for axis, angle in parse_turns(text)]
+    except ExpressionError as error:
+        raise ExpressionError(f"column {error.column}: {error.message}") from None
+    return _euler(turns, passive) or chain(turns, passive=passive)
+
+
+def _euler(turns: Sequence[Turn], passive: bool) -> RotationModel | None:
+    """The Euler angles that three turns about coordinate axes are, if they are."""
+    letters = "".join(turn.axis for turn in turns).upper()
+    angles = [turn.angle for turn in turns]
+    if letters not in EULER_SEQUENCES or len(set(angles)) != len(angles):
+        return None
+    if not all(isinstance(angle, AppliedUndef) for angle in angles):
+        return None
+    return EulerAngles(letters, [angle.func.__name__ for angle in angles], passive=passive)
+
+
+def _turn(axis: str, angle: str, constants: Sequence[str]) -> Turn:
+    value = parse_expression(angle, {name: _symbol(name, constants) for name in names_in(angle)})
+    if axis in AXES:
+        return Turn(axis=axis, angle=value)
+    parts = axis[1:-1].split(",")
+    if len(parts) != 3:
+        raise ExpressionError(f"the axis {axis} has {len(parts)} components; expected three")
+    exact = [parse_expression(p, {n: sp.Symbol(check_name(n)) for n in names_in(p)}) for p in parts]
+    turn = axis_turn(direction(exact), value)
+    return replace(turn, axis=f"[{','.join(part.strip() for part in parts)}]")
+
+
+def _symbol(name: str, constants: Sequence[str]) -> sp.Expr:
+    plain = check_name(name)
+    is_fixed = plain in constants or _AT_REST.fullmatch(plain)
+    return sp.Symbol(plain) if is_fixed else time_function(plain)

@@ -1,0 +1,50 @@
+"""The section of a note that says what was claimed, and what became of each claim."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rigidsym.mechanics.derivation import Proof
+from rigidsym.notes.document.document import (
+    Block,
+    Equation,
+    EquationReference,
+    Paragraph,
+    Strong,
+    Table,
+    Text,
+)
+from rigidsym.notes.layout.entries import RESIDUAL, indexed
+from rigidsym.notes.prose.prose import proofs_in_words
+
+Claim = tuple[str, Proof]  # the label of an equation, and what was claimed there
+
+
+def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[Block]:
+    """Each claim with the label of its equation; below, what is left over of those unproved."""
+    unproved = [proof for _, proof in claims if not proof.is_exact]
+    yield Paragraph(proofs_in_words(is_proved=not unproved))
+    yield Table(
+        caption="What was claimed, and what became of it",
+        head=(("Equation",), ("Claim",), ("Status",)),
+        rows=tuple(
+            ((EquationReference(label),), (proof.claim,), _status(proof)) for label, proof in claims
+        ),
+    )
+    for proof in unproved:
+        yield from _left_over(proof)
+
+
+def _status(proof: Proof) -> Text:
+    return ("exact",) if proof.is_exact else (Strong("unproved"),)
+
+
+def _left_over(proof: Proof) -> Iterator[Block]:
+    """What remains of a claim that could not be decided."""
+    yield Paragraph((Strong("Unproved:"), " ", proof.claim, ". What is left over is"))
+    if proof.residual is not None:
+        yield Equation(
+            sides=(RESIDUAL,),
+            matrix=proof.residual,
+            entries=indexed(RESIDUAL, proof.residual.shape),
+        )

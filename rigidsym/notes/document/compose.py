@@ -1,0 +1,296 @@
+"""Derivation -> Document, in the manner of a good lecture.
+
+Equations carry the numbers of the steps; what is only recalled has none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from rigidsym.mechanics.claims import orthogonal, skew, spin_of
+from rigidsym.mechanics.derivation import Argument, Derivation, Step
+from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
+from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
+from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.models.rotation import Citation, Turn
+from rigidsym.models.so3 import hat
+from rigidsym.notes.document.boxed import RESULTS
+from rigidsym.notes.document.claims_table import claims_in_a_table
+from rigidsym.notes.document.document import (
+    Block,
+    Cited,
+    Document,
+    Equation,
+    EquationRow,
+    Figure,
+    Paragraph,
+    Section,
+    Text,
+)
+from rigidsym.notes.document.note_tables import functions, symbols
+from rigidsym.notes.document.summary import summary
+from rigidsym.notes.figure.figure import figure_of
+from rigidsym.notes.formula.formula import markup
+from rigidsym.notes.formula.manner import DEFAULT, Manner
+from rigidsym.notes.formula.notation import notation_of
+from rigidsym.notes.formula.rewriting import in_manner
+from rigidsym.notes.layout.entries import entry_names, indexed
+from rigidsym.notes.layout.fitting import Fitter
+from rigidsym.notes.prose.prose import motion, product, turn
+from rigidsym.notes.prose.singular_words import failures, meaning, measured
+from rigidsym.notes.prose.words import (
+    OPERATOR,
+    convention,
+    equal,
+    symbols_of,
+    with_symbols,
+    words,
+)
+
+_TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
+
+_ANGULAR_VELOCITY = (
+    "rotation_rate",
+    "spin_matrix",
+    "angular_velocity_space",
+    "angular_velocity_body",
+)
+_RATES = tuple(
+    f"{name}_{frame}"
+    for frame in ("space", "body")
+    for name in ("rate_matrix", "inverse_rate_matrix", "rates_from_angular_velocity")
+)
+ACCELERATION = ("angular_acceleration_space", "angular_acceleration_body")
+
+
+def compose(
+    derivation: Derivation,
+    *,
+    module: str | None = None,
+    functions: Sequence[str] = (),
+    manner: Manner = DEFAULT,
+) -> Document:
+    """The note of a derivation.
+
+    `module` is the file name of a kernel module and `functions` the quantities it evaluates; each
+    of their equations names its function. Raises ModelError where a name of the model would be
+    taken for one of the notation.
+    """
+    manner.check(derivation.model)
+    composer = Composer(derivation, module, tuple(functions), manner)
+    document = Document(
+        name=derivation.name,
+        title=derivation.title,
+        subtitle=derivation.subject,
+        notation=composer.notation,
+        sections=tuple(composer.sections()),
+    )
+    return in_manner(document, manner)
+
+
+class Composer:
+    """The sections of one note."""
+
+    def __init__(
+        self,
+        derivation: Derivation,
+        module: str | None,
+        functions: tuple[str, ...],
+        manner: Manner,
+    ) -> None:
+        self.derivation = derivation
+        self.model = derivation.model
+        self.module = module or ""
+        self.functions = functions
+        self.notation = notation_of(derivation.arguments, manner, derivation.model)
+        self.symbols = symbols_of(derivation)
+        self.fitter = Fitter(derivation, self.notation)
+        self.said: set[str] = set()
+
+    def sections(self) -> Iterator[Section]:
+        parts = {
+            "Convention": self._convention(),
+            "The rotation": self._rotation(),
+            "The angular velocity": self._angular_velocity(),
+            "The rates of the coordinates": self._rates(),
+            "Where the rates fail": self._singularities(),
+            "The angular acceleration": self._steps(ACCELERATION),
+            "The body": self._body(),
+            "The kinetic energy": self._steps(ENERGIES),
+            "The angular momentum": self._steps(MOMENTA),
+            "What was proved": self._proofs(),
+            "Symbols": iter([symbols(self.derivation, self.notation)]),
+            "Functions": self._functions(),
+        }
+        filled = ((title, tuple(blocks)) for title, blocks in parts.items())
+        sections = [Section(title, blocks) for title, blocks in filled if blocks]
+        yield from sections
+        yield summary(self.derivation, sections, self.notation)
+
+    def _body(self) -> Iterator[Block]:
+        if self.derivation.body is not None:
+            from rigidsym.notes.document.body_sections import blocks_of_body
+
+            yield from blocks_of_body(self.derivation, self.notation)
+            yield from self._steps(tuple(INERTIA_QUANTITIES))
+
+    def _convention(self) -> Iterator[Block]:
+        return (Paragraph(text) for text in convention(self.derivation, self.notation.manner))
+
+    def _rotation(self) -> Iterator[Block]:
+        if self.model.turns:
+            yield from self._product_of_turns()
+        else:
+            yield from self._figure()
+        yield from self._steps(("rotation_matrix",))
+
+    def _product_of_turns(self) -> Iterator[Block]:
+        turns = [turn(t, self.notation) for t in self.model.turns]
+        kind = "a product of turns" if len(turns) > 1 else "one turn"
+        yield Paragraph(words(f"The rotation is {kind}\u00a0{{}}:", Cited(self.model.source)))
+        yield Equation(sides=(ROTATION, product(turns)))
+        yield from self._figure()
+        by_axis = list(self._turns_by_axis())
+        angle = markup(self._turn_angle(), self.notation)
+        if len(turns) == 1:
+            yield Paragraph(words("The right-handed turn by an angle {} is", angle))
+        else:
+            read = (
+                "Read from left to right, they are about the axes as they have turned; read from "
+                "right to left, about the axes fixed in space. Right-handed turns by an angle {} "
+                "are"
+            )
+            yield Paragraph(words(read, angle))
+        short = tuple(self._elementary(t) for t in by_axis if not t.components)
+        if short:
+            yield EquationRow(short)
+        yield from (self._elementary(t) for t in by_axis if t.components)
+
+    def _figure(self) -> Iterator[Figure]:
+        figure = figure_of(self.model, self.notation)
+        if figure is not None:
+            yield figure
+
+    def _turns_by_axis(self) -> Iterator[Turn]:
+        """One turn about each axis, by the angle that stands for any."""
+        axes = {(t.components, t.axis): t for t in self.model.turns}
+        for key in sorted(axes, key=lambda key: (bool(key[0]), key[1])):
+            yield replace(axes[key], angle=self._turn_angle())
+
+    def _turn_angle(self) -> sp.Symbol:
+        taken = {coordinate.func.__name__ for coordinate in self.model.coordinates}
+        return sp.Symbol(next(name for name in _TURN_ANGLES if name not in taken))
+
+    def _elementary(self, any_turn: Turn) -> Equation:
+        side = turn(any_turn, self.notation)
+        return Equation(
+            sides=(side,), matrix=any_turn.matrix, entries=indexed(side, any_turn.matrix.shape)
+        )
+
+    def _angular_velocity(self) -> Iterator[Block]:
+        shown = COSINES if self.model.passive else ROTATION
+        yield from motion(passive=self.model.passive)
+        yield Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
+        yield Paragraph(
+            words(
+                "That {} is skew follows from {} by differentiation:",
+                spin_of(shown),
+                orthogonal(shown),
+            )
+        )
+        yield Equation(sides=(skew(spin_of(shown)),))
+        yield from self._steps(_ANGULAR_VELOCITY)
+
+    def _rates(self) -> Iterator[Block]:
+        steps = list(self._steps(_RATES))
+        found = self.derivation.singularities
+        if not steps and found is None:
+            return
+        yield Paragraph(
+            words(
+                "The rate matrices are defined by {} and {}, so that {}.",
+                equal(SPACE.omega, product([SPACE.matrix, RATES])),
+                equal(BODY.omega, product([BODY.matrix, RATES])),
+                equal(SPACE.matrix, product([ROTATION, BODY.matrix])),
+            )
+        )
+        yield from steps
+        if found is not None and found.rank < 3:
+            yield Paragraph(("The rate matrices have no inverse; the rates are not solved for.",))
+
+    def _singularities(self) -> Iterator[Block]:
+        found = self.derivation.singularities
+        if found is None:
+            return
+        if found.determinant is not None:
+            yield Paragraph(meaning(found))
+            value = markup(found.determinant, self.notation)
+            yield Equation(sides=(*measured(found), value))
+        yield from map(Paragraph, failures(self.derivation, found))
+
+    def _steps(self, names: Sequence[str]) -> Iterator[Block]:
+        for step in self.derivation.steps:
+            if step.quantity.name in names:
+                first, *others = self.fitter.fitted(self._equation(step), step)
+                lead = self._lead(step)
+                if isinstance(first, Paragraph):  # on abbreviations
+                    *said, end = lead
+                    end = end.replace(":", ".") if isinstance(end, str) else end
+                    yield Paragraph((*said, end, " ", *first.text))
+                else:
+                    yield from (Paragraph(lead), first)
+                yield from others
+
+    def _lead(self, step: Step) -> Text:
+        """How the quantity follows; what has been said once is not said again."""
+        if step.because in self.said:
+            return (f"Likewise, the {step.quantity.about}:",)
+        self.said.add(step.because)
+        source = self._source(step)
+        if source is None:
+            return with_symbols(step.because, self.symbols)
+        sentence = with_symbols(step.because.removesuffix("."), self.symbols)
+        return (*sentence, "\u00a0", Cited(source), ".")
+
+    def _source(self, step: Step) -> Citation | None:
+        """The source of a step; the model's own is cited once, where the rotation is given."""
+        is_given = step.quantity.name == "rotation_matrix" and not self.model.turns
+        if is_given:
+            return self.model.source
+        return None if step.quantity.source == self.model.source else step.quantity.source
+
+    def _equation(self, step: Step) -> Equation:
+        function = _call(step) if step.quantity.name in self.functions else ""
+        equation = equation_of(step, self.derivation.arguments)
+        return replace(equation, function=function, is_result=step.quantity.name in RESULTS)
+
+    def _proofs(self) -> Iterator[Block]:
+        steps = self.derivation.steps
+        yield from claims_in_a_table([(s.quantity.name, p) for s in steps for p in s.proofs])
+
+    def _functions(self) -> Iterator[Block]:
+        if self.functions:
+            yield from functions(self.derivation, self.module, self.functions)
+
+
+def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
+    """The numbered equation of a step."""
+    quantity = step.quantity
+    definition = () if not quantity.definition.text else (quantity.definition,)
+    return Equation(
+        sides=(quantity.symbol, *definition),
+        matrix=None if quantity.is_scalar else step.expression,
+        scalar=step.expression[0] if quantity.is_scalar else None,
+        entries=entry_names(step, arguments),
+        number=step.number,
+        label=quantity.name,
+        proved=tuple(proof.claim for proof in step.proofs if proof.is_exact),
+        unproved=tuple(proof.claim for proof in step.proofs if not proof.is_exact),
+    )
+
+
+def _call(step: Step) -> str:
+    return f"{step.quantity.name}({', '.join(step.quantity.inputs)})"

@@ -1,0 +1,114 @@
+"""The section of a note that goes from the coordinates to the unit quaternion and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from rigidsym.mechanics.conversions.conversions import SHEPPERD, Conversions, outer_product
+from rigidsym.mechanics.derivation import Derivation, Markup, Step
+from rigidsym.notes.document.compose import equation_of
+from rigidsym.notes.document.document import (
+    Block,
+    Cited,
+    Code,
+    Document,
+    Equation,
+    EquationRow,
+    Paragraph,
+    Section,
+    Strong,
+)
+from rigidsym.notes.formula.manner import DEFAULT, Manner
+from rigidsym.notes.formula.rewriting import in_manner
+from rigidsym.notes.layout.entries import indexed
+from rigidsym.notes.prose.conversion_words import HOW, WHICH
+from rigidsym.notes.prose.words import symbols_of, with_symbols, words
+
+TITLE = "Conversions"
+_BEFORE = "What was proved"  # the section that it stands before
+_FUNCTIONS = ("from_quaternion(p{})", "from_rotation_matrix(matrix{})")
+
+
+def with_conversions(
+    document: Document,
+    derivation: Derivation,
+    conversions: Conversions,
+    *,
+    has_functions: bool,
+    manner: Manner = DEFAULT,
+) -> Document:
+    """The note with a section on conversions, before the one that lists the proofs."""
+    blocks = tuple(_blocks(derivation, conversions, has_functions=has_functions))
+    own = in_manner(replace(document, sections=(Section(TITLE, blocks),)), manner)
+    titles = [section.title for section in document.sections]
+    place = titles.index(_BEFORE) if _BEFORE in titles else len(titles)
+    before, after = document.sections[:place], document.sections[place:]
+    return replace(document, sections=(*before, *own.sections, *after))
+
+
+def _blocks(
+    derivation: Derivation, conversions: Conversions, *, has_functions: bool
+) -> Iterator[Block]:
+    if conversions.quaternion is not None:
+        yield from _quaternion(derivation, conversions.quaternion, has_functions=has_functions)
+    yield from _matrix(conversions)
+    yield from _coordinates(derivation, conversions, has_functions=has_functions)
+    if not all(proof.is_exact for proof in conversions.proofs):
+        yield Paragraph((Strong("Unproved:"), " not all of these claims could be decided."))
+    else:
+        yield Paragraph(("The claims of this section were decided exactly, like the others.",))
+
+
+def _quaternion(derivation: Derivation, step: Step, *, has_functions: bool) -> Iterator[Block]:
+    """The unit quaternion as a formula, with the number after that of the last step."""
+    sentence = with_symbols(step.because.removesuffix("."), symbols_of(derivation) | HOW)
+    source = step.quantity.source
+    yield Paragraph((*sentence, *(("\u00a0", Cited(source)) if source else ()), "."))
+    numbered = replace(step, number=len(derivation.steps) + 1)
+    call = f"quaternion({', '.join(step.quantity.inputs)})" if has_functions else ""
+    yield replace(equation_of(numbered, derivation.arguments), function=call, is_result=True)
+
+
+def _matrix(conversions: Conversions) -> Iterator[Block]:
+    """The columns of K(R) = 4 p pᵀ, from which the quaternion of a matrix is read."""
+    yield Paragraph(
+        words(
+            "The unit quaternion of a matrix, but for its sign, is a column of {} over its "
+            "length; that of the largest component loses no digits\u00a0{}:",
+            conversions.from_matrix.claim,
+            Cited(SHEPPERD),
+        )
+    )
+    entries = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}"))
+    matrix = sp.ImmutableMatrix(outer_product(entries))
+    yield EquationRow(tuple(_column(name, matrix[:, k]) for k, name in enumerate("wxyz")))
+
+
+def _column(name: str, column: sp.ImmutableMatrix) -> Equation:
+    side = Markup(rf"4\,p_{name}\,\mathbf{{p}}", f"4 p_{name} p")
+    return Equation(sides=(side,), matrix=column, entries=indexed(side, (4,)))
+
+
+def _coordinates(
+    derivation: Derivation, conversions: Conversions, *, has_functions: bool
+) -> Iterator[Block]:
+    backward = conversions.backward
+    if backward is None:
+        yield Paragraph((conversions.without,))
+        return
+    symbols = symbols_of(derivation)
+    source = (" ", Cited(backward.source)) if backward.source else ()
+    yield Paragraph((*with_symbols(backward.because, symbols | HOW), *source))
+    yield from (Equation(sides=(proof.claim,)) for proof in backward.proofs)
+    yield Paragraph(with_symbols(backward.branch, symbols | WHICH))
+    if has_functions:
+        given = "".join(f", {name}" for name in backward.given)
+        yield Paragraph(_called([name.format(given) for name in _FUNCTIONS]))
+
+
+def _called(functions: Sequence[str]) -> tuple[str | Code, ...]:
+    first, second = map(Code, functions)
+    return ("These are the functions ", first, " and ", second, ".")

@@ -1,0 +1,162 @@
+"""A note as data: sections of paragraphs, equations and tables, for any printer.
+
+Text is a tuple of spans: plain words, formulas (in both markups), code, references. Equations
+hold SymPy matrices, so that each printer can break and abbreviate them for its own width.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import sympy as sp
+
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.models.rotation import Citation
+from rigidsym.notes.figure.drawing import Drawing
+from rigidsym.notes.formula.notation import Notation
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """A name in a program, or a call."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Strong:
+    """Words that must not be overlooked."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class EquationReference:
+    """The number of a numbered equation of this document."""
+
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class Cited:
+    """A place in a source."""
+
+    citation: Citation
+
+    @property
+    def place(self) -> str:
+        """Where in the source: the equation, or else the section; nothing where it is the whole."""
+        equation, section = self.citation.equation, self.citation.section
+        return f"eq.\u00a0{equation}" if equation else section.replace(" ", "\u00a0")
+
+
+Span = str | Markup | Code | Strong | EquationReference | Cited
+Text = tuple[Span, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Paragraph:
+    text: Text
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Equation:
+    """One display: sides that are equal, the last of them a matrix or a scalar that is given."""
+
+    sides: tuple[Markup, ...]
+    matrix: sp.ImmutableMatrix | None = None
+    scalar: sp.Expr | None = None
+    entries: tuple[Markup, ...] = ()  # a name an entry, row by row, for a listing
+    number: int | None = None
+    label: str = ""
+    function: str = ""  # of the kernel module, as it is called
+    proved: tuple[Markup, ...] = ()
+    unproved: tuple[Markup, ...] = ()
+    is_result: bool = False  # what a reader looks up stands in a box
+
+
+@dataclass(frozen=True, slots=True)
+class EquationRow:
+    """Short unnumbered equations that may share a line."""
+
+    equations: tuple[Equation, ...]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Table:
+    caption: str
+    head: tuple[Text, ...]
+    rows: tuple[tuple[Text, ...], ...]
+    of_words: int | None = None  # the column whose cells may take several lines
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A few lines of Python that can be run as they stand, beside the kernel module."""
+
+    code: str  # ASCII, lines of at most 80 columns
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Figure:
+    drawing: Drawing
+    caption: Text  # which line is what
+    description: Text  # what the figure says, in words that do without it
+
+
+Block = Paragraph | Equation | EquationRow | Table | Program | Figure
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    title: str
+    blocks: tuple[Block, ...]
+    on_own_page: bool = False  # at the end, on a sheet that can be handed out alone
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Document:
+    """A note. Equation labels are unique in it; sources are numbered in order of appearance."""
+
+    name: str  # of the derivation: lower case, digits, underscores
+    title: str
+    subtitle: str
+    notation: Notation
+    sections: tuple[Section, ...]
+
+    @property
+    def equations(self) -> Iterator[Equation]:
+        """The numbered equations, in order."""
+        blocks = (block for section in self.sections for block in section.blocks)
+        return (block for block in blocks if isinstance(block, Equation) and block.number)
+
+    @property
+    def figures(self) -> tuple[Figure, ...]:
+        """The figures, in order; their numbers are their places."""
+        blocks = (block for section in self.sections for block in section.blocks)
+        return tuple(block for block in blocks if isinstance(block, Figure))
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """The sources that the text cites, each once, in order of appearance."""
+        spans = (span for text in self._texts() for span in text)
+        return tuple(dict.fromkeys(s.citation.text for s in spans if isinstance(s, Cited)))
+
+    def source_number(self, cited: Cited) -> int:
+        """The number of the source that is cited."""
+        return self.sources.index(cited.citation.text) + 1
+
+    def number(self, label: str) -> int:
+        """The number of an equation, by its label."""
+        return next(e.number for e in self.equations if e.label == label and e.number)
+
+    def _texts(self) -> Iterator[Text]:
+        for section in self.sections:
+            for block in section.blocks:
+                if isinstance(block, Paragraph):
+                    yield block.text
+                elif isinstance(block, Figure):
+                    yield from (block.caption, block.description)
+                elif isinstance(block, Table):
+                    yield from (cell for row in block.rows for cell in row)

@@ -1,0 +1,111 @@
+"""What ends the note of the lecture: its symbols with their units, its results on one sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import groupby
+
+from rigidsym.mechanics.derivation import Derivation, Markup
+from rigidsym.notes.document.boxed import RESULTS
+from rigidsym.notes.document.document import (
+    Equation,
+    EquationReference,
+    EquationRow,
+    Paragraph,
+    Section,
+    Span,
+    Table,
+    Text,
+)
+from rigidsym.notes.document.note_tables import symbols
+from rigidsym.notes.document.summary import SHEET, row_height, summary
+from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.prose.words import listed
+
+_LEAD = 2.0  # lines that the words before a row of equations take
+_OF_THE_THEORY: Sequence[tuple[str, str, str, str, str]] = (  # LaTeX, text, meaning, unit, equation
+    ("m_i", "mᵢ", "mass of a particle", "kg", ""),
+    ("M", "M", "mass of the body", "kg", ""),
+    (r"\mathbf{r}_i", "rᵢ", "place of a particle", "m", ""),
+    (r"\mathbf{r}_C", "r_C", "place of the centre of mass", "m", "centre_of_mass"),
+    (r"\mathbf{x}_i", "xᵢ", "place of a particle seen from the centre of mass", "m", ""),
+    (r"\mathbf{x}'_i", "x′ᵢ", "the same, body components", "m", ""),
+    (r"\mathbf{e}_j", "e_j", "vectors of an orthonormal basis", "1", ""),
+    (r"\mathbf{e}'_j", "e′_j", "the same, turned", "1", "components_in_another_basis"),
+    (
+        r"\mathbf{I}",
+        "I",
+        "inertia tensor about the centre of mass, space components",
+        "kg m²",
+        "inertia_of_particles",
+    ),
+    (r"d^{\perp}_i", "d⊥ᵢ", "distance of a particle from a line", "m", ""),
+)
+_PARTS = "parts_of_the_momentum"
+_BY_THE_BODY: Sequence[tuple[str, str, str, str, str]] = (  # where no body has them as quantities
+    (r"\mathbf{I}'", "I′", "the inertia tensor, body components", "kg m²", "inertia_turns"),
+    ("E_C", "E_C", "kinetic energy of the mass in the centre of mass", "J", "energy_splits"),
+    ("E_R", "E_R", "kinetic energy of the rotation about the centre of mass", "J", "energy_splits"),
+    ("E_K", "E_K", "kinetic energy", "J", "energy_splits"),
+    (
+        r"\mathbf{L}_C",
+        "L_C",
+        "angular momentum of the mass in the centre of mass",
+        "kg m²/s",
+        _PARTS,
+    ),
+    (r"\mathbf{L}_R", "L_R", "angular momentum of the rotation", "kg m²/s", _PARTS),
+    (r"\mathbf{L}", "L", "angular momentum about the origin", "kg m²/s", "momentum_splits"),
+)
+
+
+def symbols_of_the_lecture(
+    derivation: Derivation, notation: Notation, shown: Mapping[str, str]
+) -> Table:
+    """Symbols of the theory before those of the rotation and the body.
+
+    `shown` names, for a quantity without an equation of its own, the one that it belongs to.
+    """
+
+    def placed(span: Span) -> Span:
+        if isinstance(span, EquationReference):
+            return EquationReference(shown.get(span.label, span.label))
+        return span
+
+    table = symbols(derivation, notation)
+    theory = [*map(_row, _OF_THE_THEORY)]
+    known = {str(row[0]) for row in theory}
+    others = [row for row in table.rows if str(row[0]) not in known]
+    held = {str(span) for row in others for span in row[0]}
+    theory += [row for row in map(_row, _BY_THE_BODY) if str(row[0][0]) not in held]
+    rows = (tuple(tuple(map(placed, cell)) for cell in row) for row in others)
+    return replace(table, rows=(*theory, *rows))
+
+
+def _row(entry: tuple[str, str, str, str, str]) -> tuple[Text, ...]:
+    latex, text, about, unit, label = entry
+    reference: Text = (EquationReference(label),) if label else ()
+    return (Markup(latex, text),), (about,), (unit,), reference
+
+
+def summary_of_the_lecture(
+    derivation: Derivation, sections: Sequence[Section], notation: Notation
+) -> Section:
+    """The results of the theory, and under them the summary of the rotation and its body."""
+    groups = dict(_results(derivation))
+    room = SHEET - sum(_LEAD + row_height(equations, notation) for equations in groups.values())
+    rest = summary(derivation, sections, notation, room)
+    theory = (
+        block for lead, row in groups.items() for block in (Paragraph(lead), EquationRow(row))
+    )
+    return replace(rest, blocks=(*theory, *rest.blocks))
+
+
+def _results(derivation: Derivation) -> Iterator[tuple[Text, tuple[Equation, ...]]]:
+    """The words before the results of each section of the theory, and these."""
+    found = (s for s in derivation.theory if s.number and s.name in RESULTS)
+    for title, group in groupby(found, key=lambda s: s.section):
+        statements = list(group)
+        numbers = listed([(EquationReference(s.name),) for s in statements])
+        yield (f"{title} ", *numbers, ":"), tuple(Equation(sides=s.sides) for s in statements)

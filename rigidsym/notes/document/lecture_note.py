@@ -1,0 +1,152 @@
+"""The note of a derivation with its theory: the lecture's equations in order, then the rotation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import groupby
+
+from rigidsym.mechanics.derivation import Derivation, Markup, Statement, Step
+from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
+from rigidsym.notes.document.boxed import RESULTS
+from rigidsym.notes.document.claims_table import claims_in_a_table
+from rigidsym.notes.document.compose import ACCELERATION, Composer
+from rigidsym.notes.document.document import (
+    Block,
+    Cited,
+    Document,
+    Equation,
+    Paragraph,
+    Section,
+    Text,
+)
+from rigidsym.notes.document.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
+from rigidsym.notes.formula.manner import DEFAULT, Manner
+from rigidsym.notes.formula.rewriting import in_manner
+from rigidsym.notes.formula.summands import in_brackets, sums
+from rigidsym.notes.prose.words import words
+
+_WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
+    "rotation_rate": "velocity_by_the_rotation",
+    "spin_matrix": "velocity_by_the_rotation",
+    "angular_velocity_space": "angular_velocity_of_the_rotation",
+    "entries_of_inertia": "inertia_of_particles",
+    "moment_about_a_line": "inertia_of_particles",
+}
+_SUMS = (
+    "A statement about a sum over particles is proved for the generic summand. The sum is linear, "
+    "and what is the same for all particles stands before it; of the sums themselves two are "
+    "known, {} and {} with its derivative, and no other relation is used. So it holds for every "
+    "body, of however many particles."
+)
+_ROTATIONS = (
+    "A rotation {} of which nothing is said is that of a unit quaternion, as every rotation is. "
+    "The place of the centre of mass is written {}, since {} is the rotation."
+)
+
+
+def compose_lecture(
+    derivation: Derivation,
+    *,
+    module: str | None = None,
+    functions: Sequence[str] = (),
+    manner: Manner = DEFAULT,
+) -> Document:
+    """The note of a derivation with its theory; as `compose` otherwise."""
+    manner.check(derivation.model)
+    composer = _Lecture(derivation, module, tuple(functions), manner)
+    document = Document(
+        name=derivation.name,
+        title=derivation.title,
+        subtitle=derivation.subject,
+        notation=composer.notation,
+        sections=tuple(composer.sections()),
+    )
+    return in_manner(document, manner)
+
+
+class _Lecture(Composer):
+    """The sections of the theory, of the rotation, of the body."""
+
+    def sections(self) -> Iterator[Section]:
+        yield Section("What is proved, and how", tuple(self._method()))
+        for title, statements in groupby(self.derivation.theory, key=lambda s: s.section):
+            blocks = (block for statement in statements for block in self._statement(statement))
+            yield Section(title, tuple(blocks))
+        parts = {
+            self.model.title: self._of_the_rotation(),
+            "The rates of the coordinates": self._rates(),
+            "Where the rates fail": self._singularities(),
+            "The angular acceleration": self._steps(ACCELERATION),
+            "The body": self._body(),
+            "The kinetic energy of the body": self._steps(ENERGIES),
+            "The angular momentum of the body": self._steps(MOMENTA),
+            "What was proved": self._proofs(),
+            "Symbols": self._symbols(),
+            "Functions": self._functions(),
+        }
+        filled = ((title, tuple(blocks)) for title, blocks in parts.items())
+        sections = [Section(title, blocks) for title, blocks in filled if blocks]
+        yield from sections
+        yield summary_of_the_lecture(self.derivation, sections, self.notation)
+
+    def _symbols(self) -> Iterator[Block]:
+        yield symbols_of_the_lecture(self.derivation, self.notation, _WHERE_SHOWN)
+
+    def _method(self) -> Iterator[Block]:
+        masses = Markup(r"\sum_i m_i = M", "Σ mᵢ = M")
+        places = Markup(r"\sum_i m_i\,\mathbf{x}_i = \mathbf{0}", "Σ mᵢ xᵢ = 0")
+        rotation, centre = Markup(r"\mathbf{R}", "R"), Markup(r"\mathbf{r}_C", "r_C")
+        yield Paragraph(words(_SUMS, masses, places))
+        yield Paragraph(words(_ROTATIONS, rotation, centre, rotation))
+
+    def _statement(self, statement: Statement) -> Iterator[Block]:
+        yield Paragraph(_with_source(statement))
+        sides = statement.sides
+        rows = sums(statement, self.notation)
+        if rows:
+            sides = (*sides, in_brackets(rows))
+        yield Equation(
+            sides=sides,
+            number=statement.number,
+            label=statement.name if statement.number else "",
+            proved=tuple(proof.claim for proof in statement.proofs if proof.is_exact),
+            unproved=tuple(proof.claim for proof in statement.proofs if not proof.is_exact),
+            is_result=statement.name in RESULTS,
+        )
+
+    def _of_the_rotation(self) -> Iterator[Block]:
+        yield from self._convention()
+        yield from self._rotation()
+        yield from self._steps(("rotation_rate", "spin_matrix", "angular_velocity_space"))
+        yield from self._steps(("angular_velocity_body",))
+
+    def _equation(self, step: Step) -> Equation:
+        equation = super()._equation(step)
+        is_apart = step.quantity.name not in _WHERE_SHOWN
+        return equation if is_apart else replace(equation, number=None, label="")
+
+    def _label(self, step: Step) -> str:
+        return _WHERE_SHOWN.get(step.quantity.name, step.quantity.name)
+
+    def _proofs(self) -> Iterator[Block]:
+        claims = [
+            (_WHERE_SHOWN.get(s.name, s.name), p) for s in self.derivation.theory for p in s.proofs
+        ]
+        claims += [(self._label(step), p) for step in self.derivation.steps for p in step.proofs]
+        yield from claims_in_a_table(sorted(claims, key=lambda claim: self._number(claim[0])))
+
+    def _number(self, label: str) -> int:
+        """Of the equation with a label: claims stand in the order of the equations."""
+        numbers = {s.name: s.number for s in self.derivation.theory if s.number}
+        numbers |= {step.quantity.name: step.number for step in self.derivation.steps}
+        return numbers[label]
+
+
+def _with_source(statement: Statement) -> Text:
+    """The sentence that leads to an equation, with its place in the lecture."""
+    *head, last = statement.because
+    if not statement.number or not isinstance(last, str):
+        return statement.because
+    end = last[-1] if last[-1] in ".,:;" else ""
+    return (*head, last.removesuffix(end), "\u00a0", Cited(statement.source), end or "")

@@ -1,0 +1,184 @@
+"""The tables at the end of a note: symbols with their units, functions, claims."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
+from itertools import chain, repeat
+
+from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Step
+from rigidsym.mechanics.quantities.kinematics import RATES
+from rigidsym.notes.document.document import (
+    Block,
+    Code,
+    EquationReference,
+    Paragraph,
+    Program,
+    Table,
+    Text,
+)
+from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.prose.singular_words import WITH_CONDITIONS
+from rigidsym.notes.prose.words import (
+    BODY_POSITION,
+    OPERATOR,
+    POSITION,
+    VECTOR,
+    listed,
+    symbols_of,
+    unit_in_words,
+    vector,
+    with_symbols,
+    words,
+)
+
+_U, _CROSS = Markup(r"\mathbf{u}", "u"), Markup(r"\mathbf{u}\times", "u ×")
+_PLACES = ("centre", "point", "direction")
+_MOST_SYMBOLS = 6  # in one cell
+_CODE_WIDTH = 76  # columns of typewriter type on a page
+
+
+def symbols(derivation: Derivation, notation: Notation) -> Table:
+    """Every symbol with what it means and its unit."""
+    known: dict[str, Row] = {}
+    named = (_arguments, _constants, _of_the_body, partial(_length, notation), _points)
+    for row in chain.from_iterable(rows(derivation) for rows in named):
+        known.setdefault(str(row[0]), row)
+    found = derivation.singularities
+    if found is not None and found.measure == "det [W, J]":
+        bound = "rows by which the conditions bind the rates"
+        known["J"] = (WITH_CONDITIONS,), (bound,), ("1",), ()
+    for step in derivation.steps:
+        quantity = step.quantity
+        about = "rates of the coordinates" if quantity.symbol == RATES else quantity.about
+        meaning = with_symbols(about, symbols_of(derivation))
+        row = ((quantity.symbol,), meaning, (unit_in_words(quantity.unit),))
+        known.setdefault(str(row[0]), (*row, _reference(step)))
+    return Table(
+        caption="The symbols and their SI units",
+        head=(("Symbol",), ("Meaning",), ("Unit",), ("Equation",)),
+        rows=tuple(known.values()),
+        of_words=1,
+    )
+
+
+Row = tuple[Text, ...]
+
+
+def _arguments(derivation: Derivation) -> Iterator[Row]:
+    """Coordinates; those of one unit share a row."""
+    q = derivation.argument("q")
+    yield from _rows(zip(q.notation, repeat("coordinates"), q.units))
+
+
+def _constants(derivation: Derivation) -> Iterator[Row]:
+    """Constants with what is known of each; those of one kind share a row."""
+    if not any(argument.name == "parameters" for argument in derivation.arguments):
+        return
+    constants = derivation.argument("parameters")
+    of_body = {p.symbol: p for p in derivation.body.parameters} if derivation.body else {}
+    axes = {s for turn in derivation.model.turns for c in turn.components for s in c.free_symbols}
+    angles = {symbol for turn in derivation.model.turns for symbol in turn.angle.free_symbols}
+    named = []
+    for symbol, name, unit in zip(
+        constants.symbols, constants.notation, constants.units, strict=True
+    ):
+        if symbol in of_body:
+            about = of_body[symbol].about
+            # in Python a symbol may come without a word of what it is
+            named.append((name, about or "constant of the body", unit if about else unit or "—"))
+        elif symbol in axes:
+            named.append((name, "components of an axis at rest", unit))
+        elif symbol in angles:
+            named.append((name, "constant angle", "rad"))
+        else:
+            named.append((name, "constant", unit))
+    yield from _rows(named)
+
+
+def _of_the_body(derivation: Derivation) -> Iterator[Row]:
+    """Where the centre of mass is; the point and the line that moments are taken about."""
+    used = {name for step in derivation.steps for name in step.quantity.inputs}
+    for argument in derivation.arguments:
+        if argument.name in used and argument.name in _PLACES:
+            yield (
+                _in_a_row([(name,) for name in argument.notation]),
+                (argument.about,),
+                (unit_in_words(argument.units[0]),),
+                (),
+            )
+
+
+def _rows(named: Iterable[tuple[Markup, str, str]]) -> Iterator[Row]:
+    """A row for all names that have the meaning and the unit in common."""
+    kinds: dict[tuple[str, str], list[Text]] = {}
+    for name, about, unit in named:
+        kinds.setdefault((about, unit), []).append((name,))
+    for (about, unit), names in kinds.items():
+        yield _in_a_row(names), (about,), (unit_in_words(unit),), ()
+
+
+def _in_a_row(symbols: Sequence[Text]) -> Text:
+    """All of them, or the first and the last where there are many."""
+    if len(symbols) > _MOST_SYMBOLS:
+        return (*symbols[0], ", …, ", *symbols[-1])
+    return listed(symbols, ", ")
+
+
+def _length(notation: Notation, derivation: Derivation) -> Iterator[Row]:
+    """The vector of the coordinates and its length, where formulas hold them."""
+    parts = derivation.model.vector
+    if any(step.vector_form for step in derivation.steps):
+        units = dict(zip(derivation.model.coordinates, derivation.argument("q").units, strict=True))
+        unit = unit_in_words(units[parts[0]])
+        yield (VECTOR,), ("the vector ", *vector(parts, notation)), (unit,), ()
+    if notation.length is not None:
+        unit = unit_in_words(derivation.argument("q").units[0])
+        symbol = notation.names[notation.length.symbol]
+        yield (symbol,), ("length of the vector",), (unit,), ()
+
+
+def _points(derivation: Derivation) -> Iterator[Row]:
+    whose = "at rest in space" if derivation.model.passive else "of the body"
+    yield (POSITION,), (f"position of a point {whose}, space components",), ("m",), ()
+    yield (BODY_POSITION,), ("the same, body components",), ("m",), ()
+    yield (OPERATOR,), ("matrix of ", _CROSS, ", for a vector ", _U), ("that of ", _U), ()
+
+
+def functions(derivation: Derivation, module: str, names: Sequence[str]) -> Iterator[Block]:
+    """The functions of a module, and a call of one of them that runs as it stands."""
+    yield Paragraph(
+        words(
+            "The module {} evaluates the equations for arrays of any shape, components last, by "
+            "the functions that stand beside them. For example,",
+            Code(module),
+        )
+    )
+    yield Program(_example(derivation, module, names))
+
+
+def _example(derivation: Derivation, module: str, names: Sequence[str]) -> str:
+    """A call of one function with made-up numbers; of the angular velocity, if it is there."""
+    shown = "angular_velocity_body"
+    name = shown if shown in names else names[0]
+    inputs = derivation.step(name).quantity.inputs
+    return "\n".join(
+        [
+            f"import {module.removesuffix('.py')} as kinematics",
+            "",
+            *(_given(derivation.argument(argument)) for argument in inputs),
+            f"kinematics.{name}({', '.join(inputs)})",
+        ]
+    )
+
+
+def _given(argument: Argument) -> str:
+    """q = [0.1, 0.2, 0.3]  # phi, theta, psi"""
+    numbers = ", ".join(f"{k / 10:.1f}" for k in range(1, 1 + len(argument.symbols)))
+    line = f"{argument.name} = [{numbers}]"
+    explained = f"{line}  # {', '.join(argument.names)}"
+    return explained if len(explained) <= _CODE_WIDTH else line
+
+
+def _reference(step: Step) -> Text:
+    return (EquationReference(step.quantity.name),)

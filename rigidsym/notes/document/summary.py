@@ -1,0 +1,131 @@
+"""The results of a derivation on one sheet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
+from rigidsym.notes.document.document import (
+    Block,
+    Equation,
+    EquationReference,
+    EquationRow,
+    Paragraph,
+    Section,
+    Text,
+)
+from rigidsym.notes.formula.formula import markup
+from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.layout.layout import PAGE, display, height
+from rigidsym.notes.prose.singular_words import failures, meaning, measured
+from rigidsym.notes.prose.words import convention, listed, vector_in_words
+
+TITLE = "Summary"
+_SENTENCES = 2  # what the coordinates are, and which way the rotation goes
+_SENTENCE = 1.5  # lines that one more takes
+SHEET = 40.0  # lines of a page that displays may take, beside their headings
+
+_GROUPS: Sequence[tuple[str, tuple[str, ...]]] = (
+    ("The rotation", ("rotation_matrix",)),
+    ("The angular velocity", ("angular_velocity_space", "angular_velocity_body")),
+    ("The rate matrices", ("rate_matrix_space", "rate_matrix_body")),
+    ("Their inverses", ("inverse_rate_matrix_space", "inverse_rate_matrix_body")),
+    (
+        "The rates of the coordinates",
+        ("rates_from_angular_velocity_space", "rates_from_angular_velocity_body"),
+    ),
+    ("The angular acceleration", ("angular_acceleration_space", "angular_acceleration_body")),
+    ("The kinetic energy", ENERGIES),
+    ("The angular momentum", MOMENTA),
+)
+
+
+def summary(
+    derivation: Derivation, sections: Sequence[Section], notation: Notation, room: float = SHEET
+) -> Section:
+    """A section that fits on one sheet: results that are short enough, others by their numbers."""
+    blocks = tuple(_blocks(derivation, _numbered(sections), notation, room))
+    return Section(TITLE, blocks, on_own_page=True)
+
+
+def _numbered(sections: Sequence[Section]) -> Mapping[str, Equation]:
+    blocks = (block for section in sections for block in section.blocks)
+    return {b.label: b for b in blocks if isinstance(b, Equation) and b.number}
+
+
+def _blocks(
+    derivation: Derivation, equations: Mapping[str, Equation], notation: Notation, room: float
+) -> Iterator[Block]:
+    said = convention(derivation, notation.manner)[:_SENTENCES]
+    on_vectors = tuple(vector_in_words(derivation, notation.manner))
+    yield from map(Paragraph, (*said, *on_vectors))
+    room -= _SENTENCE * len(on_vectors)
+    for title, labels in _GROUPS:
+        there = [equations[label] for label in labels if label in equations]
+        if not there:
+            continue
+        results = {e: _result(e, derivation) for e in there if _is_whole(e, derivation)}
+        short = {e: result for e, result in results.items() if _fits(result, notation)}
+        needed = row_height(list(short.values()), notation)
+        if short and needed <= room:
+            room -= needed
+            others = [equation for equation in there if equation not in short]
+            also = ("; see also ", *_numbers(others)) if others else ()
+            yield Paragraph((f"{title} ", *_numbers(list(short)), *also, ":"))
+            yield EquationRow(tuple(short.values()))
+        else:
+            yield Paragraph((f"{title}: see ", *_numbers(there), "."))
+    yield from _where_it_fails(derivation, notation)
+
+
+def row_height(equations: Sequence[Equation], notation: Notation) -> float:
+    """Of a row of equations, which may share a line."""
+    heights = [height(equation, notation) for equation in equations]
+    widths = [display(equation, notation, PAGE).width for equation in equations]
+    return max(heights, default=0.0) if sum(widths) + 2 * len(widths) <= PAGE else sum(heights)
+
+
+def _numbers(equations: Sequence[Equation]) -> Text:
+    return listed([(EquationReference(equation.label),) for equation in equations])
+
+
+def _result(equation: Equation, derivation: Derivation) -> Equation:
+    """The symbol and what it comes to, without the steps between and what was proved of it.
+
+    Vectors say it without components.
+    """
+    has_value = equation.matrix is not None or equation.scalar is not None
+    ends = (equation.sides[0], equation.sides[-1])
+    if derivation.step(equation.label).vector_form is not None:
+        return Equation(sides=ends)
+    sides = equation.sides[:1] if has_value else ends
+    return Equation(
+        sides=sides, matrix=equation.matrix, scalar=equation.scalar, entries=equation.entries
+    )
+
+
+def _is_whole(equation: Equation, derivation: Derivation) -> bool:
+    """Whether it needs no abbreviations that were explained beside it."""
+    value = derivation.step(equation.label).expression
+    if equation.scalar is not None:
+        return bool(equation.scalar == value[0])
+    return equation.matrix is None or equation.matrix == value
+
+
+def _fits(equation: Equation, notation: Notation) -> bool:
+    shown = display(equation, notation, PAGE)
+    return not shown.done and shown.width <= PAGE
+
+
+def _where_it_fails(derivation: Derivation, notation: Notation) -> Iterator[Block]:
+    """What vanishes there, and where it does; what is lost there stands in the note."""
+    found = derivation.singularities
+    if found is None:
+        return
+    if found.determinant is not None:
+        determinant = Equation(sides=(*measured(found), markup(found.determinant, notation)))
+        if display(determinant, notation, PAGE).lines == 1:
+            yield Paragraph(meaning(found))
+            yield determinant
+    yield Paragraph(next(failures(derivation, found)))

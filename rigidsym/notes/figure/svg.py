@@ -1,0 +1,89 @@
+"""The pen for HTML: a drawing as an inline SVG, coloured by the style sheet of the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from html import escape
+
+from rigidsym.notes.figure.camera import Point
+from rigidsym.notes.figure.drawing import TYPE_SIZE, Area, Drawing, Label, Stroke
+from rigidsym.notes.formats.sanitize import cleaned
+
+_EM = 18.0  # pixels
+_SCALE = _EM / TYPE_SIZE
+_PAD = 6.0  # pixels around all
+_AS_IN_FORMULAS = str.maketrans("φε", "ϕϵ")  # the forms of the letters that LaTeX has
+_ARROW = 9.0  # pixels, the length of a head
+
+
+def svg(drawing: Drawing, *, title: str, description: str, name: str) -> str:
+    """The drawing as an SVG element; `name` makes its identifiers unique in a page."""
+    (left, low), (right, high) = drawing.bounds
+    x, y = left * _SCALE - _PAD, -high * _SCALE - _PAD
+    width, height = (right - left) * _SCALE + 2 * _PAD, (high - low) * _SCALE + 2 * _PAD
+    box = " ".join(map(_number, (x, y, width, height)))
+    return "\n".join(
+        [
+            f'<svg viewBox="{box}" width="{_number(width)}" height="{_number(height)}" role="img" '
+            f'aria-labelledby="{name}-title {name}-desc">',
+            f'<title id="{name}-title">{_text(title)}</title>',
+            f'<desc id="{name}-desc">{_text(description)}</desc>',
+            *_areas(drawing.areas),
+            *_strokes(drawing.strokes),
+            *_labels(drawing.labels),
+            "</svg>",
+        ]
+    )
+
+
+def _areas(areas: Iterable[Area]) -> Iterator[str]:
+    for area in areas:
+        yield f'<polygon class="area {area.kind}" points="{_points(area.points)}"/>'
+
+
+def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:
+    for stroke in strokes:
+        names: list[str] = [stroke.kind]
+        names += ["thin"] if stroke.is_thin else []
+        names += ["hidden"] if stroke.is_hidden else []
+        yield f'<polyline class="{" ".join(names)}" points="{_points(stroke.points)}"/>'
+        if stroke.has_arrow:
+            yield f'<polygon class="head {stroke.kind}" points="{_points(_head(stroke))}"/>'
+
+
+def _head(stroke: Stroke) -> tuple[Point, ...]:
+    """A slim arrow head whose point is the end of the stroke."""
+    (x0, y0), (x1, y1) = stroke.points[-2:]
+    length = ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5
+    size = _ARROW / _SCALE
+    dx, dy = size * (x1 - x0) / length, size * (y1 - y0) / length
+    foot = (x1 - dx, y1 - dy)
+    return ((x1, y1), (foot[0] - dy / 3, foot[1] + dx / 3), (foot[0] + dy / 3, foot[1] - dx / 3))
+
+
+def _labels(labels: Iterable[Label]) -> Iterator[str]:
+    for label in labels:
+        x, y = label.place
+        symbol = as_in_formulas(label.symbol.text)
+        yield (
+            f'<text class="{label.kind}" x="{_number(x * _SCALE)}" y="{_number(-y * _SCALE)}" '
+            f'dy=".32em">{escape(symbol)}</text>'
+        )
+
+
+def as_in_formulas(text: str) -> str:
+    """A symbol as the text of a label."""
+    return cleaned(text.translate(_AS_IN_FORMULAS))
+
+
+def _points(points: Iterable[Point]) -> str:
+    return " ".join(f"{_number(x * _SCALE)},{_number(-y * _SCALE)}" for x, y in points)
+
+
+def _number(value: float) -> str:
+    """One digit after the point, and no minus before nothing."""
+    return f"{round(value, 1) + 0.0:.1f}"
+
+
+def _text(text: str) -> str:
+    return escape(cleaned(text))

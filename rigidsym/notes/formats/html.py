@@ -1,0 +1,277 @@
+"""Document -> one HTML file with MathML, which needs neither network nor script.
+
+A display that is too wide for a phone is there twice, set for a page and set for a phone; the
+style sheet shows one of the two. The template only places the pieces that are made here.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from html import escape as escape_markup
+from itertools import pairwise
+
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.notes.document.document import (
+    Block,
+    Cited,
+    Code,
+    Document,
+    Equation,
+    EquationReference,
+    EquationRow,
+    Figure,
+    Paragraph,
+    Program,
+    Section,
+    Span,
+    Strong,
+    Table,
+    Text,
+)
+from rigidsym.notes.figure.svg import svg
+from rigidsym.notes.formats.mathml import mathml
+from rigidsym.notes.formats.sanitize import cleaned
+from rigidsym.notes.formula.formula import text
+from rigidsym.notes.layout.layout import Display, display
+from rigidsym.notes.layout.text_width import ems
+from rigidsym.notes.prose.prose import announcement
+from rigidsym.notes.prose.words import equal, plain
+from rigidsym.system import resources
+
+TEMPLATE = "note.html.jinja"
+_PAGE = 39.5  # ems of a display on a page, some less than there are: browsers differ in fonts
+_IN_WORDS = 0.75  # of a display's ems: what a formula among words may take
+_PHONE = 19.0  # ems of a display on a screen 360 pixels wide
+_SAFE = 1.08  # fonts differ
+_SMALLER = 1.45  # times as many on a phone in smaller type, which can still be read
+_INLINE = 15.0  # ems of a formula between words on such a screen
+# a formula with the brackets, commas and stops that no line may part from it
+_MATH = r"<math(?:(?!</math>).)*</math>"
+_WITH_POINTS = re.compile(rf"\({_MATH}[.,;:)]*|{_MATH}[.,;:)]+")
+
+_SIGNS = re.compile(r" (?=[=+−-] )")
+_PAIRS = (("{", "}"), ("(", ")"), (r"\left", r"\right"))
+
+
+def print_html(document: Document) -> str:
+    """The note as an HTML file; the same document gives the same bytes."""
+    return rendered(TEMPLATE, Printer(document))
+
+
+def rendered(template: str, printer: Printer, **more: object) -> str:
+    """A template with the note in it; `more` is what else the template places."""
+    document = printer.document
+    return (
+        resources.environment()
+        .get_template(template)
+        .render(
+            title=escape(document.title),
+            subtitle=escape(document.subtitle),
+            sections=[
+                {
+                    "title": escape(section.title),
+                    "key": f"section-{place}",
+                    "body": printer.body(section),
+                }
+                for place, section in enumerate(document.sections, start=1)
+            ],
+            sources=[
+                {"key": f"source-{place}", "text": escape(source)}
+                for place, source in enumerate(document.sources, start=1)
+            ],
+            **more,
+        )
+    )
+
+
+def escape(words: str) -> str:
+    """Any text as the text of an element or the value of an attribute."""
+    return escape_markup(cleaned(words))
+
+
+class Printer:
+    """Blocks and spans of one document in HTML."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+
+    def body(self, section: Section) -> str:
+        blocks = [self._block(block) for block in section.blocks]
+        for place, (block, after) in enumerate(pairwise(section.blocks)):
+            if isinstance(block, Paragraph) and isinstance(after, Equation | EquationRow):
+                # no page ends between the words and the formula
+                blocks[place] = blocks[place].replace("<p>", '<p class="lead">', 1)
+        return "\n".join(blocks)
+
+    def _block(self, block: Block) -> str:
+        match block:
+            case Paragraph():
+                return f"<p>{self._text(block.text)}</p>"
+            case Equation():
+                return "\n".join(self._equation(block))
+            case EquationRow():
+                displays = (self.forms(equation) for equation in block.equations)
+                return f'<div class="row">{"".join(displays)}</div>'
+            case Table():
+                return self.table(block)
+            case Figure():
+                return self._figure(block)
+            case Program():
+                return f'<pre tabindex="0"><code>{escape_markup(block.code)}</code></pre>'
+
+    def _equation(self, equation: Equation) -> Iterator[str]:
+        if not equation.number:
+            yield f'<div class="equation">{self.forms(equation)}</div>'
+            return
+        label, number = escape(equation.label), equation.number
+        yield f'<div class="equation" id="{label}" role="group" aria-label="Equation {number}">'
+        yield self.forms(equation)
+        yield f'<a class="number" href="#{label}">({number})</a>'
+        yield "</div>"
+        yield f'<p class="remark">{self._claims(equation)}{self._function(equation)}</p>'
+        yield from filter(None, [self.tools(equation)])
+
+    def forms(self, equation: Equation) -> str:
+        """The display for a page and the one for a phone, or one that does for both."""
+        page = display(equation, self.document.notation, _PAGE)
+        phone = display(equation, self.document.notation, _PHONE)
+        if page.latex == phone.latex:
+            return self.display(equation, page, "display")
+        return self.display(equation, page, "display page") + self.display(
+            equation, phone, "display phone"
+        )
+
+    def tools(self, equation: Equation) -> str:  # noqa: ARG002  (a page has some)
+        """What stands behind a numbered equation, to be used on it."""
+        return ""
+
+    def display(self, equation: Equation, shown: Display, kind: str) -> str:
+        room = _PAGE if "page" in kind else _PHONE
+        lead = self._lead(equation, shown, room)
+        formula = _fitted(mathml(shown.latex, self._spoken(equation), is_display=True), shown, room)
+        return f'<div class="{kind}">{lead}{formula}</div>'
+
+    def _lead(self, equation: Equation, shown: Display, room: float) -> str:
+        """What is said before a display; sides too long for a line of words are set apart."""
+        sides = display(Equation(sides=equation.sides), self.document.notation, room)
+        if shown.done == "listed" and (sides.lines > 1 or sides.width > _IN_WORDS * room):
+            formula = mathml(sides.latex, equal(*equation.sides).text, is_display=True)
+            return f"{_fitted(formula, sides, room)}<p>Its entries are</p>"
+        announced = self._text(announcement(equation, shown.done))
+        return f"<p>{announced}</p>" if announced else ""
+
+    def _spoken(self, equation: Equation) -> str:
+        """The equation on one line of Unicode; a matrix row by row."""
+        sides = equal(*equation.sides).text
+        notation = self.document.notation
+        if equation.scalar is not None:
+            return f"{sides} = {text(equation.scalar, notation)}"
+        if equation.matrix is None:
+            return sides
+        rows = (", ".join(text(e, notation) for e in row) for row in equation.matrix.tolist())
+        return f"{sides} = ({'; '.join(rows)})"
+
+    def _claims(self, equation: Equation) -> str:
+        kinds = (("Proved", equation.proved), ("<strong>Unproved</strong>", equation.unproved))
+        said = (
+            f"{kind}: {', '.join(self._span(claim) for claim in claims)}."
+            for kind, claims in kinds
+            if claims
+        )
+        return f"<span>{' '.join(said)}</span>"
+
+    def _function(self, equation: Equation) -> str:
+        return f" {self._span(Code(equation.function))}" if equation.function else ""
+
+    def table(self, table: Table) -> str:
+        head = "".join(f'<th scope="col">{self._text(cell)}</th>' for cell in table.head)
+        rows = "\n".join(
+            f"<tr>{''.join(f'<td>{self._text(cell)}</td>' for cell in row)}</tr>"
+            for row in table.rows
+        )
+        caption = escape(table.caption)
+        return (
+            f'<div class="scroll" tabindex="0" role="group" aria-label="{caption}">\n'
+            f"<table>\n<caption>{caption}</caption>\n"
+            f"<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>\n</div>"
+        )
+
+    def _figure(self, figure: Figure) -> str:
+        number = self.document.figures.index(figure) + 1
+        drawing = svg(
+            figure.drawing,
+            title=f"Figure {number}",
+            description=plain((*figure.caption, " ", *figure.description)),
+            name=f"figure-{number}",
+        )
+        words = self._text(
+            (Strong(f"Figure {number}."), " ", *figure.caption, " ", *figure.description)
+        )
+        return f"<figure>\n{drawing}\n<figcaption>{words}</figcaption>\n</figure>"
+
+    def _text(self, text: Text) -> str:
+        return _WITH_POINTS.sub(r'<span class="whole">\g<0></span>', "".join(map(self._span, text)))
+
+    def _span(self, span: Span) -> str:
+        match span:
+            case str():
+                return escape(span)
+            case Markup():
+                return " ".join(mathml(_tall(part.latex), part.text) for part in _parts(span))
+            case Code():
+                return f"<code>{_breakable(escape(span.text))}</code>"
+            case Strong():
+                return f"<strong>{escape(span.text)}</strong>"
+            case EquationReference():
+                return f'<a href="#{escape(span.label)}">({self.document.number(span.label)})</a>'
+            case Cited():
+                return self._cited(span)
+
+    def _cited(self, cited: Cited) -> str:
+        number = self.document.source_number(cited)
+        place = f", {escape(cited.place)}" if cited.place else ""
+        return f'[<a href="#source-{number}">{number}</a>{place}]'
+
+
+def _fitted(formula: str, shown: Display, room: float) -> str:
+    """A formula in smaller type where it is too wide for a phone, as far as that can be read."""
+    if shown.width <= room:
+        return f'<div class="formula">{formula}</div>'
+    if shown.width <= _SMALLER * room:
+        size = f"min(1em, calc((100vw - 2rem) / {_SAFE * shown.width:.1f}))"
+        return f'<div class="formula" style="font-size: {size}">{formula}</div>'
+    # what has to be scrolled must be within reach of the keyboard
+    reach = ' tabindex="0" role="group" aria-label="wide formula"'
+    return f'<div class="formula"{reach}>{formula}</div>'
+
+
+def _parts(formula: Markup) -> list[Markup]:
+    """A formula too wide for a line on a phone, in parts that may stand on several."""
+    if ems(formula.latex) <= _INLINE:
+        return [formula]
+    latex, text = _terms(formula.latex), _terms(formula.text)
+    whole = len(latex) != len(text)
+    return [formula] if whole else [Markup(*part) for part in zip(latex, text, strict=True)]
+
+
+def _terms(formula: str) -> list[str]:
+    """A formula cut before each sign outside all brackets."""
+    terms: list[str] = []
+    for term in _SIGNS.split(formula):
+        is_open = bool(terms) and any(terms[-1].count(a) != terms[-1].count(b) for a, b in _PAIRS)
+        if is_open:
+            terms[-1] += f" {term}"
+        else:
+            terms.append(term)
+    return terms
+
+
+def _breakable(name: str) -> str:
+    """A name in a program, with places where a line may end."""
+    return name.replace("_", "_<wbr>").replace("(", "<wbr>(")
+
+
+def _tall(latex: str) -> str:
+    """Fractions in a line of their own height; small type would be hard to read."""
+    return latex.replace(r"\frac", r"\dfrac")

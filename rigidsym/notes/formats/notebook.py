@@ -1,0 +1,39 @@
+"""Document -> Jupyter notebook: the Markdown of the note, with its programs as cells to run."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any
+
+from rigidsym.errors import MissingExtra
+from rigidsym.notes.document.document import Document, Program
+from rigidsym.notes.formats.markdown import parts
+
+_KERNEL = {"display_name": "Python 3", "language": "python", "name": "python3"}
+
+
+def print_notebook(document: Document) -> str:
+    """The note as an .ipynb file; the same document gives the same bytes.
+
+    Raises MissingExtra without nbformat.
+    """
+    nbformat = _nbformat()
+    cells = [_cell(nbformat, part, place) for place, part in enumerate(parts(document), start=1)]
+    notebook = nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": _KERNEL})
+    nbformat.validate(notebook)
+    return str(nbformat.writes(notebook)) + "\n"
+
+
+def _cell(nbformat: ModuleType, part: str | Program, place: int) -> Any:
+    # nbformat would draw an id by chance
+    if isinstance(part, Program):
+        return nbformat.v4.new_code_cell(part.code, id=f"cell-{place}")
+    return nbformat.v4.new_markdown_cell(part, id=f"cell-{place}")
+
+
+def _nbformat() -> ModuleType:
+    try:
+        import nbformat
+    except ImportError as error:
+        raise MissingExtra("a notebook", "notebook") from error
+    return nbformat

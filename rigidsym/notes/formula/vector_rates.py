@@ -1,0 +1,45 @@
+"""The time derivative of a vector form, term by term, by the product rule."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import sympy as sp
+
+from rigidsym.mechanics.derivation import Markup, VectorForm, VectorTerm
+from rigidsym.mechanics.kinematics.vectors import ALONG, CROSS, TWICE, V_DOT, V
+from rigidsym.models.so3 import TIME
+
+_V_DDOT = Markup(r"\ddot{\mathbf{v}}", "v̈")
+_RATES: Mapping[Markup, tuple[Markup, ...]] = {  # of each vector, as a sum
+    V: (V_DOT,),
+    V_DOT: (_V_DDOT,),
+    CROSS: (Markup(r"\mathbf{v}\times\ddot{\mathbf{v}}", "v × v̈"),),
+    TWICE: (
+        Markup(r"\mathbf{v}\times(\mathbf{v}\times\ddot{\mathbf{v}})", "v × (v × v̈)"),
+        Markup(r"\dot{\mathbf{v}}\times(\mathbf{v}\times\dot{\mathbf{v}})", "v̇ × (v × v̇)"),
+    ),
+    ALONG: (
+        Markup(r"(\mathbf{v}\cdot\ddot{\mathbf{v}})\,\mathbf{v}", "(v·v̈) v"),
+        Markup(r"(\dot{\mathbf{v}}\cdot\dot{\mathbf{v}})\,\mathbf{v}", "(v̇·v̇) v"),
+        Markup(r"(\mathbf{v}\cdot\dot{\mathbf{v}})\,\dot{\mathbf{v}}", "(v·v̇) v̇"),
+    ),
+}
+
+
+def rate_of_form(form: VectorForm, rate_of_length: sp.Symbol) -> VectorForm:
+    """The derivative of f v̇ + g v × v̇ + ..., with the symbol for ṅ in its coefficients."""
+    found: dict[Markup, sp.Expr] = {}
+    for coefficient, vector in _terms(form, rate_of_length):
+        found[vector] = found.get(vector, 0) + coefficient
+    terms = tuple(VectorTerm(sp.together(c), vector) for vector, c in found.items() if c != 0)
+    return VectorForm(terms=terms, components=form.components, length=form.length, proof=form.proof)
+
+
+def _terms(form: VectorForm, rate_of_length: sp.Symbol) -> Iterator[tuple[sp.Expr, Markup]]:
+    """First those with second derivatives."""
+    for term in form.terms:
+        yield from ((term.coefficient, vector) for vector in _RATES[term.vector])
+    for term in form.terms:
+        by_length = sp.diff(term.coefficient, form.length) * rate_of_length
+        yield sp.diff(term.coefficient, TIME) + by_length, term.vector

@@ -1,0 +1,162 @@
+"""Names for the parts of a long matrix: k₁ = 1 − cos n, so that its entries become short.
+
+What comes up again and is long enough to be worth a name gets one, and so does what no line can
+break in: the inside of a fraction or a root that is wider than the page.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain, islice
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from rigidsym.notes.formula.formula import latex
+from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.layout.layout import broken_ems
+from rigidsym.notes.layout.text_width import ems
+
+_LETTERS = "khmb"  # of the names; one that nothing in the notation is called by is taken
+_OVERHEAD = 3.0  # ems that a definition takes beside its formula
+_LEAST = {True: 2.5, False: 6.0}  # ems worth a name: of a sum or quotient, and of a product
+_NAME = 1.1  # ems of a name
+
+Part = tuple[sp.Symbol, sp.Expr]
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """A matrix in terms of parts with names, and what they stand for, in order of use."""
+
+    parts: tuple[Part, ...]
+    matrix: sp.ImmutableMatrix
+
+
+class Namer:
+    """Names parts of matrices; what has a name already keeps it in all that follow."""
+
+    def __init__(self, notation: Notation) -> None:
+        self.notation = notation
+        self._letter = _free_letter(notation)
+        self._known: dict[sp.Expr, sp.Symbol] = {}
+        self._known_before = 0
+
+    def named(self, matrix: sp.ImmutableMatrix, room: float) -> Named:
+        """The matrix with parts of it named, so that every line is at most `room` ems wide."""
+        self._known_before = len(self._known)
+        entries = [self.notation.shortened(entry) for entry in matrix]
+        moving = sp.Tuple(*entries).atoms(AppliedUndef, sp.Derivative)
+        as_symbols = {part: sp.Symbol(f"at_{k}") for k, part in enumerate(sorted(moving, key=str))}
+        still = [entry.xreplace(as_symbols) for entry in entries]  # a rate is not taken apart
+        found, short = sp.cse(still, symbols=sp.numbered_symbols("cse_"), order="canonical")
+        back = {symbol: part for part, symbol in as_symbols.items()}
+        parts = [(symbol, value.xreplace(back)) for symbol, value in found]
+        return self._of(parts, [e.xreplace(back) for e in short], matrix.shape, room)
+
+    def forget(self) -> None:
+        """Free the names that were given last, where they come to stand nowhere."""
+        self._known = dict(islice(self._known.items(), self._known_before))
+
+    def _of(
+        self, found: list[Part], entries: list[sp.Expr], shape: tuple[int, int], room: float
+    ) -> Named:
+        parts, entries = self._worth_a_name(found, entries)
+        parts, entries = self._breakable(parts, entries, room)
+        return Named(tuple(parts), sp.ImmutableMatrix(*shape, entries))
+
+    def _worth_a_name(
+        self, found: Sequence[Part], entries: Sequence[sp.Expr]
+    ) -> tuple[list[Part], list[sp.Expr]]:
+        """The parts that are long and come up again; all others are written out."""
+        written: dict[sp.Symbol, sp.Expr] = {}
+        parts: list[Part] = []
+        times = _counted([*(value for _, value in found), *entries])
+        for symbol, value in found:
+            whole = value.xreplace(written)
+            if self._is_worth_it(whole, times[symbol]):
+                name = self._name_of(whole)
+                written[symbol] = name
+                parts.append((name, whole))
+            else:
+                written[symbol] = whole
+        return parts, [entry.xreplace(written) for entry in entries]
+
+    def _is_worth_it(self, part: sp.Expr, times: int) -> bool:
+        width = self._width(part)
+        is_bound = part.is_Add or part.is_Pow or any(p.is_Pow for p in part.args)
+        saved = (times - 1) * (width - _NAME) - _OVERHEAD
+        return width >= _LEAST[bool(is_bound)] and saved > 0
+
+    def _breakable(
+        self, parts: Sequence[Part], entries: Sequence[sp.Expr], room: float
+    ) -> tuple[list[Part], list[sp.Expr]]:
+        """The same, with names for what is wider than a line and cannot break."""
+        all_parts: list[Part] = []
+        for name, value in parts:
+            *inner, whole = self._split(value, room)
+            all_parts += [*inner, (name, whole[1])]
+        shown: list[sp.Expr] = []
+        for entry in entries:
+            *inner, whole = self._split(entry, room)
+            all_parts += inner
+            shown.append(whole[1])
+        return list(dict.fromkeys(all_parts)), shown
+
+    def _split(self, value: sp.Expr, room: float) -> list[Part]:
+        """Parts of an expression that need names so that it fits, and last what is left of it."""
+        names: list[Part] = []
+        while broken_ems(latex(value, self.notation), room) > room:
+            widest = max(_unbreakable(value), key=self._width, default=None)
+            if widest is None or self._width(widest) < room / 4:
+                break
+            *inner, (_, whole) = self._split(widest, room)
+            name = self._name_of(whole)
+            names += [*inner, (name, whole)]
+            value = value.xreplace({widest: name})
+        return [*names, (sp.Symbol("left"), value)]
+
+    def _name_of(self, value: sp.Expr) -> sp.Symbol:
+        known = self._known.get(value)
+        if known is None:
+            number = len(self._known) + 1
+            known = self._known[value] = sp.Symbol(f"{self._letter}_{number}")
+        return known
+
+    def _width(self, part: sp.Expr) -> float:
+        return ems(latex(part, self.notation))
+
+
+def _free_letter(notation: Notation) -> str:
+    taken = {_label(symbol)[0] for symbol in notation.names}
+    return next(letter for letter in _LETTERS if letter not in taken)
+
+
+def _label(symbol: sp.Expr) -> str:
+    base = symbol.expr if symbol.is_Derivative else symbol
+    return base.func.__name__ if isinstance(base, AppliedUndef) else str(base)
+
+
+def _counted(expressions: Iterable[sp.Expr]) -> Counter[sp.Expr]:
+    """How often each symbol is written in them together."""
+    nodes = chain.from_iterable(map(sp.preorder_traversal, expressions))
+    return Counter(node for node in nodes if node.is_Symbol)
+
+
+def _unbreakable(expression: sp.Expr) -> Iterator[sp.Expr]:
+    """The sums that stand where no line can end: above or below a fraction line, under a root."""
+    for node in sp.preorder_traversal(expression):
+        if node.is_Pow and node.base.is_Add and not (node.exp.is_Integer and node.exp > 0):
+            yield node.base
+        elif node.is_Mul and any(a.is_Pow and a.exp.is_negative for a in node.args):
+            yield from _above(node)
+        elif node.is_Function and node.args[0].is_Add:
+            yield node.args[0]
+
+
+def _above(product: sp.Mul) -> Iterator[sp.Expr]:
+    """What stands above the line of a fraction, without the number before it."""
+    above = [a for a in product.args if not (a.is_Pow and a.exp.is_negative) and not a.is_Number]
+    yield from (factor for factor in above if factor.is_Add)

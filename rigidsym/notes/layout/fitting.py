@@ -1,0 +1,196 @@
+"""Long quantities made to fit, in this order.
+
+1. As it stands: on one line, or on two, parted at an equals sign.
+2. Parts get names first (k₁ = 1 − cos θ), where this takes fewer lines, or makes a matrix of what
+   would be a listing of entries.
+3. What is still too wide is broken by its width, before a + or −, entries below one another.
+4. A matrix cannot be broken: where it fits with s_θ and c_θ it has those, and is not listed. Only
+   names of sums come before them; for products of sines and cosines the shorthand says more.
+What would take most of a page so is said in short, by what it is made of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from rigidsym.mechanics.derivation import Derivation, Markup, Step
+from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
+from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.notes.document.document import Block, Equation, EquationReference, Paragraph, Text
+from rigidsym.notes.formula.formula import markup
+from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.layout.abbreviations import Namer, Part
+from rigidsym.notes.layout.layout import PAGE, display
+from rigidsym.notes.prose.short import in_short
+from rigidsym.notes.prose.vector_words import sum_of_vectors
+from rigidsym.notes.prose.words import listed
+
+_MOST_LINES = 24  # of one quantity, where there is a short way to say it
+_MOST_OF_ROTATION = 48  # a page of R itself, which the others are for
+_MOST_NAMES = 3  # that a reader is reminded of one by one
+_ROOM_OF_A_NAME = 6.0  # ems
+
+
+@dataclass(frozen=True, slots=True)
+class _Form:
+    """An equation, and the parts that it has names for."""
+
+    equation: Equation
+    parts: Sequence[Part] = ()
+
+
+class Fitter:
+    """The equations of one note, each as short as can be."""
+
+    def __init__(self, derivation: Derivation, notation: Notation) -> None:
+        self.derivation = derivation
+        self.notation = notation
+        self._namer = Namer(notation)
+        self._explained_at: dict[sp.Symbol, str] = {}  # name of a part: label of its equation
+
+    def fitted(self, equation: Equation, step: Step) -> Iterator[Block]:
+        """An equation; where it would be long, in short, or its parts with their names first."""
+        equation = as_vectors(equation, step, self.notation)
+        short = in_short(step, self.derivation, self.notation) if self._breaks(equation) else None
+        if short is not None and self.derivation.model.vector and _is_of_motion(step):
+            yield _without_entries(equation, short)
+            return
+        form = self._shortest(equation)
+        lines = sum(map(self._lines, self._blocks(form)))
+        is_rotation = step.quantity.name == "rotation_matrix"
+        if short is not None and lines > (_MOST_OF_ROTATION if is_rotation else _MOST_LINES):
+            self._namer.forget()
+            yield from _said(equation, short, lines)
+            return
+        yield from self._blocks(form)
+        if equation.number:  # it can be referred to
+            for name, _ in form.parts:
+                self._explained_at.setdefault(name, equation.label)
+
+    def _shortest(self, equation: Equation) -> _Form:
+        """With names for its parts, where that is better than without."""
+        plain = _Form(equation)
+        breaks = self._breaks(equation)
+        if not breaks and not display(equation, self.notation, PAGE).done:
+            return plain
+        named = self._named(equation)
+        is_better = self._is_shorter if breaks else self._is_more_of_a_matrix
+        if named.parts and is_better(named, plain):
+            return named
+        self._namer.forget()
+        return plain
+
+    def _breaks(self, equation: Equation) -> bool:
+        """Whether a value, or an entry, fits on no line."""
+        if equation.matrix is None and equation.scalar is None:
+            return False
+        shown = display(equation, self.notation, PAGE)
+        lines = min(len(equation.sides), 2) if equation.matrix is None else len(equation.entries)
+        return shown.lines > lines or shown.width > PAGE
+
+    def _named(self, equation: Equation) -> _Form:
+        scalar = equation.scalar
+        matrix = sp.ImmutableMatrix([scalar]) if equation.matrix is None else equation.matrix
+        named = self._namer.named(matrix, PAGE - _ROOM_OF_A_NAME)
+        if equation.matrix is None:
+            return _Form(replace(equation, scalar=named.matrix[0]), named.parts)
+        return _Form(replace(equation, matrix=named.matrix), named.parts)
+
+    def _is_shorter(self, named: _Form, plain: _Form) -> bool:
+        """Whether names save lines; two more are worth it where nothing is broken then."""
+        shown = display(named.equation, self.notation, PAGE)
+        if display(plain.equation, self.notation, PAGE).width > PAGE:
+            return True
+        lines = sum(map(self._lines, self._blocks(named)))
+        before = self._lines(plain.equation)
+        if shown.done == "abbreviated":  # names and shorthand are much to ask of a reader
+            return 2 * lines < before
+        return lines < before + (0 if self._breaks(named.equation) else 2)
+
+    def _is_more_of_a_matrix(self, named: _Form, plain: _Form) -> bool:
+        """Whether a matrix that is too wide for one fits with names for its parts."""
+        was_listed = display(plain.equation, self.notation, PAGE).done == "listed"
+        fits = not display(named.equation, self.notation, PAGE).done
+        return fits and (was_listed or all(value.is_Add for _, value in named.parts))
+
+    def _blocks(self, form: _Form) -> Iterator[Block]:
+        """An equation behind what its names stand for; what was said before is referred to."""
+        new = [part for part in form.parts if part[0] not in self._explained_at]
+        old: dict[str, list[Text]] = {}
+        for name, _ in form.parts:
+            if name in self._explained_at:
+                old.setdefault(self._explained_at[name], []).append((markup(name, self.notation),))
+        if old:
+            yield Paragraph((*_again(old), "; let" if new else "."))
+        elif new:
+            yield Paragraph(("Let",))
+        if new:
+            yield definitions(new, self.notation)
+        yield form.equation
+
+    def _lines(self, block: Block) -> int:
+        if not isinstance(block, Equation):
+            return 1
+        shown = display(block, self.notation, PAGE)
+        if block.matrix is None or not block.sides or shown.done == "listed":
+            return shown.lines
+        return int(block.matrix.shape[0])
+
+
+def _again(names: Mapping[str, Sequence[Text]]) -> Text:
+    """Where abbreviations were explained, by the labels of the equations."""
+    if sum(map(len, names.values())) > _MOST_NAMES:
+        places = [(EquationReference(label),) for label in names]
+        return ("Abbreviations are again those of ", *listed(places))
+    said: list[Text] = []
+    for label, own in names.items():
+        verb = " are those of " if len(own) > 1 else " is that of "
+        said.append((*listed(own), verb, EquationReference(label)))
+    return ("Again ", *listed(said))
+
+
+def _is_of_motion(step: Step) -> bool:
+    """Whether a quantity is one of the rotation, which vectors say best where there are any."""
+    return step.quantity.name not in {*INERTIA_QUANTITIES, *ENERGY_QUANTITIES}
+
+
+def _said(equation: Equation, short: Sequence[Markup], lines: int) -> Iterator[Block]:
+    """What it is, and how long it would be; the function evaluates it all the same."""
+    what = "It" if equation.matrix is None else "Its entries"
+    yield _without_entries(equation, short)
+    yield Paragraph((f"{what}, written out, would fill {lines} lines.",))
+
+
+def as_vectors(equation: Equation, step: Step, notation: Notation) -> Equation:
+    """With its vector form; where there is one, the entries are shown only if they fit."""
+    if step.vector_form is None:
+        return equation
+    sides = (*equation.sides, sum_of_vectors(step.vector_form, notation))
+    whole = replace(equation, sides=sides)
+    fits = not display(whole, notation, PAGE).done
+    return whole if fits else _without_entries(equation, sides[-1:])
+
+
+def definitions(parts: Sequence[Part], notation: Notation) -> Equation:
+    """k₁ = ..., k₂ = ...: what the names of parts stand for."""
+    names, values = zip(*parts, strict=True)
+    return Equation(
+        sides=(),
+        matrix=sp.ImmutableMatrix(values),
+        entries=tuple(markup(name, notation) for name in names),
+    )
+
+
+def _without_entries(equation: Equation, sides: Sequence[Markup]) -> Equation:
+    """Ended by these sides in place of its entries; where nothing is left, it is a definition."""
+    return replace(
+        equation,
+        sides=(*equation.sides, *sides),
+        matrix=None,
+        scalar=None,
+        entries=(),
+        is_result=equation.is_result and bool(sides),
+    )

@@ -1,0 +1,206 @@
+"""Sentences with formulas in them: what the note and the terminal say in words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain, zip_longest
+
+import sympy as sp
+
+from rigidsym.mechanics.claims import fill
+from rigidsym.mechanics.derivation import Argument, Derivation, Markup
+from rigidsym.mechanics.quantities.energy import CENTRE
+from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
+from rigidsym.mechanics.quantities.mass import DIRECTION, POINT
+from rigidsym.models.so3 import AXES
+from rigidsym.notes.document.document import Cited, Code, EquationReference, Span, Strong, Text
+from rigidsym.notes.formula.formula import markup
+from rigidsym.notes.formula.lengths import length_of
+from rigidsym.notes.formula.manner import DEFAULT, Manner
+from rigidsym.notes.formula.notation import Notation, notation_of
+
+POSITION = Markup(r"\mathbf{x}", "x")
+BODY_POSITION = Markup(r"\mathbf{x}'", "x′")
+COORDINATES = Markup(r"\mathbf{q}", "q")
+VECTOR = Markup(r"\mathbf{v}", "v")
+OPERATOR = Markup(r"\mathbf{C}(\mathbf{u})", "C(u)")  # of u ×
+VECTOR_OF = Markup(r"\mathbf{C}^{-1}", "C⁻¹")
+ACTIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", POSITION, ROTATION, BODY_POSITION)
+PASSIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", BODY_POSITION, COSINES, POSITION)
+TRANSPOSED = fill(r"{0} = {1}^{{\mathsf T}}", "{0} = {1}ᵀ", COSINES, ROTATION)
+
+_OF_BODIES = (
+    BODY_POSITION,
+    fill(r"{0}\times({1}-{2})", "{0} × ({1} − {2})", DIRECTION, BODY_POSITION, POINT),
+    fill(r"{0}^{{\mathsf T}}\mathbf{{I}}'\,{0} = 1", "{0}ᵀ I′ {0} = 1", BODY_POSITION),
+    POINT,
+    DIRECTION,
+)
+
+_SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
+_ALSO_WORDS = ("a", "A", "I")  # in a sentence these are words, whatever an angle is called
+
+
+def words(template: str, *spans: Span) -> Text:
+    """The template with a span in place of each {}."""
+    parts = template.split("{}")
+    mixed = chain.from_iterable(zip(parts, (*spans, ""), strict=True))
+    return tuple(span for span in mixed if span)
+
+
+def listed(items: Sequence[Text], last: str = " and ") -> Text:
+    """The texts a, b, c as: a, b and c."""
+    joints = [*[", "] * (len(items) - 2), last] if len(items) > 1 else []
+    mixed = chain.from_iterable((*item, joint) for item, joint in zip_longest(items, joints))
+    return tuple(span for span in mixed if span)
+
+
+def plain(text: Text) -> str:
+    """The text on one line of Unicode."""
+    return "".join(map(_plain, text))
+
+
+def _plain(span: Span) -> str:
+    match span:
+        case str():
+            return span
+        case Markup() | Code() | Strong():
+            return span.text
+        case Cited():
+            return str(span.citation)
+        case EquationReference():
+            return span.label
+
+
+def symbols_of(derivation: Derivation) -> dict[str, Markup]:
+    """The symbols that may occur in a sentence about a derivation, by their plain text."""
+    named = chain(
+        (ROTATION, *(Markup(axis, axis) for axis in AXES)),
+        chain.from_iterable(argument.notation for argument in derivation.arguments),
+        (step.quantity.symbol for step in derivation.steps),
+        (SPACE.omega, BODY.omega, RATES, VECTOR_OF),
+    )
+    if derivation.body is not None:
+        named = chain(named, _OF_BODIES)
+    if derivation.model.vector:
+        length = length_of(derivation.model)
+        named = chain(named, (VECTOR,), (length.names[length.symbol],) if length else ())
+    return {symbol.text: symbol for symbol in named if symbol.text not in _ALSO_WORDS}
+
+
+def with_symbols(sentence: str, symbols: Mapping[str, Markup]) -> Text:
+    """A plain sentence, with the symbols in it made into formulas."""
+    longest_first = sorted(symbols, key=len, reverse=True)
+    pattern = r"(?<!\w)(" + "|".join(map(re.escape, longest_first)) + r")(?!\w)"
+    parts = re.split(pattern, sentence)
+    return tuple(symbols.get(part, part) for part in parts if part)
+
+
+def convention(derivation: Derivation, manner: Manner = DEFAULT) -> tuple[Text, ...]:
+    """The convention, a sentence or two an entry: turns, direction of the rotation, frames."""
+    symbols = symbols_of(derivation)
+    return (
+        *(with_symbols(sentence, symbols) for sentence in derivation.model.convention),
+        _direction(passive=derivation.model.passive),
+        words(
+            "The angular velocity has the components {} along the axes of space and {} along the "
+            "axes of the body.",
+            SPACE.omega,
+            BODY.omega,
+        ),
+        _coordinates(derivation.argument("q"), has_dots=manner.rates == "dot"),
+        *vector_in_words(derivation, manner),
+        *_body(derivation, manner),
+        *_conditions(derivation, manner),
+    )
+
+
+def vector_in_words(derivation: Derivation, manner: Manner) -> Iterator[Text]:
+    """The vector, and the letter for its length, where they stand in the formulas."""
+    notation = notation_of(derivation.arguments, manner, derivation.model)
+    length, parts = notation.length, derivation.model.vector
+    if any(step.vector_form for step in derivation.steps):
+        yield ("The vector is ", VECTOR, " = ", *vector(parts, notation), ".")
+    if length is None:
+        return
+    n, rate = length.names.values()
+    v = VECTOR if length.components == parts else COORDINATES
+    whole = fill("|{0}|", "|{0}|", v)
+    yield (
+        *words("The length {} is written {}, so that {}", whole, n, _square(n, v)),
+        *words(
+            " and {}.",
+            fill(r"{0}\,{1} = {2}\cdot\dot{{{2}}}", "{0} {1} = {2}·{2}\u0307", n, rate, v),
+        ),
+    )
+
+
+def _square(length: Markup, of: Markup) -> Markup:
+    return fill(r"{0}^{{2}} = {1}\cdot{1}", "{0}² = {1}·{1}", length, of)
+
+
+def _body(derivation: Derivation, manner: Manner) -> Iterator[Text]:
+    """The mass of the body, its axes, and where its centre of mass is."""
+    body = derivation.body
+    if body is None:
+        return
+    notation = notation_of(derivation.arguments, manner)
+    centre = listed([(name,) for name in derivation.argument("centre").notation], ", ")
+    head = words(
+        "The body has the mass {}, and its inertia tensor is about the centre of mass, along the "
+        "axes of the body; the centre of mass is at {} = (",
+        markup(body.mass, notation),
+        CENTRE,
+    )
+    yield (*head, *centre, ") in space.")
+
+
+def _conditions(derivation: Derivation, manner: Manner) -> Iterator[Text]:
+    """What the coordinates and constants are bound by, which the proofs make use of."""
+    notation = notation_of(derivation.arguments, manner, derivation.model)
+    for constraint in derivation.model.constraints:
+        number, rest = constraint.as_coeff_Add()
+        sides = (markup(rest, notation), markup(-number, notation))
+        yield words("All that is proved is proved under the condition {}.", equal(*sides))
+
+
+def equal(*sides: Markup) -> Markup:
+    """The sides of an equation, with signs of equality between them."""
+    return Markup(" = ".join(s.latex for s in sides), " = ".join(s.text for s in sides))
+
+
+def _direction(*, passive: bool) -> Text:
+    if passive:
+        return words(
+            "The matrix shown is the direction cosine matrix {}, the passive form: {} takes "
+            "components along the axes of space to components along the axes of the body.",
+            TRANSPOSED,
+            PASSIVE,
+        )
+    return words(
+        "The rotation is active: {} takes components along the axes of the body to components "
+        "along the axes of space.",
+        ACTIVE,
+    )
+
+
+def _coordinates(argument: Argument, *, has_dots: bool) -> Text:
+    names = listed([(name,) for name in argument.notation], ", ")
+    units = sorted(set(argument.units))
+    measured = f", in {unit_in_words(units[0])}" if len(units) == 1 and units[0] else ""
+    several = len(argument.notation) > 1
+    head = words(f"The coordinate{'s are' if several else ' is'} {{}} = (", COORDINATES)
+    dots = "; a dot is the derivative with respect to time" if has_dots else ""
+    return (*head, *names, f"){measured}{dots}.")
+
+
+def unit_in_words(unit: str) -> str:
+    """rad/s² for rad/s^2; a pure number has the unit 1."""
+    unit = re.sub(r"\((.+)\)\^\(-1/2\)", r"1/√(\1)", unit)
+    return re.sub(r"\^(-?\d+)", lambda m: m[1].translate(_SUPERSCRIPTS), unit) or "1"
+
+
+def vector(entries: Iterable[sp.Expr], notation: Notation) -> Text:
+    """The components in a row, with a place to break the line after each comma."""
+    return ("(", *listed([(markup(entry, notation),) for entry in entries], ", "), ")")

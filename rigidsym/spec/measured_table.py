@@ -1,0 +1,139 @@
+"""Meshes and files of particles in a derivation file: bodies in numbers.
+
+The derivation stays exact: what was measured becomes parameters that have a value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import sympy as sp
+
+from rigidsym.models.body import RigidBody
+from rigidsym.models.distribution import Known
+from rigidsym.spec.body_reader import BodyReader
+
+if TYPE_CHECKING:
+    from rigidsym.data.mass.properties import Measured
+
+_DIGITS = 30  # with which exact sums are evaluated
+_ROUNDING = 1e-14  # of the largest moment: smaller numbers are what rounding leaves
+_SLOTS = tuple(f"I_{min(i, j)}{max(i, j)}" for i in (1, 2, 3) for j in (1, 2, 3))
+_CENTRE = ("x_C", "y_C", "z_C")
+_MOMENT = "moment of inertia", "kg m^2"
+_PRODUCT = "product of inertia, with its sign", "kg m^2"
+_COORDINATE = "coordinate of the centre of mass", "m"
+
+
+def read_cloud(reader: BodyReader) -> Known | None:
+    """particles = "cloud.npy": particles in NPY, CSV or Parquet."""
+    from rigidsym.data.mass.inertia import inertia_of
+
+    table = reader.table
+    path = _path(reader, "particles")
+    columns = table.texts("columns", "names of the columns")
+    if path is None or (columns is not None and None in columns):
+        return None
+    names = None if columns is None else [name for name in columns if name is not None]
+    return known(reader, inertia_of(path, columns=names, allow=bool(table.flag("allow"))))
+
+
+def read_mesh(reader: BodyReader) -> Known | None:
+    """mesh = "part.stl", with mass or density, and the metres that are one in the file."""
+    from rigidsym.data.mass.mesh import mesh_inertia, read_mesh_file
+
+    table = reader.table
+    path = _path(reader, "mesh")
+    mass, density, scale = (table.number(key) for key in ("mass", "density", "scale"))
+    if path is None or any(
+        table.value(key) is not None and value is None
+        for key, value in (("mass", mass), ("density", density), ("scale", scale))
+    ):
+        return None
+    mesh = read_mesh_file(path, scale=1.0 if scale is None else scale)
+    allow = bool(table.flag("allow"))
+    return known(reader, mesh_inertia(mesh, mass=mass, density=density, allow=allow))
+
+
+def _path(reader: BodyReader, key: str) -> Path | None:
+    text = reader.table.text(key)
+    return None if text is None else reader.folder / text
+
+
+def read_known(reader: BodyReader) -> Known | None:
+    """inertia = [[...], [...], [...]] about the centre of mass, with mass and centre."""
+    table = reader.table
+    value = table.value("inertia")
+    rows = value if isinstance(value, list) else []
+    if [len(row) if isinstance(row, list) else 0 for row in rows] != [3, 3, 3]:
+        table.mistyped(value, 'three rows of three expressions, or "general"', "inertia")
+        return None
+    read = [
+        reader.entries(row, _SLOTS[3 * k : 3 * k + 3], "inertia", k) for k, row in enumerate(rows)
+    ]
+    entries = [entry for row in read if row is not None for entry in row]
+    centre: list[sp.Expr] | None = [sp.S.Zero] * 3
+    if table.value("centre") is not None:
+        centre = reader.row("centre", _CENTRE, "three coordinates")
+    mass: sp.Expr | None = sp.Symbol("M" + reader.suffix)
+    if table.value("mass") is not None:
+        mass = reader.single("mass", "M", positive=True)
+    if len(entries) != 9 or centre is None or mass is None:
+        return None
+    for place, entry in enumerate(entries):
+        reader.declared.note(entry, *(_MOMENT if place in (0, 4, 8) else _PRODUCT))
+    for entry in centre:
+        reader.declared.note(entry, *_COORDINATE)
+    reader.declared.note(mass, "mass", "kg")
+    return Known(
+        mass=mass, centre=sp.ImmutableMatrix(centre), inertia=sp.ImmutableMatrix(3, 3, entries)
+    )
+
+
+def known(reader: BodyReader, found: Measured) -> Known | None:
+    """The numbers of a file, as if the table had them itself.
+
+    The request keeps the numbers in place of the file, so that it can be repeated without it.
+    """
+    numbers = _cleaned(found.mass, found.centre.tolist(), found.inertia.tolist())
+    table = reader.table.instead(numbers)
+    reader.declared.files[table.path] = numbers
+    return read_known(BodyReader(table, reader.declared, reader.folder, reader.suffix))
+
+
+def numbers_of(body: RigidBody) -> dict[str, object]:
+    """What [body] would say of a body whose parameters all have values.
+
+    The sums over its parts were made exactly; they are rounded once.
+    """
+    values = {
+        p.symbol: sp.Rational(*p.value.as_integer_ratio())
+        for p in body.parameters
+        if p.value is not None
+    }
+
+    def rounded(entries: Iterable[sp.Expr]) -> list[float]:
+        return [float(entry.xreplace(values).evalf(_DIGITS)) for entry in entries]
+
+    upper = (body.inertia[min(i, j), max(i, j)] for i in range(3) for j in range(3))
+    inertia = rounded(upper)
+    rows = [inertia[k : k + 3] for k in (0, 3, 6)]
+    (mass,) = rounded([body.mass])
+    return _cleaned(mass, rounded(body.centre), rows)
+
+
+def _cleaned(mass: float, centre: list[float], inertia: list[list[float]]) -> dict[str, object]:
+    """The values of [body]; what rounding left in the place of zero is zero."""
+    scale = max(abs(entry) for row in inertia for entry in row)
+    size = max(map(abs, centre)) + (scale / mass) ** 0.5
+    return {
+        "inertia": [[_clean(entry, scale) for entry in row] for row in inertia],
+        "mass": mass,
+        "centre": [_clean(value, size) for value in centre],
+    }
+
+
+def _clean(value: float, scale: float) -> float | int:
+    return 0 if abs(value) <= scale * _ROUNDING else value

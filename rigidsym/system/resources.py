@@ -1,0 +1,93 @@
+"""The templates and shipped derivation files, wherever this package stands.
+
+A wheel carries them inside the package, in `_data`; in a checkout or an editable install their
+folders stand beside the package.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rigidsym.errors import TemplateFault
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+_PACKAGE = Path(__file__).resolve().parent.parent
+_OWN: ContextVar[Path | None] = ContextVar("own templates", default=None)
+_HOMES = (_PACKAGE / "_data", _PACKAGE.parent)
+
+
+def folder(kind: str) -> Path:
+    """The folder of one kind, "templates" or "derivations".
+
+    Raises FileNotFoundError, naming the places searched, where the package came without it.
+    """
+    for home in _HOMES:
+        if (home / kind).is_dir():
+            return home / kind
+    places = " and ".join(str(home / kind) for home in _HOMES)
+    raise FileNotFoundError(f"rigidsym came without its {kind}: looked for {places}")
+
+
+def text(kind: str, name: str) -> str:
+    """The text of one file of a folder."""
+    return (folder(kind) / name).read_text(encoding="utf-8")
+
+
+def names(kind: str, suffix: str) -> tuple[str, ...]:
+    """The files of a folder that end in `suffix`, without it, in alphabetical order."""
+    files = folder(kind).iterdir()
+    return tuple(sorted(f.name.removesuffix(suffix) for f in files if f.name.endswith(suffix)))
+
+
+@contextmanager
+def overridden_by(own: Path) -> Iterator[None]:
+    """Inside, templates in a folder of the user's stand in for those of the same name.
+
+    Raises TemplateFault where the folder holds none of the templates, naming them.
+    """
+    known = names("templates", ".jinja")
+    if not any((own / f"{name}.jinja").is_file() for name in known):
+        listed = ", ".join(f"{name}.jinja" for name in known)
+        raise TemplateFault(f"{own} holds none of the templates: {listed}")
+    token = _OWN.set(own)
+    try:
+        yield
+    finally:
+        _OWN.reset(token)
+
+
+def is_overridden(start: str) -> bool:
+    """Whether templates of the user's own stand in for some whose names start so."""
+    own = _OWN.get()
+    return own is not None and any(own.glob(f"{start}*.jinja"))
+
+
+def environment(**options: Any) -> Environment:
+    """A Jinja2 environment over the templates; `options` are Jinja2's, delimiters for instance.
+
+    Templates are sandboxed, and what is printed stands in the output as it is: each kind of
+    document escapes its own text before it reaches a template. An undefined name, bad syntax or
+    a forbidden access raises TemplateFault with the template, the line and the names there are.
+    """
+    from rigidsym.system.templates import SandboxedTemplates
+
+    return SandboxedTemplates(template, **options)
+
+
+def template(name: str) -> tuple[str, str]:
+    """(text, file) of one template: the user's own, or else the shipped one.
+
+    Raises FileNotFoundError where there is none, and for a name that leads out of the folder;
+    UnicodeDecodeError where it is no text.
+    """
+    if Path(name).name != name:
+        raise FileNotFoundError(f"{name} is not the name of a file beside the templates")
+    own = _OWN.get()
+    path = own / name if own is not None and (own / name).is_file() else folder("templates") / name
+    return path.read_text(encoding="utf-8"), str(path)

@@ -1,0 +1,111 @@
+"""Names of coordinates and constants in text: how they are spelled, and which are free."""
+
+from __future__ import annotations
+
+import keyword
+import re
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+from rigidsym.errors import ExpressionError
+from rigidsym.text.limits import FUNCTIONS
+
+_LONGEST = 40
+
+_GREEK = {
+    "α": "alpha",
+    "β": "beta",
+    "γ": "gamma",
+    "δ": "delta",
+    "ε": "epsilon",
+    "ζ": "zeta",
+    "η": "eta",
+    "θ": "theta",
+    "ι": "iota",
+    "κ": "kappa",
+    "λ": "lambda",
+    "μ": "mu",
+    "ν": "nu",
+    "ξ": "xi",
+    "π": "pi",
+    "ρ": "rho",
+    "σ": "sigma",
+    "τ": "tau",
+    "υ": "upsilon",
+    "φ": "phi",
+    "χ": "chi",
+    "ψ": "psi",
+    "ω": "omega",
+    "Γ": "Gamma",
+    "Δ": "Delta",
+    "Θ": "Theta",
+    "Λ": "Lambda",
+    "Ξ": "Xi",
+    "Π": "Pi",
+    "Σ": "Sigma",
+    "Υ": "Upsilon",
+    "Φ": "Phi",
+    "Ψ": "Psi",
+    "Ω": "Omega",
+    "ϕ": "phi",
+    "ϑ": "theta",
+    "ϵ": "epsilon",
+    "ϰ": "kappa",
+    "ϱ": "rho",
+    "ϖ": "varpi",
+    "\u00b5": "mu",  # the sign for micro
+    "\u2126": "Omega",  # the sign for ohm
+}  # omicron and the other capitals look like Latin letters, and are not taken
+GREEK_LETTERS = "".join(_GREEK)
+_SPELLING = str.maketrans(_GREEK)
+
+_TAKEN = {
+    **dict.fromkeys(FUNCTIONS, "a function"),
+    **dict.fromkeys(("q", "out", "np"), "a name that the generated functions use"),
+    "pi": "the number π",
+    "t": "the time",
+}
+_FORM = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
+_ANGULAR_VELOCITY = re.compile(r"Omega_(?:body_)?[123]|omega_(?:space|body)(?:_[123])?")
+
+
+def spelled(text: str) -> str:
+    """The name in Latin letters: `phi_1` for `φ_1`."""
+    return text.translate(_SPELLING)
+
+
+def check_name(text: str) -> str:
+    """The plain name that a text gives a coordinate or a constant: `phi` for `phi` and for `φ`.
+
+    Raises ExpressionError for what cannot name one.
+    """
+    name = spelled(text)
+    if not 0 < len(name) <= _LONGEST:
+        raise ExpressionError(f"expected a name of 1 to {_LONGEST} letters, got {len(name)}")
+    fault = _fault(name)
+    if fault:
+        raise ExpressionError(f"{text!r} cannot be a name here: {fault}")
+    return name
+
+
+def _fault(name: str) -> str:
+    if not _FORM.fullmatch(name):
+        return "expected letters (Latin or Greek) and digits, a letter first, joined by single _"
+    if name in _TAKEN:
+        return f"{name} is {_TAKEN[name]}"
+    if keyword.iskeyword(name) and name != "lambda":
+        return "it is a keyword of Python"
+    if name.endswith("dot"):
+        return "a name that ends in dot reads as a rate"
+    if _ANGULAR_VELOCITY.fullmatch(name):
+        return "it is a component of the angular velocity"
+    return ""
+
+
+def offer(name: str, known: Iterable[str]) -> str:
+    """What to add to a message about an unknown name: the nearest known ones, or all of them."""
+    known = list(known)
+    near = get_close_matches(name, known, n=2) if len(name) <= _LONGEST else []
+    if near:
+        return f"did you mean {' or '.join(near)}?"
+    return f"known: {', '.join(known)}" if known else "no names are known here"

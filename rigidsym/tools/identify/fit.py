@@ -1,0 +1,223 @@
+"""Which readings fit: all of them on a few rows first, then those that are left on every row."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+
+from rigidsym.tools.identify.readings import VELOCITIES, Reading, Velocity, distinct
+from rigidsym.tools.identify.samples import MOST_SHOWN, SLACK, Block, SampleError, check
+from rigidsym.tools.identify.sources import Source
+from rigidsym.tools.identify.tolerance import Tolerance, check_tolerance, tolerances
+from rigidsym.tools.identify.turns import Array, Table
+from rigidsym.tools.identify.velocity import angular_velocities, as_given
+
+Progress = Callable[[float], None]  # takes the share of the data that is done
+
+_AT_ONCE = 1 << 17  # rows times readings
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Match:
+    """How well one reading fits all of the data."""
+
+    reading: Reading
+    residual: float  # the largest angle between the reading and the data, in radians
+    velocity_residual: float | None  # the largest |difference of Ω|, over the largest |Ω|
+    worst: str  # where the data are furthest from it: "sample 3", "line 17"
+    fitting: int  # number of samples within the tolerance
+    samples: int
+
+    @property
+    def fits(self) -> bool:
+        return self.fitting == self.samples
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Outcome:
+    """What is left after every row, and what it was held to."""
+
+    matches: tuple[Match, ...]  # in the order of plainness; the nearest alone where none fits
+    tolerance: Tolerance
+    scale: float  # the largest |Ω| of the rows that were looked at first
+
+
+def fit(
+    source: Source, tolerance: float | None = None, progress: Progress | None = None
+) -> Outcome:
+    """The readings that fit the samples or, where none does, the nearest.
+
+    Raises SampleError for samples that are not finite or not rotations, after reading them all.
+    """
+    check_tolerance(tolerance)
+    slack = max(SLACK, 2 * (tolerance or 0))
+    block, faults = check(source.spread(), source.place, slack)
+    if not len(block):
+        deque(_good(source, slack), maxlen=0)  # raises, and names all of them
+        raise SampleError(faults)
+    scale = _scale(block)
+    chosen, candidates = _narrowed(source, block, tolerance, scale)
+    tally = _Tally(candidates, chosen, scale)
+    for piece in _good(source, slack):
+        tally.add(piece)
+        if progress:
+            progress(piece.done)
+    return Outcome(matches=tally.matches(source), tolerance=chosen, scale=scale)
+
+
+def _good(source: Source, slack: float) -> Iterator[Block]:
+    """Every block; raises SampleError after the last where one of them had faults."""
+    faults: list[str] = []
+    count = 0
+    for block in source.blocks():
+        good, wrong = check(block, source.place, slack)
+        count += len(wrong)
+        faults += wrong[: MOST_SHOWN - len(faults)]
+        if not count:
+            yield good
+    if faults:
+        raise SampleError(faults, count=count)
+
+
+def _scale(block: Block) -> float:
+    """The largest |Ω|, or the largest rate where there is no Ω but zero."""
+    if block.omega is None or block.rates is None:
+        return 1.0
+    lengths = [float(np.linalg.norm(part, axis=1).max()) for part in (block.omega, block.rates)]
+    return next((length for length in lengths if length), 1.0)
+
+
+class _Candidates:
+    """Readings as a grid: those of the orientation, and for each of them those of Ω."""
+
+    def __init__(self, orientations: Sequence[Reading], velocities: Sequence[Velocity]) -> None:
+        self.table = Table(orientations)
+        self.velocities = tuple(velocities)  # none where the data have no Ω
+
+    def __len__(self) -> int:
+        return len(self.table) * max(1, len(self.velocities))
+
+    def grid(self) -> list[list[Reading]]:
+        """Rows of readings; one column where the data have no Ω."""
+        velocities = self.velocities or (None,)
+        return [[replace(r, velocity=v) for v in velocities] for r in self.table.readings]
+
+    def angles(self, block: Block) -> Array:
+        """Between each reading and the data, in radians: (n, readings of the orientation)."""
+        return self.table.residuals(block.angles, block.orientation())
+
+    def velocity_residuals(self, block: Block, scale: float) -> Array:
+        """|difference of Ω| over the scale: (n, readings of the orientation, readings of Ω)."""
+        if block.rates is None or block.omega is None:
+            return np.zeros((len(block), len(self.table), 1))
+        omega = angular_velocities(self.table.readings, block.angles, block.rates)
+        difference = as_given(omega, self.velocities) - block.omega[:, None, None]
+        return np.asarray(np.linalg.norm(difference, axis=-1) / scale)
+
+
+@cache
+def _everything(layouts: tuple[bool | None, ...]) -> Table:
+    return Table(sorted(distinct(layouts), key=Reading.plainness))
+
+
+def _narrowed(
+    source: Source, block: Block, asked: float | None, scale: float
+) -> tuple[Tolerance, list[Reading]]:
+    """The readings that fit a few rows, or the nearest alone, and the tolerance for the rest."""
+    table = _everything(source.layouts)
+    angles = table.residuals(block.angles, block.orientation())
+    readings = np.array(table.readings)
+    in_degrees = np.array([reading.degrees for reading in readings])
+    for tolerance in tolerances(asked, block, source.coarseness, scale):
+        off = angles > tolerance.of(in_degrees)
+        left = readings[~off.any(axis=0)].tolist()
+        if left:
+            found = _with_velocities(left, block, scale, tolerance.velocity)
+            if found:
+                return tolerance, found
+    if not left:
+        left = [readings[np.lexsort((angles.max(axis=0), off.sum(axis=0)))[0]]]
+    return tolerance, _nearest_velocity(left, block, scale)
+
+
+def _with_velocities(
+    orientations: Sequence[Reading], block: Block, scale: float, tolerance: float
+) -> list[Reading]:
+    """Each reading of the orientation with each of Ω that fits."""
+    if block.omega is None:
+        return list(orientations)
+    candidates = _Candidates(orientations, VELOCITIES)
+    fits = candidates.velocity_residuals(block, scale).max(axis=0) <= tolerance
+    grid = candidates.grid()
+    return [grid[row][column] for row, column in np.argwhere(fits)]
+
+
+def _nearest_velocity(orientations: Sequence[Reading], block: Block, scale: float) -> list[Reading]:
+    if block.omega is None:
+        return [orientations[0]]
+    candidates = _Candidates(orientations, VELOCITIES)
+    worst = candidates.velocity_residuals(block, scale).max(axis=0)
+    row, column = np.unravel_index(worst.argmin(), worst.shape)
+    return [candidates.grid()[row][column]]
+
+
+class _Tally:
+    """The worst of each candidate so far, over a grid of which some places are out."""
+
+    def __init__(self, readings: Sequence[Reading], tolerance: Tolerance, scale: float) -> None:
+        orientations = list(dict.fromkeys(r.orientation for r in readings))
+        velocities = list(dict.fromkeys(r.velocity for r in readings if r.velocity))
+        self._candidates = _Candidates(orientations, velocities)
+        self._readings = frozenset(readings)
+        self._allowed = tolerance.of(np.array([r.degrees for r in orientations]))
+        self._allowed_velocity, self._scale = tolerance.velocity, scale
+        shape = (len(orientations), max(1, len(velocities)))
+        self._angle, self._velocity = np.zeros(len(orientations)), np.zeros(shape)
+        self._share, self._row = np.full(shape, -1.0), np.zeros(shape, np.intp)
+        self._fitting, self._samples = np.zeros(shape, np.intp), 0
+
+    def add(self, block: Block) -> None:
+        """Take these rows into account, a few at a time where there are many candidates."""
+        at_once = max(1, _AT_ONCE // len(self._candidates))
+        for start in range(0, len(block), at_once):
+            self._add(block.at(slice(start, start + at_once)))
+        self._samples += len(block)
+
+    def _add(self, block: Block) -> None:
+        angles = self._candidates.angles(block)
+        velocities = self._candidates.velocity_residuals(block, self._scale)
+        shares = np.maximum(
+            (angles / self._allowed)[..., None], velocities / self._allowed_velocity
+        )
+        self._fitting += (shares <= 1).sum(axis=0)
+        self._angle = np.maximum(self._angle, angles.max(axis=0))
+        self._velocity = np.maximum(self._velocity, velocities.max(axis=0))
+        worse = shares.max(axis=0) > self._share
+        self._row = np.where(worse, block.rows[shares.argmax(axis=0)], self._row)
+        self._share = np.maximum(self._share, shares.max(axis=0))
+
+    def matches(self, source: Source) -> tuple[Match, ...]:
+        """Those that fit every row, or the nearest alone."""
+        found = [
+            (self._match(row, column, reading, source), float(self._share[row, column]))
+            for row, readings in enumerate(self._candidates.grid())
+            for column, reading in enumerate(readings)
+            if reading in self._readings
+        ]
+        fitting = [match for match, _ in found if match.fits]
+        nearest, _ = min(found, key=lambda pair: (-pair[0].fitting, pair[1]))
+        return tuple(sorted(fitting, key=lambda m: m.reading.plainness())) or (nearest,)
+
+    def _match(self, row: int, column: int, reading: Reading, source: Source) -> Match:
+        return Match(
+            reading=reading,
+            residual=float(self._angle[row]),
+            velocity_residual=float(self._velocity[row, column]) if reading.velocity else None,
+            worst=source.place(int(self._row[row, column])),
+            fitting=int(self._fitting[row, column]),
+            samples=self._samples,
+        )

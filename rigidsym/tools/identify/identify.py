@@ -1,0 +1,102 @@
+"""Which convention do these numbers follow? The way into this folder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from rigidsym.tools.identify import report
+from rigidsym.tools.identify.fit import Match, Progress, fit
+from rigidsym.tools.identify.readings import ANGLE_NAMES, VELOCITIES, distinct
+from rigidsym.tools.identify.result import Answer, Findings
+from rigidsym.tools.identify.separate import separation
+from rigidsym.tools.identify.sources import Source, from_arrays, from_file
+
+
+class Identification(Findings):
+    """The findings, with their two ways out: text and plain data."""
+
+    def text(self, *, everything: bool = False) -> str:
+        """What `rigidsym identify` shows; `everything` leaves nothing out."""
+        return report.text(self, everything=everything)
+
+    def record(self) -> dict[str, Any]:
+        """What `rigidsym identify --json` shows."""
+        return report.record(self)
+
+    def __str__(self) -> str:
+        return self.text()
+
+
+def identify(
+    angles: ArrayLike,
+    *,
+    matrix: ArrayLike | None = None,
+    quaternion: ArrayLike | None = None,
+    rates: ArrayLike | None = None,
+    omega: ArrayLike | None = None,
+    names: Sequence[str] = ANGLE_NAMES,
+    tolerance: float | None = None,
+) -> Identification:
+    """Every convention in which these samples are right.
+
+    `angles` (n, 3) or (3,) in whatever order and unit; `matrix` (n, 3, 3), or `quaternion`
+    (n, 4), scalar first or last; `rates` (n, 3) of the angles together with `omega` (n, 3), the
+    angular velocity. `names` are those of the angles, for the report. `tolerance` in radians
+    (and as a share of the largest |Ω|); without it, what the digits of the data allow. A memory
+    map is read piece by piece.
+
+    That nothing fits is an answer: `fits` is false then, and `nearest` is the nearest reading.
+    Raises SampleError for samples that are not finite, not rotations, or of the wrong shape.
+    """
+    given = {
+        "angles": angles,
+        "matrix": matrix,
+        "quaternion": quaternion,
+        "rates": rates,
+        "omega": omega,
+    }
+    return identify_source(from_arrays(given, names), tolerance=tolerance)
+
+
+def identify_file(
+    path: str | Path,
+    *,
+    columns: Sequence[str] | None = None,
+    tolerance: float | None = None,
+    progress: Progress | None = None,
+) -> Identification:
+    """The same for an NPY or a text file, of which a piece at a time is in memory.
+
+    `columns` names the columns where the file does not, with `-` for one to leave out.
+    `progress` is called with the share of the file that is done.
+    """
+    return identify_source(from_file(Path(path), columns), tolerance=tolerance, progress=progress)
+
+
+def identify_source(
+    source: Source, *, tolerance: float | None = None, progress: Progress | None = None
+) -> Identification:
+    """The same for anything that gives rows."""
+    outcome = fit(source, tolerance, progress)
+    answers = tuple(map(_answer, outcome.matches))
+    has_velocity = answers[0].reading.velocity is not None
+    is_fit = answers[0].fits
+    return Identification(
+        answers=answers if is_fit else (),
+        nearest=None if is_fit else answers[0],
+        tolerance=outcome.tolerance,
+        samples=answers[0].samples,
+        tried=len(list(distinct(source.layouts))) * (len(VELOCITIES) if has_velocity else 1),
+        names=source.names,
+        has_velocity=has_velocity,
+        further=separation([answer.reading for answer in answers], outcome),
+    )
+
+
+def _answer(match: Match) -> Answer:
+    return Answer(**{field.name: getattr(match, field.name) for field in fields(match)})

@@ -1,0 +1,236 @@
+"""Findings for people, and as plain data for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import degrees
+from textwrap import indent
+from typing import Any
+
+from rigidsym.tools.identify.readings import Reading
+from rigidsym.tools.identify.result import Answer, Findings
+from rigidsym.tools.identify.separate import FurtherSample, Separation
+
+SCHEMA = "rigidsym.identification"
+SCHEMA_VERSION = 1
+_MOST_SHOWN = 6
+_ACCEPTABLE = 0.2  # radians; a nearest reading further off is no candidate
+
+
+def text(found: Findings, *, everything: bool = False) -> str:
+    """What a terminal shows, in at most 80 columns where the names of the angles allow it."""
+    if found.nearest:
+        lines = _no_fit(found, found.nearest)
+    elif len(found.answers) == 1:
+        lines = _single(found, found.answers[0])
+    else:
+        lines = _several(found, everything=everything)
+    return "\n".join(lines)
+
+
+def _single(found: Findings, answer: Answer) -> Iterator[str]:
+    yield from _wrapped(answer.reading.words(found.names), "")
+    same, *others = answer.aliases
+    yield from _wrapped("= " + same.brief(found.names), "")
+    yield ""
+    yield from _facts(found, answer)
+    yield ""
+    yield "The same in other words:"
+    for reading in others:
+        yield from _wrapped(reading.brief(found.names), "  ")
+    yield ""
+    yield from _calls(answer)
+
+
+def _facts(found: Findings, answer: Answer) -> Iterator[str]:
+    is_matrix = answer.reading.scalar_last is None
+    yield f"{'matrix =' if is_matrix else 'quaternion of'} {answer.reading.product(found.names)}"
+    yield f"fits {_samples(found.samples)}: {_residual(answer)}"
+    yield f"tolerance {_tolerance(found)}"
+
+
+def _calls(answer: Answer) -> Iterator[str]:
+    given = "angles and rates" if answer.reading.velocity else "angles"
+    yield f"Calls that reproduce the data (np is NumPy; {given} as in the data):"
+    for library, statements in answer.calls.items():
+        yield f"  {library}"
+        yield indent(statements, "    ")
+
+
+def _several(found: Findings, *, everything: bool) -> Iterator[str]:
+    count = len(found.answers)
+    shown = found.answers if everything else found.answers[:_MOST_SHOWN]
+    common = _common([answer.reading for answer in found.answers])
+    yield f"{count} readings fit {_samples(found.samples)}" + (f", all {common}" if common else "")
+    yield f"tolerance {_tolerance(found)}"
+    for number, answer in enumerate(shown, 1):
+        yield ""
+        yield from _wrapped(answer.reading.words(found.names), f"{number:>2}  ")
+        yield f"    {answer.reading.product(found.names)}; {_residual(answer)}"
+        if everything:
+            for reading in answer.aliases:
+                yield from _wrapped("= " + reading.brief(found.names), "    ")
+            yield indent("\n".join(_calls(answer)), "    ")
+    if not everything:
+        more = f"and {count - len(shown)} more; " if count > len(shown) else ""
+        yield f"\n{more}--all shows {'them, and ' if more else ''}the calls for each."
+    yield ""
+    yield from _further(found, found.further)
+
+
+def _common(readings: Sequence[Reading]) -> str:
+    """In words, what all of them say of the units, of the scalar and of Ω."""
+    said = {
+        (reading.unit, reading.scalar_words, reading.velocity.words if reading.velocity else "")
+        for reading in readings
+    }
+    columns = [set(column) for column in zip(*said, strict=True)]
+    return ", ".join(word for column in columns if len(column) == 1 for word in column if word)
+
+
+def _further(found: Findings, further: Separation | None) -> Iterator[str]:
+    if further is None:
+        yield "The tolerance is too wide for a further sample to tell them all apart."
+        return
+    if not _differ_in_orientation(found):
+        yield "They differ in Ω alone; no orientation at rest tells them apart."
+    count = "a sample" if len(further.samples) == 1 else f"{len(further.samples)} samples"
+    yield f"To tell them apart, add {count} with these numbers in the columns:"
+    for sample in further.samples:
+        yield f"  {_sample(found.names, sample)}"
+    yield f"There {_apart(found, further)}."
+
+
+def _sample(names: Sequence[str], sample: FurtherSample) -> str:
+    said = ", ".join(f"{n} = {a:g}" for n, a in zip(names, sample.angles, strict=True))
+    if sample.rates:
+        said += "; rates " + ", ".join(f"{rate:g}" for rate in sample.rates)
+    return said
+
+
+def _apart(found: Findings, further: Separation) -> str:
+    parts = []
+    if _differ_in_orientation(found):
+        parts.append(f"any two orientations are {degrees(further.difference):.2g}° or more apart")
+    if further.velocity_difference is not None:
+        parts.append(f"any two Ω differ by {further.velocity_difference:.2g} of |Ω| or more")
+    return " and ".join(parts)
+
+
+def _differ_in_orientation(found: Findings) -> bool:
+    return len({answer.reading.orientation for answer in found.answers}) > 1
+
+
+def _no_fit(found: Findings, nearest: Answer) -> Iterator[str]:
+    yield f"No reading fits {_samples(found.samples)}: {found.tried} were tried."
+    yield f"tolerance {_tolerance(found)}"
+    yield ""
+    yield from _wrapped(nearest.reading.words(found.names), "Nearest: ")
+    yield f"  {nearest.reading.product(found.names)}"
+    yield f"  {_residual(nearest)}, worst at {nearest.worst}"
+    if nearest.samples > 1:
+        yield f"  {nearest.fitting} of {nearest.samples} samples fit"
+    worst = max(nearest.residual, nearest.velocity_residual or 0.0)
+    if worst <= _ACCEPTABLE:
+        yield f"--tolerance {_above(worst)} takes it."
+    else:
+        yield "That is not near: are angles and attitude of one moment, and of one body?"
+
+
+def _above(value: float) -> str:
+    """A little more than a value, in two digits."""
+    return f"{value * 1.05:.2g}"
+
+
+def _residual(answer: Answer) -> str:
+    said = f"residual {answer.residual:.2g} rad"
+    if answer.residual > 1e-4:
+        said += f" ({degrees(answer.residual):.2g}°)"
+    if answer.velocity_residual is not None:
+        said += f", Ω off by {answer.velocity_residual:.2g} of |Ω|"
+    return said
+
+
+def _tolerance(found: Findings) -> str:
+    tolerance = found.tolerance
+    said = f"{tolerance.orientation:.2g} rad"
+    if found.has_velocity:
+        said += f" and {tolerance.velocity:.2g} of |Ω|"
+    return f"{said}, {tolerance.because}"
+
+
+def _samples(count: int) -> str:
+    return "1 sample" if count == 1 else f"{count} samples"
+
+
+def _wrapped(words: str, head: str, width: int = 80) -> Iterator[str]:
+    """Words after a head, broken between the parts of a reading where they are too long."""
+    line, margin = head, " " * len(head)
+    for part in words.split(", "):
+        piece = part if line in (head, margin) else ", " + part
+        if len(line + piece) > width - 1 and line not in (head, margin):
+            yield line + ","
+            line, piece = margin, part
+        line += piece
+    yield line
+
+
+def record(found: Findings) -> dict[str, Any]:
+    """Everything as dictionaries, lists, texts and numbers."""
+    tolerance = found.tolerance
+    return {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "fits": found.fits,
+        "samples": found.samples,
+        "tried": found.tried,
+        "angle_names": list(found.names),
+        "tolerance": {
+            "orientation_rad": tolerance.orientation,
+            "velocity_relative": tolerance.velocity if found.has_velocity else None,
+            "because": tolerance.because,
+        },
+        "answers": [_answer(answer, found.names) for answer in found.answers],
+        "nearest": _answer(found.nearest, found.names) if found.nearest else None,
+        "further": _separation(found.further) if found.further else None,
+    }
+
+
+def _answer(answer: Answer, names: Sequence[str]) -> dict[str, Any]:
+    return {
+        "reading": _reading(answer.reading, names),
+        "residual_rad": answer.residual,
+        "velocity_residual": answer.velocity_residual,
+        "worst_at": answer.worst,
+        "fitting": answer.fitting,
+        "aliases": [_reading(reading, names) for reading in answer.aliases],
+        "calls": answer.calls,
+    }
+
+
+def _reading(reading: Reading, names: Sequence[str]) -> dict[str, Any]:
+    velocity = reading.velocity
+    return {
+        "words": reading.words(names),
+        "product": reading.product(names),
+        "sequence": reading.sequence,
+        "manner": "intrinsic" if reading.is_intrinsic else "extrinsic",
+        "passive": reading.passive,
+        "unit": reading.unit,
+        "columns": list(reading.columns),
+        "signs": list(reading.signs),
+        "scalar_last": reading.scalar_last,
+        "velocity": velocity
+        and {"frame": velocity.frame, "opposite": velocity.is_opposite, "units": velocity.units},
+    }
+
+
+def _separation(further: Separation) -> dict[str, Any]:
+    return {
+        "samples": [
+            {"angles": list(sample.angles), "rates": sample.rates and list(sample.rates)}
+            for sample in further.samples
+        ],
+        "difference_rad": further.difference,
+        "velocity_difference": further.velocity_difference,
+    }

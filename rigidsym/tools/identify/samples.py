@@ -1,0 +1,148 @@
+"""Samples: rows of angles, a matrix or quaternion, rates and angular velocity, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidsym.errors import RigidsymError
+from rigidsym.tools.identify.turns import Array, quaternion_of
+
+SLACK = 0.05  # how far M Mᵀ may be from 1, and |q| from 1, before the data are refused
+MOST_SHOWN = 10
+_WIDTHS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
+
+
+class SampleError(RigidsymError):
+    """Samples that cannot be read: all faults at once, each with its place."""
+
+    exit_code: ClassVar[int] = 3
+
+    def __init__(
+        self, faults: Sequence[str], *, count: int | None = None, path: Path | None = None
+    ) -> None:
+        self.faults = tuple(faults)
+        self.count = count or len(faults)
+        more = self.count - len(faults[:MOST_SHOWN])
+        shown = [*faults[:MOST_SHOWN], *([f"and {more} more"] if more else [])]
+        place = "" if path is None or str(path) in shown[0] else f"{path}: "
+        super().__init__(
+            place + (shown[0] if len(shown) == 1 else "\n  ".join(["bad samples", *shown]))
+        )
+
+    def of(self, path: Path) -> SampleError:
+        """The same, with the file that the samples are from."""
+        return SampleError(self.faults, count=self.count, path=path)
+
+
+class OptionError(SampleError):
+    """Samples among the options of a command that cannot be read, or none there."""
+
+    exit_code: ClassVar[int] = 2
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Block:
+    """Some rows of the data as they came."""
+
+    rows: NDArray[np.intp]  # places in the data, (n,)
+    angles: Array  # (n, 3)
+    attitude: Array  # (n, 9): matrices row by row; (n, 4): quaternions
+    rates: Array | None = None  # (n, 3), of the angles
+    omega: Array | None = None  # (n, 3)
+    done: float = 1.0  # share of the data that is read with this block
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @property
+    def is_matrix(self) -> bool:
+        return self.attitude.shape[1] == _WIDTHS["matrix"]
+
+    @property
+    def parts(self) -> dict[str, Array]:
+        """What there is, by name."""
+        attitude = "matrix" if self.is_matrix else "quaternion"
+        named = {"angles": self.angles, attitude: self.attitude}
+        if self.rates is not None and self.omega is not None:
+            named |= {"rates": self.rates, "omega": self.omega}
+        return named
+
+    @property
+    def matrices(self) -> Array:
+        return self.attitude.reshape(-1, 3, 3)
+
+    def at(self, which: slice | NDArray[np.bool_]) -> Block:
+        """Some of the rows."""
+        return Block(
+            rows=self.rows[which],
+            angles=self.angles[which],
+            attitude=self.attitude[which],
+            rates=None if self.rates is None else self.rates[which],
+            omega=None if self.omega is None else self.omega[which],
+            done=self.done,
+        )
+
+    def defects(self) -> Array:
+        """How far each matrix is from orthogonal, or each quaternion from unit length: (n,)."""
+        if not self.is_matrix:
+            return np.asarray(np.abs(np.linalg.norm(self.attitude, axis=1) - 1))
+        m = self.matrices
+        return np.asarray(np.abs(m @ m.swapaxes(1, 2) - np.eye(3)).max(axis=(1, 2)))
+
+    def orientation(self) -> Array:
+        """Unit quaternions (n, 4): of the nearest rotations, or those given, in their order."""
+        if self.is_matrix:
+            return quaternion_of(self.matrices)
+        return np.asarray(self.attitude / np.linalg.norm(self.attitude, axis=1, keepdims=True))
+
+
+def check(
+    block: Block, place: Callable[[int], str], slack: float = SLACK
+) -> tuple[Block, list[str]]:
+    """The good rows, and what is wrong with each of the others.
+
+    Wrong are numbers that are not finite, matrices that are not rotations, quaternions that are
+    not of unit length; `slack` is how far off the last two may be.
+    """
+    finite = np.ones(len(block), bool)
+    faults: list[tuple[int, str]] = []
+    for name, part in block.parts.items():
+        good = np.isfinite(part).all(axis=1)
+        finite &= good
+        faults += [(row, f"{name}: a number that is not finite") for row in block.rows[~good]]
+    rest = block.at(finite)
+    turns = _turns(rest, slack)
+    faults += [
+        (int(rest.rows[k]), _what_is_wrong(rest, k)) for k in np.flatnonzero(~turns).tolist()
+    ]
+    return rest.at(turns), [f"{place(row)}: {fault}" for row, fault in sorted(faults)]
+
+
+def _turns(block: Block, slack: float) -> NDArray[np.bool_]:
+    """Whether each matrix or quaternion is a rotation."""
+    good = block.defects() <= slack
+    if block.is_matrix:
+        good &= np.linalg.det(block.matrices) > 0
+    return np.asarray(good)
+
+
+def _what_is_wrong(block: Block, k: int) -> str:
+    defect = float(block.defects()[k])
+    if not block.is_matrix:
+        length = float(np.linalg.norm(block.attitude[k]))
+        if not length:
+            return "quaternion: zero, which is no rotation"
+        return f"quaternion: its length is {length:.4g}, expected 1"
+    determinant = float(np.linalg.det(block.matrices[k]))
+    if determinant < 0 and defect <= SLACK:
+        return f"matrix: not a rotation but a reflection, its determinant is {determinant:.4g}"
+    return (
+        f"matrix: not a rotation, an entry of M Mᵀ is {defect:.2g} off that of the unit matrix"
+        f" (det M = {determinant:.4g})"
+    )

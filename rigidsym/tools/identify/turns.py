@@ -1,0 +1,120 @@
+"""Turns in numbers: unit quaternions (w, x, y, z) on the last axis, and the angle between two."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidsym.tools.identify.readings import RADIANS_PER_DEGREE, Reading
+
+Array = NDArray[np.float64]
+_AXES = "XYZ"
+
+
+class Table:
+    """Many readings at once, as arrays: every one is brought to active turns about turning axes."""
+
+    def __init__(self, readings: Sequence[Reading]) -> None:
+        self.readings = tuple(readings)
+        turns = [reading.active().intrinsic() for reading in self.readings]
+        self._sequences = _places([turn.sequence for turn in turns])
+        self._columns = np.array([turn.columns for turn in turns]).T
+        self._signs = np.array([turn.signs for turn in turns], float).T
+        self._units = np.array([int(turn.degrees) for turn in turns])
+        self._scalar_last = np.array([bool(reading.scalar_last) for reading in self.readings])
+
+    def __len__(self) -> int:
+        return len(self.readings)
+
+    def residuals(self, angles: Array, orientation: Array) -> Array:
+        """Angles between each reading and the data, in radians: (n, readings).
+
+        `orientation` (n, 4) is the quaternion of the data with its numbers in their own order.
+        """
+        given = np.repeat(orientation.T[..., None], len(self), axis=2)
+        given[..., self._scalar_last] = np.roll(given[..., self._scalar_last], 1, axis=0)
+        return angle_between(self._quaternions(angles), given, axis=0)
+
+    def as_given(self, angles: Array) -> Array:
+        """The quaternions with their numbers in the order of the data: (n, readings, 4)."""
+        found = self._quaternions(angles)
+        found[..., self._scalar_last] = np.roll(found[..., self._scalar_last], -1, axis=0)
+        return np.moveaxis(found, 0, -1)
+
+    def _quaternions(self, angles: Array) -> Array:
+        """The quaternion of each reading for each row of angles (n, 3): (4, n, readings)."""
+        # Sine and cosine are taken once for each column and unit, for all readings.
+        half = angles[:, :, None] * (np.array([1.0, RADIANS_PER_DEGREE]) / 2)
+        cosines, sines = np.cos(half), np.sin(half)
+        found = np.empty((4, len(angles), len(self)))
+        for sequence, places in self._sequences.items():
+            turn: Array = np.zeros((4, len(angles), len(places)))
+            turn[0] = 1.0
+            for axis, columns, signs in zip(
+                sequence, self._columns[:, places], self._signs[:, places], strict=True
+            ):
+                which = (slice(None), columns, self._units[places])
+                turn = _then_about(_AXES.index(axis), turn, cosines[which], sines[which] * signs)
+            found[..., places] = turn
+        return found
+
+
+def _places(keys: Sequence[str]) -> dict[str, NDArray[np.intp]]:
+    """Where each key stands."""
+    return {key: np.flatnonzero(np.array(keys) == key) for key in dict.fromkeys(keys)}
+
+
+def _then_about(axis: int, turn: Array, cosine: Array, sine: Array) -> Array:
+    """The quaternion product of a turn (4, ...) and one about an axis, from half its angle."""
+    along, first, second = (1 + (axis + k) % 3 for k in range(3))
+    product = turn * cosine
+    product[0] -= turn[along] * sine
+    product[along] += turn[0] * sine
+    product[first] += turn[second] * sine
+    product[second] -= turn[first] * sine
+    return product
+
+
+def angle_between(p: Array, q: Array, axis: int = -1) -> Array:
+    """The angle in radians, 0 to π, of the turn from one rotation to the other; q and −q are one.
+
+    Taken from the chord, so that angles far below the square root of eps are still right.
+    """
+    same = np.sum(p * q, axis=axis, keepdims=True) >= 0
+    chord = np.sqrt(np.sum((p - np.where(same, q, -q)) ** 2, axis=axis))
+    return np.asarray(4 * np.arcsin(np.minimum(chord / 2, 1)))
+
+
+def quaternion_of(matrix: Array) -> Array:
+    """The quaternion of the rotation nearest to each matrix: (..., 3, 3) to (..., 4).
+
+    For a rotation, K + 1 is 4 q qᵀ; for numbers with rounding or noise, the eigenvector of K to
+    its largest eigenvalue is that of the nearest rotation (Horn 1987). The longest column of
+    K + 1 is close to it; multiplying by K + 1 twice more leaves an error of third order.
+    """
+    projector = _horn(matrix) + np.eye(4)
+    longest = np.argmax(np.diagonal(projector, axis1=-2, axis2=-1), axis=-1)
+    q = np.take_along_axis(projector, longest[..., None, None], axis=-1)
+    for _ in range(2):
+        q = projector @ q
+    return np.asarray(q[..., 0] / np.linalg.norm(q[..., 0], axis=-1, keepdims=True))
+
+
+def _horn(m: Array) -> Array:
+    """Horn's symmetric matrix K of a 3x3 matrix; its trace is zero."""
+    k = np.empty((*m.shape[:-2], 4, 4))
+    xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
+    k[..., 0, 0] = xx + yy + zz
+    k[..., 1, 1], k[..., 2, 2], k[..., 3, 3] = xx - yy - zz, yy - xx - zz, zz - xx - yy
+    for (row, column), entry in {
+        (0, 1): m[..., 2, 1] - m[..., 1, 2],
+        (0, 2): m[..., 0, 2] - m[..., 2, 0],
+        (0, 3): m[..., 1, 0] - m[..., 0, 1],
+        (1, 2): m[..., 0, 1] + m[..., 1, 0],
+        (1, 3): m[..., 0, 2] + m[..., 2, 0],
+        (2, 3): m[..., 1, 2] + m[..., 2, 1],
+    }.items():
+        k[..., row, column] = k[..., column, row] = entry
+    return k

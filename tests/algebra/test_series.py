@@ -1,0 +1,173 @@
+"""The entire functions c_k of n²: coefficients, switches and bounds, and forms that hold them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cache
+
+import numpy as np
+import pytest
+import sympy as sp
+from samples import ROTATIONS
+from witness import mp
+
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.halves import halved
+from rigidsym.algebra.series import FIRST_SERIES, closed_form, series_of, taylor
+from rigidsym.algebra.stumpff import Entire, at_zero, rewriter_of
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.so3 import time_function
+from rigidsym.motion import derive
+
+ORDERS = range(FIRST_SERIES, 8)
+X, Y, Z = map(time_function, "xyz")
+NORM = sp.sqrt(X**2 + Y**2 + Z**2)
+
+
+def exact(order: int, x) -> mp.mpf:
+    """c_k by its integral over (1 − t)^{k−1}/(k−1)! cos nt, which the package does not use."""
+    n = mp.sqrt(x)
+    if order == 0:
+        return mp.cos(n)
+    weight = mp.factorial(order - 1)
+    return mp.quad(lambda t: (1 - t) ** (order - 1) * mp.cos(n * t), [0, 1]) / weight
+
+
+@pytest.mark.parametrize("order", range(8))
+def test_coefficients_are_those_of_the_reciprocal_factorials(order):
+    expected = [Fraction((-1) ** j, int(mp.factorial(2 * j + order))) for j in range(10)]
+    assert list(taylor(order)[:10]) == expected
+
+
+@pytest.mark.parametrize("order", range(8))
+def test_closed_forms_are_the_functions(order):
+    n = sp.Symbol("n")
+    closed = closed_form(order, n)
+    for x in (mp.mpf("0.3"), mp.mpf(4), mp.mpf(50)):
+        value = closed.subs(n, sp.Float(str(mp.sqrt(x)), 45)).evalf(40)
+        assert abs(mp.mpf(str(value)) - exact(order, x)) < mp.mpf(10) ** -30
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_what_the_series_leaves_out_is_within_its_bound(order):
+    series = series_of(order)
+    for part in (0, 0.1, 0.5, 0.9, 1):
+        x = mp.mpf(series.switch.numerator) / series.switch.denominator * part
+        terms = (mp.mpf(c.numerator) / c.denominator for c in series.coefficients)
+        value = mp.fsum(term * x**j for j, term in enumerate(terms))
+        truth = exact(order, x)
+        bound = mp.mpf(series.remainder.numerator) / series.remainder.denominator
+        assert abs(value - truth) <= bound * truth
+        assert bound <= mp.mpf(2) ** -56
+
+
+@cache
+def module():
+    return derive(rotation_from("rotation_vector")).kernels().load()
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("order", range(6))
+def test_arrays_and_floats_keep_the_bound_on_both_sides_of_the_switch(order, dtype):
+    """Of c₀ to c₂ the bound is one of the largest value, 1/k!."""
+    eps = float(np.finfo(dtype).eps)
+    switch = float(series_of(max(order, FIRST_SERIES)).switch)
+    sides = np.concatenate([np.linspace(0.97, 1, 40), np.linspace(1, 1.03, 40)]) * switch
+    far = np.geomspace(1e-30, 200, 60)
+    x = np.concatenate([[0.0], sides, far]).astype(dtype)
+    bound = float(series_of(order).error) if order >= FIRST_SERIES else 4.0
+    with np.errstate(all="ignore"):
+        arrays = module()._entire(x, order)[0]
+    assert arrays.dtype == dtype
+    for square, value in zip(x.tolist(), arrays.tolist(), strict=True):
+        truth = exact(order, mp.mpf(square))
+        scale = truth if order >= FIRST_SERIES else 1 / mp.factorial(order)
+        spread = 1 if order >= FIRST_SERIES else max(1, float(mp.sqrt(square)))
+        assert abs(value - truth) <= bound * spread * eps * scale, square
+        if dtype is np.float64:
+            twin = module()._entire_scalar(square, order)[0]
+            assert abs(twin - truth) <= bound * spread * eps * scale, square
+
+
+def test_the_switch_is_where_the_closed_form_is_good_enough():
+    """Just below it the closed form would still do; far below it would not."""
+    for order in ORDERS[:3]:
+        series = series_of(order)
+        assert series.error <= 5
+        x = float(series.switch) / 1000
+        n = np.sqrt(x)
+        before = {3: np.sin(n) / n, 4: 2 * (np.sin(n / 2) / n) ** 2}.get(order)
+        if before is not None:
+            closed = (float(taylor(order - 2)[0]) - before) / x
+            assert abs(closed / float(exact(order, mp.mpf(x))) - 1) > 20 * 2.0**-52
+
+
+def rewritten(expression: sp.Expr) -> sp.Expr | None:
+    rewriter = rewriter_of([sp.sin(NORM) / NORM, X])
+    assert rewriter is not None
+    return rewriter.rewritten(expression)
+
+
+@pytest.mark.parametrize(
+    ("expression", "form"),
+    [
+        (sp.sin(NORM) / NORM, Entire(1, NORM**2)),
+        ((1 - sp.cos(NORM)) / NORM**2, Entire(2, NORM**2)),
+        ((NORM - sp.sin(NORM)) / NORM**3, Entire(3, NORM**2)),
+        (X + sp.cos(NORM), X + Entire(0, NORM**2)),
+        (
+            (sp.sin(NORM) - NORM * sp.cos(NORM)) / NORM**3,
+            Entire(2, NORM**2) - Entire(3, NORM**2),
+        ),
+        (NORM * sp.sin(NORM) / (1 - sp.cos(NORM)), Entire(1, NORM**2) / Entire(2, NORM**2)),
+    ],
+    ids=str,
+)
+def test_removable_singularities_are_written_in_entire_functions(expression, form):
+    assert rewritten(expression) == form
+
+
+@pytest.mark.parametrize(
+    "expression", [X / NORM, sp.sin(NORM) / NORM**2, sp.cos(NORM) / NORM, X**3 / NORM**2], ids=str
+)
+def test_what_is_singular_stays_so(expression):
+    found = rewritten(expression)
+    assert found is None or sp.denom(found).subs({X: 0, Y: 0, Z: 0}) == 0
+
+
+def test_forms_at_zero():
+    assert at_zero(2 * Entire(2, NORM**2) + X) == 1
+
+
+def test_every_quantity_of_the_rotation_vector_is_regular_at_zero():
+    motion = derive(ROTATIONS["rotation vector"])
+    inputs = [s for vector in motion.arguments for s in vector.symbols]
+    rewriter = rewriter_of([*motion.model.matrix, *inputs])
+    for step in motion.steps:
+        for entry in step.expression:
+            form = rewriter.rewritten(entry)
+            assert not form.atoms(sp.sin, sp.cos)
+            assert at_zero(sp.denom(form)) != 0
+
+
+def test_half_of_a_length_has_its_own_functions():
+    """The quaternion of a rotation vector: sin(n/2)/n = ½ c₁(n²/4)."""
+    rewriter = rewriter_of([sp.sin(NORM / 2) / NORM, X])
+    quarter = (NORM / 2) ** 2
+    assert rewriter.rewritten(X * sp.sin(NORM / 2) / NORM) == X * Entire(1, quarter) / 2
+    form = rewriter.rewritten((1 - sp.cos(NORM)) / NORM**2)
+    assert form.atoms(Entire) <= {Entire(k, quarter) for k in range(5)}
+    assert at_zero(form) == sp.Rational(1, 2)
+
+
+def test_a_ring_without_a_norm_has_no_rewriter():
+    assert rewriter_of([sp.sin(X), sp.cos(Y)]) is None
+
+
+def test_a_divisor_of_one_minus_a_cosine_goes_over_to_half_the_angle():
+    entries = [sp.sin(X) / (1 - sp.cos(X)), Y + 1, (1 - sp.cos(X)) * Y / (2 - 2 * sp.cos(X))]
+    assert halved(entries, [sp.sin(X), Y]) == [sp.cot(X / 2), Y + 1, Y / 2]
+    assert halved([sp.sin(X) / (1 + sp.cos(X))], [sp.sin(X)]) == [sp.tan(X / 2)]
+    assert halved([1 / (2 + sp.cos(X))], [sp.sin(X)]) == [1 / (2 + sp.cos(X))]
+    codec = codec_for([sp.sin(X / 2)])
+    assert codec.encode_quotient(entries[0]).equals(codec.encode_quotient(sp.cot(X / 2)))

@@ -1,0 +1,294 @@
+"""The command line as a user meets it: output, files, messages, exit codes."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+from rigidsym.motion import derive
+from rigidsym.notes.formats.record import SCHEMA_VERSION
+from rigidsym.text.expression import parse_expression
+
+ROOT = Path(__file__).resolve().parents[2]
+RIGIDSYM = (sys.executable, "-c", "from rigidsym.commands.cli import main; main()")
+NAME = "euler_zxz_intrinsic"
+
+
+def call(*arguments: str, cwd: Path, status: int = 0, **environment: str):
+    done = subprocess.run(
+        [*RIGIDSYM, *arguments],
+        cwd=cwd,
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == status, done.stdout + done.stderr
+    return done
+
+
+def test_derive_shows_the_lecture_and_writes_its_files(tmp_path):
+    shown = call("derive", "ZXZ", cwd=tmp_path).stdout
+    for line in ("φ̇ sin θ sin ψ + θ̇ cos ψ", "φ̇ sin θ cos ψ − θ̇ sin ψ", "φ̇ cos θ + ψ̇"):
+        assert line in shown
+    assert "Intrinsic turns: first φ about z" in shown
+    assert "✗" not in shown
+    folder = tmp_path / "out" / NAME
+    assert {file.name for file in folder.iterdir()} == {
+        f"{NAME}.{e}" for e in ("py", "tex", "html", "json")
+    }
+
+
+@pytest.mark.parametrize("spelling", ["313", "z(phi) x(theta) z(psi)"])
+def test_spellings_of_one_sequence_write_the_same_files(tmp_path, spelling):
+    call("derive", spelling, "--out", "a", cwd=tmp_path)
+    call("derive", "ZXZ", "--out", "b", cwd=tmp_path)
+    for file in (tmp_path / "a" / NAME).iterdir():
+        assert file.read_bytes() == (tmp_path / "b" / NAME / file.name).read_bytes()
+
+
+def test_lower_case_is_extrinsic_and_angles_have_the_names_asked_for(tmp_path):
+    shown = call("derive", "zxz", "--angles", "alpha,beta,gamma", cwd=tmp_path).stdout
+    assert "Extrinsic turns: first α about the fixed z" in shown
+    assert (tmp_path / "out" / "euler_zxz_extrinsic").is_dir()
+
+
+def test_passive_presents_the_direction_cosine_matrix(tmp_path):
+    shown = call("derive", "ZYX", "--passive", cwd=tmp_path).stdout
+    assert "A = Rᵀ" in shown
+    assert "−C(Ω′)" in shown
+
+
+def test_json_is_one_object_with_its_schema_version(tmp_path):
+    data = json.loads(call("derive", "ZXZ", "--json", cwd=tmp_path).stdout)
+    assert data["schema"] == "rigidsym.derivation"
+    assert data["schema_version"] == SCHEMA_VERSION
+    assert data["is_proved"] is True
+    quantities = {quantity["name"]: quantity for quantity in data["quantities"]}
+    assert quantities["angular_velocity_body"]["shape"] == [3]
+    assert all(proof["status"] == "exact" for q in quantities.values() for proof in q["proofs"])
+    assert data["singularities"]["determinant"] == "-sin(theta)"
+    assert json.loads((tmp_path / "out" / NAME / f"{NAME}.json").read_text()) == data
+
+
+def test_expressions_in_json_are_read_back_by_the_safe_parser(tmp_path):
+    data = json.loads(call("derive", "XYZ", "--json", cwd=tmp_path).stdout)
+    names = {c["name"]: sp.Symbol(c["name"]) for a in data["arguments"] for c in a["components"]}
+    motion = derive(rs.EulerAngles("XYZ"))
+    symbols = {
+        symbol: names[name]
+        for argument in reversed(motion.arguments)
+        for symbol, name in zip(argument.symbols, argument.names, strict=True)
+    }
+    for quantity in data["quantities"]:
+        texts = sp.flatten(quantity["expression"])
+        for text, entry in zip(texts, motion.step(quantity["name"]).expression, strict=True):
+            assert sp.expand(parse_expression(text, names) - entry.xreplace(symbols)) == 0
+
+
+def test_the_written_module_loads_by_its_path(tmp_path):
+    call("derive", "ZXZ", cwd=tmp_path)
+    location = spec_from_file_location(NAME, tmp_path / "out" / NAME / f"{NAME}.py")
+    module = module_from_spec(location)
+    location.loader.exec_module(module)
+    assert module.rotation_matrix([0.0, 0.0, 0.0]).tolist() == [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+
+
+def test_run_takes_a_path_and_the_name_of_a_shipped_file(tmp_path):
+    call("run", "euler_zxz", "--out", "a", cwd=tmp_path)
+    call("run", str(ROOT / "derivations" / "euler_zxz.toml"), "--out", "b", cwd=tmp_path)
+    files = sorted((tmp_path / "a" / "euler_zxz").iterdir())
+    assert [f.suffix for f in files] == [".html", ".json", ".py", ".tex", ".html"]
+    for file in files:
+        assert file.read_bytes() == (tmp_path / "b" / "euler_zxz" / file.name).read_bytes()
+
+
+def test_euler_all_writes_all_24(tmp_path):
+    shown = call("run", "euler_all", cwd=tmp_path).stdout
+    folders = {folder.name for folder in (tmp_path / "out").iterdir()}
+    assert len(folders) == 24
+    assert len(shown.splitlines()) == 24
+    call("check", "out", cwd=tmp_path)
+
+
+def test_a_wrong_file_tells_all_faults_and_writes_nothing(tmp_path):
+    (tmp_path / "bad.toml").write_text(
+        '[rotation]\nsequence = "ZXX"\n\n[output]\nkernels = ["fortran"]\nnote = ["doc"]\n'
+    )
+    done = call("run", "euler_zxz", "bad.toml", cwd=tmp_path, status=3)
+    assert "bad.toml: 3 faults, nothing written" in done.stderr
+    for place in (
+        "line 2: rotation.sequence",
+        "line 5: output.kernels[0]",
+        "line 6: output.note[0]",
+    ):
+        assert place in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "message"),
+    [
+        (("derive", "zxq"), 2, "'zxq' is not an Euler sequence"),
+        (("derive", "ZxZ"), 2, "do not mix"),
+        (("derive", "ZXZ", "--angles", "a,a,b"), 2, "three different names"),
+        (("derive", "ZXZ", "--angles", "phi,theta"), 2, "three different names"),
+        (("derive", "ZXZ", "--angles", "phi,theta,1x"), 2, "'1x' cannot be a name"),
+        (("derive",), 2, "Missing argument"),
+        (("derive", "ZXZ", "--frobnicate"), 2, "No such option"),
+        (("run", "no_such_file"), 3, "no such file"),
+        (("check", "."), 2, "no record of a derivation here"),
+        (("check", "nowhere"), 2, "does not exist"),
+        (("fly",), 2, "No such command"),
+    ],
+)
+def test_wrong_use_says_so(tmp_path, arguments, status, message):
+    done = call(*arguments, cwd=tmp_path, status=status)
+    assert message in done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_check_finds_what_was_changed_and_what_is_missing(tmp_path):
+    call("derive", "ZXZ", cwd=tmp_path)
+    folder = tmp_path / "out" / NAME
+    assert "as derived" in call("check", "out", cwd=tmp_path).stdout
+    module = folder / f"{NAME}.py"
+    module.write_text(module.read_text().replace("x0 = ", "x0 = 2 * ", 1))
+    (folder / f"{NAME}.tex").unlink()
+    found = call("check", str(module), cwd=tmp_path, status=1).stdout
+    assert f"{NAME}.py: differs from the derivation at line" in found
+    assert f"{NAME}.tex: missing" in found
+
+
+def test_without_tex_all_else_is_written(tmp_path):
+    empty = tmp_path / "bin"
+    empty.mkdir()
+    done = call("derive", "ZXZ", "--pdf", cwd=tmp_path, status=4, PATH=str(empty))
+    assert "texlive-latex-recommended" in done.stderr
+    assert "φ̇ cos θ + ψ̇" in done.stdout
+    assert len(list((tmp_path / "out" / NAME).iterdir())) == 4
+
+
+def test_a_folder_that_cannot_be_written_is_named(tmp_path):
+    (tmp_path / "out").write_text("in the way")
+    done = call("derive", "ZXZ", cwd=tmp_path, status=2)
+    assert "out" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_help_imports_neither_sympy_nor_numpy():
+    probe = (
+        "import sys\nfrom rigidsym.commands.cli import commands\n"
+        "commands.main(['--help'], standalone_mode=False)\n"
+        "print(sorted({'sympy', 'numpy', 'rich', 'jinja2'} & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", probe], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_derive_imports_no_numpy(tmp_path):
+    probe = (
+        "import sys\nfrom rigidsym.commands.cli import commands\n"
+        f"commands.main(['derive', 'ZXZ', '--out', {str(tmp_path)!r}], standalone_mode=False)\n"
+        "print('numpy' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", probe], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1] == "False"
+
+
+def test_list_names_everything(tmp_path):
+    shown = call("list", cwd=tmp_path).stdout
+    for part in ("ZXZ  R = Rz(φ) Rx(θ) Rz(ψ)", "angular_velocity_body", "numpy", "euler_all"):
+        assert part in shown
+
+
+def test_a_closed_pipe_is_no_error():
+    command = " ".join(f"'{part}'" for part in RIGIDSYM) + " list | true"
+    done = subprocess.run(
+        ["bash", "-o", "pipefail", "-c", command],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_progress_is_drawn_in_a_terminal_alone(tmp_path):
+    quiet = call("run", "euler_all", cwd=tmp_path)
+    assert quiet.stderr == ""
+    controller, terminal = pty.openpty()
+    with subprocess.Popen(
+        [*RIGIDSYM, "run", "euler_all", "--out", "again"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"},
+        stdout=subprocess.DEVNULL,
+        stderr=terminal,
+    ) as process:
+        os.close(terminal)
+        drawn = b""
+        while True:
+            try:
+                piece = os.read(controller, 65536)
+            except OSError:  # the terminal was closed at the other end
+                break
+            if not piece:
+                break
+            drawn += piece
+        assert process.wait() == 0
+    os.close(controller)
+    assert b"/24" in drawn
+
+
+def test_an_interrupt_leaves_whole_files_and_says_so(tmp_path):
+    with subprocess.Popen(
+        [*RIGIDSYM, "run", "euler_all"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate()
+    assert process.returncode == 130
+    assert errors.strip() == "rigidsym: interrupted"
+    for folder in (tmp_path / "out").iterdir():
+        assert not [file for file in folder.iterdir() if file.name.startswith(".")]
+
+
+def test_a_target_is_chosen_by_name(tmp_path):
+    call("derive", "ZXZ", "--target", "numpy", "--out", ".", cwd=tmp_path)
+    assert (tmp_path / NAME / f"{NAME}.py").is_file()
+    wrong = call("derive", "ZXZ", "--target", "numpy,fortran", cwd=tmp_path, status=2)
+    assert wrong.stderr.startswith("rigidsym: no target 'fortran'; there is numpy")
+    assert [path.name for path in tmp_path.iterdir()] == [NAME]
+
+
+def test_targets_given_one_by_one_are_all_written(tmp_path):
+    call("derive", "ZXZ", "--target", "numpy", "--target", "javascript", "--out", ".", cwd=tmp_path)
+    kernels = {path.suffix for path in (tmp_path / "euler_zxz_intrinsic").iterdir()}
+    assert {".py", ".mjs"} <= kernels
+
+
+def test_an_option_whose_last_value_alone_would_count_is_refused(tmp_path):
+    twice = call("derive", "ZXZ", "--out", "one", "--out", "two", cwd=tmp_path, status=2)
+    assert "--out is given twice" in twice.stderr
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,161 @@
+"""Rotations beyond Euler angles, from the command line and from derivation files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from test_cli import call
+
+import rigidsym as rs
+from rigidsym.commands.cli import commands
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.notes.formats.record import record
+
+GIBBS = """\
+title = "Gibbs vector by hand"
+[rotation]
+matrix = [
+    ["1 + 2*(-g2**2 - g3**2)/(1 + g1**2 + g2**2 + g3**2)",
+     "2*(g1*g2 - g3)/(1 + g1**2 + g2**2 + g3**2)",
+     "2*(g1*g3 + g2)/(1 + g1**2 + g2**2 + g3**2)"],
+    ["2*(g1*g2 + g3)/(1 + g1**2 + g2**2 + g3**2)",
+     "1 + 2*(-g1**2 - g3**2)/(1 + g1**2 + g2**2 + g3**2)",
+     "2*(g2*g3 - g1)/(1 + g1**2 + g2**2 + g3**2)"],
+    ["2*(g1*g3 - g2)/(1 + g1**2 + g2**2 + g3**2)",
+     "2*(g2*g3 + g1)/(1 + g1**2 + g2**2 + g3**2)",
+     "1 + 2*(-g1**2 - g2**2)/(1 + g1**2 + g2**2 + g3**2)"],
+]
+coordinates = ["g1", "g2", "g3"]
+[output]
+quantities = ["rotation_matrix", "angular_velocity_body"]
+"""
+BOUND = """\
+[rotation]
+matrix = [["c", "-s", "0"], ["s", "c", "0"], ["0", "0", "1"]]
+coordinates = ["c", "s"]
+constraints = ["c**2 + s**2 - 1"]
+"""
+ALL = f"""\
+[rotation]
+sequence = {json.dumps([*PARAMETRISATIONS, *PRESETS, "z(phi) x(theta) z(psi) y(delta)"])}
+[output]
+quantities = ["angular_velocity_space", "angular_velocity_body"]
+note = ["tex"]
+"""
+
+
+def test_every_named_rotation_runs_from_a_file(tmp_path):
+    (tmp_path / "named.toml").write_text(ALL)
+    shown = call("run", "named.toml", cwd=tmp_path).stdout.splitlines()
+    assert len(shown) == len(PARAMETRISATIONS) + len(PRESETS) + 1
+    for line in shown:
+        done, of = line.split()[1], line.split()[3]
+        assert done == of, line
+    call("check", "out", cwd=tmp_path)
+
+
+@pytest.mark.parametrize("name", [*PARAMETRISATIONS, *PRESETS])
+def test_every_named_rotation_runs_from_derive(name, tmp_path):
+    """The same record as from Python, all proved, with a word on where the rates fail."""
+    done = CliRunner().invoke(commands, ["derive", name, "--json", "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    shown = json.loads(done.stdout)
+    assert shown["is_proved"] is True
+    assert shown["singularities"]["is_solved"] is True
+    motion = rs.derive(rotation_from(name))
+    mine = json.loads(json.dumps(record(motion, shown["request"])))
+    assert mine == shown
+
+
+@pytest.mark.parametrize(
+    ("arguments", "part", "folder"),
+    [
+        (("unit_quaternion",), "scalar first", "unit_quaternion"),
+        (("quaternion", "--scalar-last"), "scalar last", "quaternion_xyzw"),
+        (("rotation-vector",), "its length n is the angle", "rotation_vector"),
+        (("goldstein",), "A = Rᵀ", "goldstein"),
+        (("z(pan) y(tilt)",), "pan about z", "chain_zy"),
+        (("z(phi) [1,1,0](psi)",), "[1,1,0]", "chain_zu"),
+        (("z(phi) x(incline)", "--constants", "incline"), "incline", "chain_zx"),
+    ],
+)
+def test_derive_takes_names_and_turns(tmp_path, arguments, part, folder):
+    done = call("derive", *arguments, cwd=tmp_path)
+    assert "✗" not in done.stdout
+    assert (tmp_path / "out" / folder / f"{folder}.py").is_file()
+    assert part in " ".join(done.stdout.split())
+
+
+@pytest.mark.parametrize("text", [GIBBS, BOUND], ids=["free", "bound"])
+def test_a_matrix_of_ones_own_is_derived_and_proved(tmp_path, text):
+    (tmp_path / "own.toml").write_text(text)
+    done = call("run", "own.toml", "--json", cwd=tmp_path)
+    assert json.loads(done.stdout)["is_proved"] is True
+    call("check", "out", cwd=tmp_path)
+
+
+def test_a_fault_stands_at_its_own_place(tmp_path):
+    text = BOUND.replace("c**2 + s**2 - 1", "c**2 + ").replace('"-s"', '"-s)"')
+    (tmp_path / "own.toml").write_text(text)
+    done = call("run", "own.toml", cwd=tmp_path, status=3)
+    lines = text.splitlines()
+    for word, path in (('"-s)"', "rotation.matrix[0][1]"), ("c**2 + ", "rotation.constraints[0]")):
+        line = next(k for k, words in enumerate(lines, start=1) if word in words)
+        assert f"line {line}: {path}: column " in done.stderr
+
+
+def test_a_matrix_that_is_no_rotation_is_refused_with_what_is_left(tmp_path):
+    text = BOUND.replace('"-s"', '"s"')
+    (tmp_path / "own.toml").write_text(text)
+    done = call("run", "own.toml", cwd=tmp_path, status=1)
+    assert "own: not a rotation, since R Rᵀ = 1 fails; left over:" in done.stderr
+    assert not Path(tmp_path, "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "messages"),
+    [
+        (
+            '[rotation]\nsequence = "quaternoin"\n',
+            ["line 2: rotation.sequence:", "did you mean quaternion"],
+        ),
+        (
+            '[rotation]\nmatrix = [["1", "0"], ["0", "1"]]\ncoordinates = ["a"]\n',
+            ["line 2: rotation.matrix: expected three rows"],
+        ),
+        (
+            '[rotation]\nmatrix = [["1","0","0"],["0","1","0"],["0","0","1+"]]\nangles = ["a"]\n',
+            ["rotation.angles: this key does not go with matrix", "rotation.coordinates: missing"],
+        ),
+        (
+            '[rotation]\nsequence = "ZXZ"\ncoordinates = ["a"]\n',
+            ["rotation.coordinates: this key goes with matrix"],
+        ),
+    ],
+)
+def test_a_wrong_rotation_in_a_file_is_a_fault(tmp_path, text, messages):
+    (tmp_path / "own.toml").write_text(text)
+    done = call("run", "own.toml", cwd=tmp_path, status=3)
+    for message in messages:
+        assert message in done.stderr
+
+
+def test_one_folder_is_not_written_over_in_silence(tmp_path):
+    call("derive", "ZXZ", cwd=tmp_path)
+    assert call("derive", "ZXZ", "--conversions", cwd=tmp_path).stderr == ""
+    done = call("derive", "ZXZ", "--angles", "a,b,c", cwd=tmp_path)
+    assert "held another rotation and is written over; --out keeps both" in done.stderr
+
+
+def test_two_derivations_of_one_run_do_not_write_one_folder(tmp_path):
+    for folder, text in (("one", BOUND), ("two", GIBBS)):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "own.toml").write_text(text)
+    done = call("run", "one/own.toml", "two/own.toml", cwd=tmp_path, status=2)
+    assert "two different derivations are named own" in done.stderr
+    assert not Path(tmp_path, "out").exists()
+    call("run", "one/own.toml", "one/own.toml", cwd=tmp_path)

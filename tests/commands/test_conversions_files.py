@@ -1,0 +1,178 @@
+"""Conversions by the command line and by derivation files, and in the record."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import rigidsym as rs
+from rigidsym.commands.cli import commands
+from rigidsym.errors import SpecError
+from rigidsym.kernels.targets import TARGETS
+from rigidsym.models.library import PARAMETRISATIONS
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.notes.document.document import Paragraph
+from rigidsym.pipeline import motion_of, product
+from rigidsym.spec.derivation_file import DerivationSpec, read_spec
+
+FILE = """
+[rotation]
+sequence = "{}"
+[output]
+quantities = ["rotation_matrix"]
+note = ["tex"]
+{}
+"""
+
+BODY = """
+[parameters]
+A = { positive = true }
+C = { positive = true }
+[body]
+principal_moments = ["A", "A", "C"]
+"""
+
+
+def test_a_file_asks_for_them():
+    spec = read_spec(FILE.format("ZXZ", "conversions = true"), source="a.toml", name="a")
+    assert spec.conversions
+    assert DerivationSpec.from_data(spec.to_data()) == spec
+    files = product(spec).files
+    assert "def from_rotation_matrix(matrix, *, out=None, threads=1):" in files["a.py"]
+    found = json.loads(files["a.json"])["conversions"]
+    assert found["quaternion"]["shape"] == [4]
+    assert found["without"] is None
+    assert "ψ is 0" in found["coordinates"]["branch"]
+    proofs = [
+        *found["quaternion"]["proofs"],
+        *found["coordinates"]["proofs"],
+        found["quaternion_from_matrix"],
+    ]
+    assert {proof["status"] for proof in proofs} == {"exact"}
+
+
+def test_without_a_word_there_are_none():
+    spec = read_spec(FILE.format("ZXZ", ""), source="a.toml", name="a")
+    assert not spec.conversions
+    assert "conversions" not in spec.to_data()
+    files = product(spec).files
+    assert "conversions" not in json.loads(files["a.json"])
+    assert "from_quaternion" not in files["a.py"]
+
+
+@pytest.mark.parametrize("target", ["numpy", "javascript"])
+def test_parameters_of_a_body_stand_beside_those_of_the_rotation(target):
+    """All functions of a file take the same argument "parameters"."""
+    if TARGETS[target].missing:
+        pytest.skip(TARGETS[target].missing)
+    text = BODY + FILE.format("z(phi) x(alpha0) z(psi)", "conversions = true")
+    motion = motion_of(read_spec(text, source="a.toml", name="a"))
+    functions = motion.kernels(target, conversions=True).load()
+    parameters, q = [0.4, 1.0, 2.0, 3.0], [[0.3, -1.2]]
+    matrix = functions.rotation_matrix(q, parameters)
+    np.testing.assert_allclose(functions.from_rotation_matrix(matrix, parameters), q, atol=1e-14)
+
+
+def test_what_is_not_offered_stands_in_the_record():
+    text = FILE.format("z(phi) x(phi)", "conversions = true")
+    found = json.loads(product(read_spec(text, source="a.toml", name="a")).record_text)
+    assert found["conversions"]["coordinates"] is None
+    assert "do not determine it one by one" in found["conversions"]["without"]
+
+
+def test_a_wrong_value_and_a_wrong_place_are_told():
+    with pytest.raises(SpecError, match=r"output\.conversions: .*expected true or false"):
+        read_spec(FILE.format("ZXZ", "conversions = 1"), source="a.toml", name="a")
+    with pytest.raises(SpecError, match=r"conversions: .*it belongs in \[output\]"):
+        read_spec("conversions = true\n" + FILE.format("ZXZ", ""), source="a.toml", name="a")
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """Modules of every kind of conversion, and one with long names."""
+    folder = tmp_path_factory.mktemp("written")
+    long = "z(the_first_angle_of_the_three) x(the_second_angle_of_the_three) z(alpha0)"
+    texts = ["ZXZ", "zyx", "z(phi) x(b) [0,3,4](c)", "z(a) x(alpha0) z(b) x(c) y(d)", long]
+    texts += ["z(phi)", "[a,b,c](beta) y(w)", "davenport", "z(a) x(b) z(-a)", "z(phi) x(phi)"]
+    for place, text in enumerate((*texts, *PARAMETRISATIONS)):
+        kernels = rs.derive(rotation_from(text)).kernels(conversions=True)
+        kernels.write(folder / f"module_{place}.py")
+    return folder
+
+
+@pytest.mark.parametrize("command", [("format", "--check"), ("check",)])
+def test_ruff_would_leave_every_module_as_it_is(written, command):
+    done = subprocess.run(
+        [sys.executable, "-m", "ruff", *command, "--isolated", "--no-cache", str(written)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert len(list(written.glob("*.py"))) == 10 + len(PARAMETRISATIONS)
+
+
+@pytest.mark.parametrize("command", [["derive", "gibbs_vector"], ["run", "euler_zxz"]])
+def test_the_command_line_asks_for_them(command, tmp_path):
+    for option, is_there in (([], False), (["--conversions"], True)):
+        done = CliRunner().invoke(commands, [*command, *option, "--out", str(tmp_path)])
+        assert done.exit_code == 0, done.output
+        (module,) = tmp_path.rglob("*.py")
+        assert ("def from_quaternion" in module.read_text(encoding="utf-8")) is is_there
+    done = CliRunner().invoke(commands, ["check", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+
+
+@pytest.mark.parametrize("text", ["ZXZ", "zyx", "rotation_vector", "z(phi) x(theta)"])
+def test_a_note_shows_them_before_the_proofs(text):
+    motion = rs.derive(rotation_from(text))
+    document = motion.note(conversions=True).document
+    titles = [section.title for section in document.sections]
+    assert titles.index("Conversions") + 1 == titles.index("What was proved")
+    number = document.number("quaternion")
+    assert number == len(motion.steps) + 1
+    module = motion.kernels(conversions=True).source
+    assert f"Equation ({number}) of the note" in module
+    latex = motion.note(conversions=True).latex()
+    assert r"4\,\mathbf{p}\mathbf{p}^{\mathsf T}" in latex
+    is_offered = motion.conversions.backward is not None
+    assert (r"from\_\allowbreak quaternion" in latex) is is_offered
+    without = [section.title for section in motion.note().document.sections]
+    assert "Conversions" not in without
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("ZXZ", *PARAMETRISATIONS, "davenport", "z(phi)", "z(phi) x(theta)"),
+        *("z(phi) x(theta) z(psi) y(delta)", "z(phi) [1,1,1](theta) z(-phi)"),
+    ],
+)
+def test_formulas_in_its_sentences_are_formulas(text):
+    """No letter of a formula is left between words: no index, no Greek, no operator."""
+    motion = rs.derive(rotation_from(text), ["rotation_matrix"])
+    document = motion.note(conversions=True).document
+    (section,) = (section for section in document.sections if section.title == "Conversions")
+    words = [
+        span
+        for block in section.blocks
+        if isinstance(block, Paragraph)
+        for span in block.text
+        if isinstance(span, str)
+    ]
+    for sentence in words:
+        assert not re.search(r"[₀-₉₊₋α-ορ-ω|×=]|\b(sin|cos|tan|atan2)\b", sentence), sentence
+
+
+@pytest.mark.parametrize("text", ["davenport", "gibbs_vector", "modified_rodrigues"])
+def test_all_vectors_of_a_note_are_in_one_manner(text):
+    """Bold are the matrices and the coordinates alone, where vectors have arrows."""
+    motion = rs.derive(rotation_from(text), ["rotation_matrix"]).written(vectors="arrow")
+    bold = set(re.findall(r"\\mathbf\{(\w+)\}", motion.note(conversions=True).latex()))
+    assert not {letter for letter in bold if letter.islower()} - {"q"}

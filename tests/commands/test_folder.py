@@ -1,0 +1,81 @@
+"""The folder of a derivation: its record speaks for what every run has left there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import rigidsym as rs
+from rigidsym.commands.cli import commands
+from rigidsym.kernels.targets import TARGETS
+
+NAME = "euler_zxz_intrinsic"
+
+
+def _run(*arguments: str) -> str:
+    done = CliRunner().invoke(commands, arguments, catch_exceptions=False)
+    assert done.exit_code == 0, done.output
+    return done.stderr
+
+
+def _checked(out: Path) -> set[str]:
+    """The files that `check` finds as derived."""
+    done = CliRunner().invoke(commands, ["check", str(out)])
+    lines = [line.partition(": ") for line in done.output.splitlines()]
+    return {Path(name).name for name, _, finding in lines if finding == "as derived"}
+
+
+def _files(out: Path) -> set[str]:
+    return {path.name for path in (out / NAME).iterdir()}
+
+
+def test_another_target_or_page_joins_what_is_there(tmp_path):
+    for words in (("derive", "ZXZ"), ("derive", "ZXZ", "--target", "c"), ("page", "ZXZ")):
+        assert _run(*words, "--out", str(tmp_path)) == ""
+        assert _checked(tmp_path) == _files(tmp_path)
+    assert {f"{NAME}.py", f"{NAME}.c", f"{NAME}_page.html"} < _files(tmp_path)
+
+
+def test_what_was_taken_away_is_not_missed(tmp_path):
+    _run("derive", "ZXZ", "--target", "numpy,javascript", "--out", str(tmp_path))
+    (tmp_path / NAME / f"{NAME}.mjs").unlink()
+    _run("derive", "ZXZ", "--out", str(tmp_path))
+    assert _checked(tmp_path) == _files(tmp_path) == {f"{NAME}.{e}" for e in TEXTS}
+
+
+TEXTS = ("py", "tex", "html", "json")
+
+
+def test_files_of_another_derivation_are_named(tmp_path):
+    out = "--out", str(tmp_path)
+    _run("derive", "ZXZ", "--target", "numpy,javascript", *out)
+    said = _run("derive", "ZXZ", "--angles", "a,b,c", *out).splitlines()
+    assert said == [
+        f"rigidsym: {tmp_path / NAME} held another rotation and is written over; --out keeps both",
+        f"rigidsym: {tmp_path / NAME} keeps javascript of what was there, which check does not see",
+    ]
+    _run("derive", "ZXZ", "--target", "numpy,javascript", *out)
+    said = _run("derive", "ZXZ", "--conversions", *out)
+    assert (
+        said == f"rigidsym: {tmp_path / NAME} keeps javascript of what was there, which check "
+        "does not see\n"
+    )
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_the_ending_of_a_target_is_that_of_its_file(target):
+    motion = rs.derive("ZXZ", only=("angular_velocity_body",))
+    assert motion.name + TARGETS[target].ending in motion.kernels(target).files
+
+
+def test_what_is_refused_writes_over_nothing_and_does_not_say_so(tmp_path):
+    out = "--out", str(tmp_path)
+    _run("derive", "ZXZ", *out)
+    before = (tmp_path / NAME / f"{NAME}.json").read_bytes()
+    wrong = "--derivative", "angular_velocity_body:z"
+    done = CliRunner().invoke(commands, ["derive", "ZXZ", "--angles", "a,b,c", *wrong, *out])
+    assert isinstance(done.exception, rs.RigidsymError), done.output
+    assert "written over" not in done.stderr
+    assert (tmp_path / NAME / f"{NAME}.json").read_bytes() == before

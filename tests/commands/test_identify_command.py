@@ -1,0 +1,187 @@
+"""`rigidsym identify` as a user meets it."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import re
+import shlex
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conventions import GENERIC, attitude, sample, some
+from test_cli import RIGIDSYM, ROOT, call
+
+import rigidsym as rs
+from rigidsym.tools.identify.readings import VELOCITIES, Reading
+
+AEROSPACE = Reading(sequence="ZYX", columns=(2, 1, 0), passive=True, degrees=True)
+
+
+def listed(numbers) -> str:
+    return ",".join(repr(float(number)) for number in np.ravel(numbers))
+
+
+def options(given) -> list[str]:
+    return [word for name, part in given.items() for word in (f"--{name}", listed(part))]
+
+
+def test_one_sample_is_named_first_and_its_calls_follow(tmp_path):
+    matrix = listed(attitude(AEROSPACE, (10, 20, 30))["matrix"])
+    angles = "roll=10, pitch=20, yaw=30"
+    done = call("identify", "--angles", angles, "--matrix", matrix, cwd=tmp_path)
+    lines = done.stdout.splitlines()
+    assert lines[:4] == [
+        "xyz extrinsic, passive, degrees, columns (roll, pitch, yaw)",
+        "= ZYX intrinsic, passive, columns (yaw, pitch, roll)",
+        "",
+        "matrix = (Rz(yaw) Ry(pitch) Rx(roll))ᵀ",
+    ]
+    assert 'Rotation.from_euler("xyz", angles, degrees=True).inv()' in done.stdout
+    assert max(map(len, lines)) <= 80
+    assert done.stderr == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_sample_in_the_readme(tmp_path):
+    section = (ROOT / "README.md").read_text(encoding="utf-8").partition("## Which convention")[2]
+    command, shown = re.findall(r"```(?:sh|text)\n(.+?)\n```", section, re.DOTALL)[:2]
+    done = call(*shlex.split(command)[1:], cwd=tmp_path)
+    assert done.stdout.startswith(shown + "\n")
+
+
+@pytest.mark.parametrize("reading", some(12, seed=30, layouts=(None, False, True)), ids=str)
+def test_the_text_fits_80_columns(reading):
+    text = rs.identify(**sample(reading, GENERIC[reading.degrees])).text()
+    assert max(map(len, text.splitlines())) <= 80
+
+
+def test_several_samples_with_signs_and_velocity_as_json(tmp_path):
+    reading = Reading(sequence="ZXZ", scalar_last=True, velocity=VELOCITIES[1])
+    words = [
+        word
+        for angles in (GENERIC[False], (-0.2, 0.5, 0.6))
+        for word in options(sample(reading, angles))
+    ]
+    data = json.loads(call("identify", *words, "--json", cwd=tmp_path).stdout)
+    assert (data["schema"], data["fits"], data["samples"]) == ("rigidsym.identification", True, 2)
+    (answer,) = data["answers"]
+    assert answer["reading"]["words"].startswith("ZXZ intrinsic, active, radians")
+    assert answer["reading"]["velocity"] == {"frame": "body", "opposite": False, "units": ""}
+    assert set(answer["calls"]) == {"SciPy", "SymPy", "rigidsym"}
+    assert len(answer["aliases"]) == 3
+    assert data["nearest"] is None
+    assert data["further"] is None
+
+
+def test_several_answers_are_cut_short_and_say_what_would_separate_them(tmp_path):
+    words = options(sample(Reading(sequence="ZYX", degrees=True), (0, 0, 40)))
+    done = call("identify", *words, cwd=tmp_path)
+    assert "96 readings fit 1 sample, all degrees" in done.stdout
+    assert "and 90 more; --all shows them" in done.stdout
+    assert "To tell them apart, add a sample with these numbers in the columns:\n" in done.stdout
+    assert max(map(len, done.stdout.splitlines())) <= 80
+    everything = call("identify", *words, "--all", cwd=tmp_path).stdout
+    assert everything.count("from scipy.spatial.transform") == 96
+    data = json.loads(call("identify", *words, "--json", cwd=tmp_path).stdout)
+    assert len(data["answers"]) == 96
+    assert data["further"]["difference_rad"] > 0.01
+
+
+def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
+    matrix = listed(attitude(AEROSPACE, (10, 20, 30.5))["matrix"])
+    words = ("identify", "--angles", "10,20,30", "--matrix", matrix)
+    done = call(*words, cwd=tmp_path, status=1)
+    assert "No reading fits 1 sample: 1152 were tried." in done.stdout
+    assert "Nearest: xyz extrinsic, passive, degrees, columns (a1, a2, a3)" in done.stdout
+    assert "residual 0.0087 rad (0.5°), worst at sample 1" in done.stdout
+    assert "--tolerance 0.0092 takes it." in done.stdout
+    assert done.stderr == ""
+    call(*words, "--tolerance", "0.0092", cwd=tmp_path)
+    far = call(*words[:2], "30,20,99", *words[3:], cwd=tmp_path, status=1)
+    assert "That is not near" in far.stdout
+    data = json.loads(call(*words, "--json", cwd=tmp_path, status=1).stdout)
+    assert (data["fits"], data["answers"]) == (False, [])
+    assert data["nearest"]["residual_rad"] == pytest.approx(np.radians(0.5))
+
+
+@pytest.mark.parametrize(
+    ("words", "messages"),
+    [
+        ((), ["expected a file, or --angles with --matrix or --quaternion"]),
+        (("log.csv", "--angles", "1,2,3"), ["expected a file, or --angles"]),
+        (("nowhere.csv",), ["does not exist"]),
+        (
+            ("--angles", "1,2", "--matrix", "1,0,0,0,x,0,0,0,1", "--rates", "1,2,3"),
+            [
+                "--angles: expected 3 numbers, got 2",
+                "--matrix: 'x' is not a number",
+                "rates and omega belong together",
+            ],
+        ),
+        (("--angles", "1,2,3"), ["a matrix or a quaternion is missing"]),
+        (("--angles", "a=1,b=2,3", "--quaternion", "1,0,0,0"), ["three different names"]),
+        (
+            ("--angles", "1,2,3", "--angles", "1,2,3", "--quaternion", "1,0,0,0"),
+            ["got 2 of angles, 1 of quaternion"],
+        ),
+        (("--angles", "1,2,3", "--quaternion", "0,0,0,0"), ["zero, which is no rotation"]),
+        (
+            ("--angles", "1,2,3", "--matrix", "-1,0,0,0,1,0,0,0,1"),
+            ["not a rotation but a reflection, its determinant is -1"],
+        ),
+        (("log.csv",), ["log.csv: bad samples", "no column r11, ..., r33", "did you mean rol"]),
+    ],
+)
+def test_bad_input_is_told_at_once(tmp_path, words, messages):
+    (tmp_path / "log.csv").write_text("rol,pitch,yaw\n1,2,3\n")
+    done = call("identify", *words, cwd=tmp_path, status=3 if words == ("log.csv",) else 2)
+    for message in messages:
+        assert message in done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+
+
+def test_orientations_alone_need_no_sympy():
+    words = options(sample(Reading(sequence="ZYX"), GENERIC[False]))
+    probe = (
+        "import sys\nfrom rigidsym.commands.cli import commands\n"
+        f"commands.main({['identify', *words]}, standalone_mode=False)\n"
+        "print('sympy' in sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", probe], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1] == "False"
+
+
+def test_progress_is_drawn_in_a_terminal_alone(tmp_path):
+    given = sample(Reading(sequence="ZYX"), GENERIC[False])
+    table = np.tile(np.hstack([np.ravel(part) for part in given.values()]), (50_000, 1))
+    np.save(tmp_path / "log.npy", table)
+    assert call("identify", "log.npy", cwd=tmp_path).stderr == ""
+    controller, terminal = pty.openpty()
+    with subprocess.Popen(
+        [*RIGIDSYM, "identify", "log.npy"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"},
+        stdout=subprocess.DEVNULL,
+        stderr=terminal,
+    ) as process:
+        os.close(terminal)
+        drawn = b""
+        while True:
+            try:
+                piece = os.read(controller, 65536)
+            except OSError:  # the terminal was closed at the other end
+                break
+            if not piece:
+                break
+            drawn += piece
+        assert process.wait() == 0
+    os.close(controller)
+    assert b"log.npy" in drawn
+    assert b"%" in drawn

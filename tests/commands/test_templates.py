@@ -1,0 +1,124 @@
+"""Templates of the user's own: they stand in for the shipped ones, and their faults are named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from conftest import derived
+
+from rigidsym.commands.cli import commands
+from rigidsym.errors import TemplateFault
+from rigidsym.system import resources
+
+NAME = "euler_zxz_intrinsic"
+
+
+def html_with(folder: Path, template: str) -> str:
+    (folder / "note.html.jinja").write_text(template, encoding="utf-8")
+    with resources.overridden_by(folder):
+        return derived("ZXZ").note().html()
+
+
+def test_an_own_template_stands_in_for_the_shipped_one(tmp_path: Path):
+    assert html_with(tmp_path, "<h1>{{ title }}</h1>") == "<h1>Euler angles ZXZ, intrinsic</h1>"
+    assert derived("ZXZ").note().html().startswith("<!DOCTYPE html>")
+
+
+def test_templates_that_are_not_overridden_stay(tmp_path: Path):
+    (tmp_path / "note.html.jinja").write_text("x", encoding="utf-8")
+    before = derived("ZXZ").note().latex()
+    with resources.overridden_by(tmp_path):
+        assert derived("ZXZ").note().latex() == before
+
+
+def test_an_own_template_may_include_others(tmp_path: Path):
+    (tmp_path / "head.jinja").write_text("<b>{{ title }}</b>", encoding="utf-8")
+    assert html_with(tmp_path, "{% include 'head.jinja' %}").startswith("<b>Euler")
+
+
+@pytest.mark.parametrize(
+    ("template", "line", "said"),
+    [
+        (
+            "a\n{{ titel }}",
+            2,
+            "'titel' is undefined; names here: sections, sources, subtitle, title",
+        ),
+        ("{% for s in sections %}\n\n{{ s.name }}{% endfor %}", 3, "has no attribute 'name'"),
+        ("{% if x %}", 1, "Unexpected end of template"),
+        ("\n{{ title.__class__.__mro__ }}", 2, "access to attribute '__class__'"),
+        ("{% include 'nowhere.jinja' %}", 1, "nowhere.jinja"),
+        ("\n{% include '/etc/hostname' %}", 2, "hostname"),
+        ("{% include '../note.html.jinja' %}", 1, "note.html.jinja"),
+        ("{% include 'note.html.jinja' %}", 1, "it includes itself"),
+        ("\n{{ title + 1 }}", 2, "can only concatenate str"),
+        ("{{ 1 / 0 }}", 1, "division by zero"),
+        ("{{ title() }}", 1, "'str' object is not callable"),
+        ("{% for i in range(999999) %}{% endfor %}", 1, "Range too big"),
+        ("{{ 9**9**9**9 }}", 1, "templates place text; ** is not for them"),
+        ("{{ 'a' * 9999999999 }}", 1, "templates place text; * is not for them"),
+    ],
+)
+def test_a_fault_is_named_with_its_template_and_line(tmp_path: Path, template, line, said):
+    with pytest.raises(TemplateFault) as caught:
+        html_with(tmp_path, template)
+    assert str(caught.value).startswith(f"{tmp_path / 'note.html.jinja'}, line {line}: ")
+    assert said in str(caught.value)
+
+
+def test_a_fault_in_an_included_template_is_named_there(tmp_path: Path):
+    (tmp_path / "head.jinja").write_text("\n\n{{ nothing }}", encoding="utf-8")
+    with pytest.raises(TemplateFault, match=r"head\.jinja, line 3: 'nothing' is undefined"):
+        html_with(tmp_path, "\n{% include 'head.jinja' %}")
+
+
+def test_a_template_that_is_no_text_is_named(tmp_path: Path):
+    (tmp_path / "note.html.jinja").write_bytes(b"\xff")
+    with (
+        resources.overridden_by(tmp_path),
+        pytest.raises(TemplateFault, match="UTF-8"),
+    ):
+        derived("ZXZ").note().html()
+
+
+def test_a_folder_without_templates_is_an_error(tmp_path: Path):
+    with pytest.raises(TemplateFault, match=r"holds none of the templates: .*note\.tex\.jinja"):
+        resources.overridden_by(tmp_path).__enter__()
+
+
+def test_the_shipped_templates_are_short():
+    for name in resources.names("templates", ".jinja"):
+        assert len(resources.text("templates", f"{name}.jinja").splitlines()) < 200
+
+
+# --- commands ---
+
+
+def test_templates_are_copied_out_and_used_again(tmp_path: Path):
+    run = CliRunner()
+    done = run.invoke(commands, ["templates", str(tmp_path / "own")])
+    assert done.exit_code == 0, done.output
+    copies = {file.name for file in (tmp_path / "own").iterdir()}
+    assert copies == {f"{name}.jinja" for name in resources.names("templates", ".jinja")}
+    own = tmp_path / "own" / "note.html.jinja"
+    own.write_text(own.read_text("utf-8").replace("</main>", "<p>Mine</p></main>"), "utf-8")
+    made = run.invoke(
+        commands,
+        ["derive", "ZXZ", "--templates", str(tmp_path / "own"), "--out", str(tmp_path / "out")],
+    )
+    assert made.exit_code == 0, made.output
+    folder = tmp_path / "out" / NAME
+    assert "<p>Mine</p>" in (folder / f"{NAME}.html").read_text("utf-8")
+    checked = run.invoke(commands, ["check", str(folder), "--templates", str(tmp_path / "own")])
+    assert checked.exit_code == 0, checked.output
+    assert run.invoke(commands, ["check", str(folder)]).exit_code == 1
+
+
+def test_copying_out_overwrites_nothing(tmp_path: Path):
+    (tmp_path / "note.tex.jinja").write_text("mine", encoding="utf-8")
+    done = CliRunner().invoke(commands, ["templates", str(tmp_path)])
+    assert done.exit_code != 0
+    assert [file.name for file in tmp_path.iterdir()] == ["note.tex.jinja"]
+    assert (tmp_path / "note.tex.jinja").read_text("utf-8") == "mine"

@@ -1,0 +1,380 @@
+"""Clouds of particles and meshes in numbers: against 50 digits, trimesh, one another."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+import trimesh
+from click.testing import CliRunner
+
+from rigidsym.commands.cli import commands
+from rigidsym.data.mass.blocks import BLOCK, block_of, cloud_of
+from rigidsym.data.mass.inertia import inertia_of
+from rigidsym.data.mass.mesh import Mesh, mesh_inertia, read_mesh_file
+from rigidsym.data.mass.principal_axes import principal_axes_of
+from rigidsym.errors import BodyError
+
+EPS = np.finfo(float).eps
+
+
+def rows(count: int = 500, *, far: float = 0.0, size: float = 1.0, seed: int = 4) -> np.ndarray:
+    """m, x, y, z of particles; `far` from the origin."""
+    random = np.random.default_rng(seed)
+    places = random.normal(size=(count, 3)) * size * (1.0, 2.0, 0.5) + (far, -far, 2 * far)
+    return np.column_stack([random.uniform(0.1, 2, count), places])
+
+
+def exactly(table: np.ndarray) -> tuple[mpmath.mpf, np.ndarray, np.ndarray]:
+    """Mass, centre and inertia tensor with 50 digits, by the sums of the lecture."""
+    with mpmath.workdps(50):
+        m, *x = (np.array([mpmath.mpf(float(v)) for v in column]) for column in table.T)
+        mass = sum(m)
+        centre = np.array([sum(m * axis) / mass for axis in x])
+        x = [axis - c for axis, c in zip(x, centre, strict=True)]
+        square = sum(axis * axis for axis in x)
+        inertia = np.array(
+            [[sum(m * ((i == j) * square - x[i] * x[j])) for j in range(3)] for i in range(3)]
+        )
+    return mass, centre, inertia
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        rows(),
+        rows(far=1e8),  # a body of a metre, a hundred thousand kilometres away
+        rows(far=1e6, size=1e-3),
+        rows(BLOCK + 700, far=1e7),
+        np.vstack([[1e-3, 0, 0, 0], rows(far=1e9)]),  # the first particle is an outlier
+        np.vstack([rows(far=1e9), [1e-9, 0, 0, 0]]),
+    ],
+    ids=["near", "far", "tiny", "blocks", "outlier first", "outlier last"],
+)
+def test_a_cloud_loses_nothing_that_the_data_hold(table):
+    mass, centre, inertia = exactly(table)
+    found = inertia_of(table)
+    scale = float(max(abs(inertia.ravel())))
+    assert abs(found.mass - mass) <= 8 * EPS * float(mass)
+    assert max(abs(found.centre - centre)) <= EPS * float(max(abs(centre)))
+    assert max(abs((found.inertia - inertia).ravel())) <= 64 * EPS * scale
+
+
+def test_blocks_in_any_order_are_one_body():
+    table = rows(3 * BLOCK)
+    blocks = [block_of(p[0], p[1:]) for p in np.split(np.ascontiguousarray(table.T), 3, axis=1)]
+    first, second = cloud_of(blocks), cloud_of(blocks[::-1])
+    assert (first.inertia == second.inertia).all()
+    assert (first.centre == second.centre).all()
+
+
+def test_additivity_and_parallel_axes():
+    """Two clouds together: I = I₁ + I₂ + the moved masses about the common centre."""
+    first, second = rows(seed=1), rows(far=3.0, seed=2)
+    both, parts = inertia_of(np.vstack([first, second])), [inertia_of(first), inertia_of(second)]
+    total = np.zeros((3, 3))
+    for part in parts:
+        d = part.centre - both.centre
+        total += part.inertia + part.mass * (d @ d * np.eye(3) - np.outer(d, d))
+    assert np.allclose(total, both.inertia, rtol=1e-13)
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("kind", ["<f8", "<f4", ">f8"])
+def test_an_npy_file_is_the_array(tmp_path, order, kind):
+    table = np.asarray(rows(2 * BLOCK + 5).astype(kind), order=order)
+    np.save(tmp_path / "cloud.npy", table)
+    found, plain = inertia_of(tmp_path / "cloud.npy"), inertia_of(table.astype(float))
+    assert found.count == len(table)
+    assert (found.inertia == plain.inertia).all()
+
+
+def test_columns_by_name_in_every_format(tmp_path):
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    table = rows(30)
+    mixed, names = table[:, [3, 0, 2, 1]], ["z", "mass", "y", "x"]
+    np.save(tmp_path / "plain.npy", mixed)
+    np.save(
+        tmp_path / "named.npy",
+        np.rec.fromarrays(mixed.T, names=",".join(names)).view(np.ndarray),
+    )
+    np.savetxt(tmp_path / "cloud.csv", mixed, delimiter=",", header=",".join(names), fmt="%.17g")
+    np.savetxt(tmp_path / "blanks.txt", mixed, header=" ".join(names), fmt="%.17g", comments="")
+    parquet.write_table(
+        pyarrow.table({n: mixed[:, k] for k, n in enumerate(names)} | {"name": ["ball"] * 30}),
+        tmp_path / "cloud.parquet",
+    )
+    expected = inertia_of(table).inertia
+    assert (inertia_of(tmp_path / "plain.npy", columns=names).inertia == expected).all()
+    for file in ("named.npy", "cloud.csv", "blanks.txt", "cloud.parquet"):
+        assert (inertia_of(tmp_path / file).inertia == expected).all(), file
+
+
+def test_other_columns_and_comments_are_left_alone(tmp_path):
+    text = "# x,y,z,name\n\n# two balls\n0,0,0,first\n2,0,0,second\n"
+    (tmp_path / "cloud.csv").write_text(text)
+    assert (inertia_of(tmp_path / "cloud.csv").inertia == np.diag([0, 2, 2])).all()
+
+
+def test_what_is_no_file_of_numbers_is_a_body_error(tmp_path):
+    for file in ("cloud.npy", "cloud.parquet"):
+        (tmp_path / file).write_bytes(b"")
+        with pytest.raises(BodyError, match=file):
+            inertia_of(tmp_path / file)
+
+
+def test_without_masses_each_particle_has_a_kilogram():
+    assert inertia_of(rows(10)[:, 1:]).mass == 10
+
+
+def with_entry(row: int, column: int, value: float) -> np.ndarray:
+    table = rows(20)
+    table[row, column] = value
+    return table
+
+
+@pytest.mark.parametrize(
+    ("table", "fault"),
+    [
+        (
+            with_entry(7, 2, np.nan),
+            r"particle 7, counted from 0: expected finite numbers, got mass",
+        ),
+        (with_entry(7, 0, np.inf), r"particle 7, counted from 0"),
+        (with_entry(7, 0, -1.0), r"particle 7, counted from 0: the mass is -1 kg; expected none"),
+        (rows(20) * (-1, 1, 1, 1), r"the mass is -\S+ kg; expected none that is negative"),
+        (rows(20) * (0, 1, 1, 1), r"the total mass is 0 kg; expected a positive mass"),
+        (np.tile([1e308, 0, 0, 0], (3, 1)), r"the total mass is inf kg; expected a positive mass"),
+        (rows(20)[:0], r"expected at least one particle, got none"),
+        (rows(20)[:, :2], r"expected 3 columns \(x, y, z\) or 4 \(m, x, y, z\), got 2"),
+        (rows(20) * (1, 1e200, 1, 1), r"too large for double precision"),
+        (rows(20).ravel(), r"expected real numbers of shape \(n, 3\) or \(n, 4\)"),
+    ],
+)
+def test_what_is_no_cloud_is_refused(table, fault):
+    with pytest.raises(BodyError, match=fault):
+        inertia_of(table)
+
+
+def test_an_engineer_may_insist_on_a_negative_mass():
+    assert inertia_of(with_entry(7, 0, -0.1), allow=True).count == 20
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("m,x,y,z\n1,0,0,0\n1,0,zero,0\n", "line 3"),
+        ("m,x,y,z\n1,0,0,0\n1,0,0\n", "line 3"),
+        ("m,x,y\n1,0,0\n", r"cloud\.csv: no column z among m, x, y"),
+        ("m,x,y,z\n1,0,0,0\n\n# -\n-2,0,0,0\n", r"csv, line 5: the mass is -2 kg; expected none"),
+        ("m,x,y,z\n1,0,0,0\n\n1,0,nan,0\n", r"csv, line 4: expected finite numbers, got mass 1"),
+        ("m,x,y,z,z\n1,0,0,0,0\n", "two columns are named z"),
+    ],
+)
+def test_a_wrong_line_of_text_is_named(tmp_path, text, fault):
+    (tmp_path / "cloud.csv").write_text(text)
+    with pytest.raises(BodyError, match=fault):
+        inertia_of(tmp_path / "cloud.csv")
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs the proc file system")
+def test_memory_stays_bounded(tmp_path):
+    """The file has 80 MB; of those that are mapped, few are kept."""
+    shape = (2_500_000, 4)  # 80 MB
+    table = np.lib.format.open_memmap(tmp_path / "big.npy", mode="w+", dtype=float, shape=shape)
+    table[:] = (1.0, 2.0, 3.0, 4.0)
+    table[::2, 1] = 5.0
+    table.flush()
+    code = (
+        "import sys\n"
+        "from rigidsym.data.mass.inertia import inertia_of\n"
+        "def peak():\n"
+        "    lines = open('/proc/self/status').read().splitlines()\n"
+        "    return next(int(line.split()[1]) for line in lines if line.startswith('VmHWM'))\n"
+        "before = peak(); inertia_of(sys.argv[1]); print(peak() - before)\n"
+    )
+    run = [sys.executable, "-c", code, str(tmp_path / "big.npy")]
+    grown = int(subprocess.run(run, capture_output=True, text=True, check=True).stdout)
+    assert grown < 60_000  # kB
+
+
+def test_dask_gives_the_same_numbers():
+    dask = pytest.importorskip("dask")
+    da = pytest.importorskip("dask.array")
+    table = rows(40_000, far=1e5)
+    plain = inertia_of(table)
+    with dask.config.set(scheduler="synchronous"):
+        found = inertia_of(da.from_array(table, chunks=(7_000, 2)))
+    assert (found.inertia == plain.inertia).all()
+    assert (found.centre == plain.centre).all()
+
+
+@pytest.mark.filterwarnings("ignore::Warning:distributed.*", "ignore:.*:ResourceWarning")
+def test_a_cluster_reads_the_file(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    table = rows(20_000, far=1e5)
+    np.save(tmp_path / "cloud.npy", table)
+    seen = []
+    with distributed.LocalCluster(
+        n_workers=1,
+        threads_per_worker=1,
+        processes=False,
+        dashboard_address=None,
+        protocol="inproc",
+    ) as cluster:
+        found = inertia_of(
+            tmp_path / "cloud.npy",
+            scheduler=cluster.scheduler_address,
+            progress=seen.append,
+        )
+    assert (found.inertia == inertia_of(table).inertia).all()
+    assert seen[-1] == 1
+
+
+# principal axes
+
+
+@pytest.mark.parametrize(
+    ("inertia", "sentence"),
+    [
+        (np.diag([3.0, 1.0, 2.0]), ""),
+        (rows(3)[:, 1:] @ rows(3)[:, 1:].T + np.eye(3) * 9, ""),
+        (np.eye(3) * 2, "All principal moments are equal"),
+        (np.diag([1.0, 1.0, 1.5]), "The first two principal moments are equal"),
+        (np.diag([1.0, 1.5, 1.5]), "The last two principal moments are equal"),
+    ],
+)
+def test_principal_axes_are_right_handed_and_diagonalise(inertia, sentence):
+    found = principal_axes_of(inertia)
+    assert np.linalg.det(found.axes) == pytest.approx(1)
+    diagonal = found.axes.T @ inertia @ found.axes
+    assert np.allclose(diagonal, np.diag(found.moments), atol=1e-12 * inertia.max())
+    assert (np.diff(found.moments) >= 0).all()
+    assert found.repeated.startswith(sentence)
+    assert bool(found.repeated) == bool(sentence)
+
+
+def test_principal_axes_are_right_handed_for_any_tensor():
+    for seed in range(20):
+        found = principal_axes_of(inertia_of(rows(9, seed=seed)).inertia)
+        assert np.linalg.det(found.axes) == pytest.approx(1)
+
+
+@pytest.mark.parametrize(
+    ("inertia", "fault"),
+    [
+        ([[1, 0], [0, 1]], "expected an inertia tensor of 3x3 finite numbers"),
+        ([[1, 0, 0], [0, np.nan, 0], [0, 0, 1]], "expected an inertia tensor of 3x3 finite"),
+        ([[1, 0.5, 0], [0, 1, 0], [0, 0, 1]], r"not symmetric: entries differ by 0\.5 kg m²"),
+    ],
+)
+def test_what_has_no_principal_axes_is_refused(inertia, fault):
+    with pytest.raises(BodyError, match=fault):
+        principal_axes_of(inertia)
+
+
+# meshes
+
+MESHES = {
+    "box": trimesh.creation.box(extents=(1, 2, 3)),
+    "cylinder": trimesh.creation.cylinder(radius=0.5, height=2, sections=48),
+    "sphere": trimesh.creation.icosphere(subdivisions=2),
+    "ring": trimesh.creation.annulus(r_min=0.4, r_max=1.0, height=0.3),
+}
+TURN = trimesh.transformations.euler_matrix(0.3, 0.5, 0.7)
+
+
+@pytest.mark.parametrize("ending", ["stl", "obj", "ply"])
+@pytest.mark.parametrize("name", MESHES)
+def test_meshes_agree_with_trimesh(tmp_path, name, ending):
+    mesh = MESHES[name].copy()
+    mesh.apply_transform(TURN)
+    mesh.apply_translation((4.0, -2.0, 1.0))
+    mesh.export(tmp_path / f"part.{ending}")
+    found = mesh_inertia(read_mesh_file(tmp_path / f"part.{ending}"), density=7.8)
+    mesh.density = 7.8
+    assert found.mass == pytest.approx(mesh.mass, rel=1e-6)
+    assert np.allclose(found.centre, mesh.center_mass, atol=1e-6)
+    assert np.allclose(found.inertia, mesh.moment_inertia, rtol=1e-5, atol=1e-5)
+
+
+def test_a_mesh_far_away_keeps_its_digits():
+    near = mesh_inertia(mesh_of("box"), mass=6.0)
+    moved = mesh_of("box")
+    far = mesh_inertia(Mesh(vertices=moved.vertices + 2.0**20, faces=moved.faces), mass=6.0)
+    assert np.allclose(far.inertia, near.inertia, rtol=1e-13, atol=1e-13)
+
+
+def mesh_of(name: str) -> Mesh:
+    mesh = MESHES[name]
+    return Mesh(vertices=np.array(mesh.vertices), faces=np.array(mesh.faces, dtype=np.int64))
+
+
+def test_open_torn_and_inverted_meshes_are_refused():
+    box = mesh_of("box")
+    with pytest.raises(
+        BodyError, match=r"the surface is open: 3 edges have one face alone, such as"
+    ):
+        mesh_inertia(Mesh(vertices=box.vertices, faces=box.faces[1:]), mass=1.0)
+    torn = box.faces.copy()
+    torn[0] = torn[0][::-1]
+    with pytest.raises(BodyError, match="some faces are turned over"):
+        mesh_inertia(Mesh(vertices=box.vertices, faces=torn), mass=1.0)
+    with pytest.raises(BodyError, match="inside out: its volume is -6 m³"):
+        mesh_inertia(Mesh(vertices=box.vertices, faces=box.faces[:, ::-1]), mass=1.0)
+    flat = Mesh(vertices=box.vertices * (1, 1, 0), faces=box.faces)
+    with pytest.raises(BodyError, match="it holds no volume"):
+        mesh_inertia(flat, mass=1.0)
+    with pytest.raises(BodyError, match="expected either the mass or the density"):
+        mesh_inertia(box)
+    assert mesh_inertia(Mesh(vertices=box.vertices, faces=box.faces[1:]), mass=1.0, allow=True)
+
+
+def test_files_that_hold_no_mesh_are_refused(tmp_path):
+    (tmp_path / "empty.stl").write_text("solid nothing\nendsolid nothing\n")
+    with pytest.raises(BodyError, match=r"empty\.stl"):
+        read_mesh_file(tmp_path / "empty.stl")
+    with pytest.raises(BodyError, match="no such mesh"):
+        read_mesh_file(tmp_path / "none.stl")
+
+
+# the command
+
+
+def test_the_command_shows_and_prints_as_json(tmp_path):
+    np.save(tmp_path / "cloud.npy", rows())
+    shown = CliRunner().invoke(commands, ["inertia", str(tmp_path / "cloud.npy")])
+    assert shown.exit_code == 0
+    assert "500 particles" in shown.output
+    assert "principal axes, one a column, right-handed" in shown.output
+    MESHES["sphere"].export(tmp_path / "ball.stl")
+    ball = [str(tmp_path / "ball.stl"), "--density", "1000", "--json"]
+    assert '"principal_moments"' in CliRunner().invoke(commands, ["inertia", *ball]).output
+
+
+@pytest.mark.parametrize(
+    ("file", "options", "message"),
+    [
+        ("cloud.csv", ["--density", "3"], "holds particles; --density is for a mesh"),
+        ("cloud.csv", ["--scale", "0.001"], "holds particles; --scale is for a mesh"),
+        ("ball.stl", ["--columns", "x,y,z"], "holds a mesh; --columns is for particles"),
+        ("ball.stl", [], "holds a mesh: expected --mass or --density"),
+        ("ball.stl", ["--mass", "-2"], "'--mass': -2.0 is not in the range x>0"),
+    ],
+)
+def test_an_option_that_does_not_fit_is_refused(tmp_path, file, options, message):
+    (tmp_path / "cloud.csv").write_text("m,x,y,z\n1,0,0,0\n2,1,0,0\n")
+    MESHES["sphere"].export(tmp_path / "ball.stl")
+    done = CliRunner().invoke(commands, ["inertia", str(tmp_path / file), *options])
+    assert done.exit_code == 2
+    assert message in done.output
+
+
+def test_no_zero_is_shown_with_a_sign():
+    assert "-0" not in inertia_of(np.array([[1.0, 0, 0, 0]])).text().replace("-0.", "")

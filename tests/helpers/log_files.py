@@ -1,0 +1,54 @@
+"""Logs of angles and rates as files of each kind, and the `eval` command on them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from rigidsym.data.readers import rows_of
+
+COUNT = 1000
+VELOCITY = ("angular_velocity_body",)
+NAMES = ("phi", "theta", "psi", "phi_dot", "theta_dot", "psi_dot")
+
+
+def logged() -> np.ndarray:
+    """Rows of three angles and their rates."""
+    return np.random.default_rng(7).uniform(-3, 3, (COUNT, 6))
+
+
+def command(*arguments: object) -> list[str]:
+    program = "from rigidsym.commands.cli import main; main()"
+    return [sys.executable, "-c", program, "eval", *map(str, arguments)]
+
+
+def run(*arguments: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command(*arguments), capture_output=True, text=True, check=False)
+
+
+def _as_npy(path: Path, table: np.ndarray) -> None:
+    np.save(path, table)
+
+
+def _as_text(path: Path, table: np.ndarray) -> None:
+    lines = [",".join(map(repr, row)) for row in table.tolist()]
+    path.write_text("\n".join([",".join(NAMES), *lines]) + "\n", encoding="utf-8")
+
+
+def _as_parquet(path: Path, table: np.ndarray) -> None:
+    import pyarrow
+    from pyarrow import parquet
+
+    columns = dict(zip(NAMES, table.T, strict=True))
+    parquet.write_table(pyarrow.table(columns), path, row_group_size=300)
+
+
+WRITERS = {".npy": _as_npy, ".csv": _as_text, ".parquet": _as_parquet}
+
+
+def read(path: Path) -> np.ndarray:
+    rows = rows_of(path)
+    return np.concatenate([p.table for p in rows.pieces(range(rows.width))])

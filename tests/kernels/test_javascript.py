@@ -1,0 +1,226 @@
+"""The JavaScript target, run by node: agreement with 50 digits and with NumPy, and its manners."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import derived
+from kernel_modules import EPS, turned_by
+from test_targets import FOUR, KINEMATICS, error
+from test_targets import given as given_at
+from witness import evaluate, mp
+
+import rigidsym as rs
+from rigidsym.errors import MissingTool
+from rigidsym.kernels.ir import Argument, Kernel, Name, Negative
+from rigidsym.kernels.targets.javascript import printer as javascript
+from rigidsym.motion import derive
+
+ROTATIONS = ("ZXZ", "rotation_vector", "quaternion", "davenport")
+NAME = "euler_zxz_intrinsic"
+
+
+@pytest.fixture(autouse=True)
+def node() -> None:
+    """Skip without node, or fail where it is required."""
+    if shutil.which("node") is None:
+        required = os.environ.get("RIGIDSYM_REQUIRE_NODE") == "1"
+        (pytest.fail if required else pytest.skip)("node is not installed")
+
+
+@cache
+def motion_of(rotation: str) -> rs.Motion:
+    return derive(rotation)
+
+
+def given(motion: rs.Motion, inputs: tuple[str, ...], count: int = 2) -> list[np.ndarray]:
+    rng = np.random.default_rng(7)
+    return [rng.uniform(-3, 3, (count, len(motion.argument(name).symbols))) for name in inputs]
+
+
+@pytest.mark.parametrize("rotation", ROTATIONS)
+def test_every_quantity_agrees_with_fifty_digits_and_with_numpy(rotation):
+    motion = motion_of(rotation)
+    kernels, known = motion.kernels("javascript").load(), motion.kernels().load()
+    for step in motion.steps:
+        quantity = step.quantity
+        arrays = given(motion, quantity.inputs)
+        found = getattr(kernels, quantity.name)(*arrays)
+        assert found.shape == (2, *step.shape)
+        np.testing.assert_allclose(found, getattr(known, quantity.name)(*arrays), rtol=1e-11)
+        for place, values in enumerate(zip(*arrays, strict=True)):
+            symbols = [motion.argument(name).symbols for name in quantity.inputs]
+            numbers = {
+                symbol: mp.mpf(float(number))
+                for some, numbers in zip(symbols, values, strict=True)
+                for symbol, number in zip(some, numbers, strict=True)
+            }
+            exact = np.array(evaluate(step.expression, numbers).tolist(), float)
+            size = max(1.0, np.abs(exact).max())
+            error = np.abs(found[place] - exact.reshape(step.shape)).max()
+            assert error <= 200 * EPS * size, quantity.name
+
+
+@pytest.mark.parametrize("name", KINEMATICS)
+def test_kinematics_keep_four_eps_up_to_ten_thousand_radians(name):
+    arrays = given_at("ZXZ", name, (40,), size=1e4)
+    assert error("ZXZ", "javascript", name, arrays) <= FOUR
+
+
+@pytest.mark.parametrize("size", [1e6, 1e15, 1e22, 1e300])
+def test_large_angles_are_right(size):
+    arrays = given_at("ZXZ", "rotation_matrix", (20,), size=size)
+    with mp.workdps(400):
+        assert error("ZXZ", "javascript", "rotation_matrix", arrays) <= FOUR
+
+
+def test_where_rates_fail_they_are_nan_and_nothing_else_is():
+    motion = derived("ZXZ")
+    kernels = motion.kernels("javascript").load()
+    pole, rates = [0.3, 0.0, 0.2], [0.1, 0.2, 0.3]
+    assert np.isnan(kernels.rates_from_angular_velocity_body(pole, rates)).any()
+    assert kernels.singularity_margin([pole, [0.3, 0.5, 0.2]]).tolist() == [0.0, np.sin(0.5)]
+    assert np.isfinite(kernels.angular_velocity_body(pole, rates)).all()
+    assert np.isnan(kernels.rotation_matrix([np.nan, 0.0, 0.0])).any()
+
+
+def test_functions_of_the_length_pass_through_zero_and_over_the_switch():
+    motion = motion_of("rotation_vector")
+    kernels, known = motion.kernels("javascript").load(), motion.kernels().load()
+    lengths = np.array([0.0, 1e-12, 1e-3, 1.0, 1.93, 1.94, 2.78, 2.79, 3.99, 4.01, 6.0])
+    q = lengths[:, None] * np.array([2.0, -1.0, 2.0]) / 3
+    rates = [0.3, -0.5, 0.7]
+    for name in ("angular_velocity_body", "angular_acceleration_space"):
+        arrays = [q, rates, rates][: 2 + name.startswith("angular_acc")]
+        found, expected = getattr(kernels, name)(*arrays), getattr(known, name)(*arrays)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=20 * EPS)
+
+
+def test_an_argument_of_the_wrong_length_is_named():
+    kernels = derived("ZXZ").kernels("javascript").load()
+    with pytest.raises(ValueError, match="q_dot: expected 3 numbers, got 2"):
+        kernels.angular_velocity_body([0.1, 0.2, 0.3], [0.1, 0.2])
+
+
+BATCHES = """
+import * as kernels from "./euler_zxz_intrinsic.mjs";
+
+const { rotation_matrix_batch: turned, angular_velocity_body_batch: velocity } = kernels;
+const q = Float64Array.from({ length: 3 * 1000 }, (_, k) => Math.sin(k) * 3);
+const single = Array.from({ length: 1000 }, (_, i) =>
+  kernels.rotation_matrix(q.subarray(3 * i, 3 * i + 3)));
+const same = (a, b) => a.length === b.length && a.every((value, k) => value === b[k]);
+const said = (action) => {
+  try { return action(); } catch (error) { return `${error.name}: ${error.message}`; }
+};
+const out = new Float64Array(9000);
+const single32 = new Float32Array(9);
+console.log(JSON.stringify([
+  same(turned(q), single.flat(2)),
+  turned(q) instanceof Float64Array,
+  turned(q, out) === out && same(out, single.flat(2)),
+  turned(new Float64Array(0)).length,
+  turned([0, 0, 0], single32) === single32 && single32[8] === 1,
+  same(velocity(q, [1, 2, 3]).slice(3, 6), kernels.angular_velocity_body(q.slice(3, 6), [1, 2, 3])),
+  velocity(new Float64Array(0), [1, 2, 3]).length,
+  said(() => turned(new Float64Array(7))),
+  said(() => turned(undefined)),
+  said(() => turned(q, new Float64Array(9))),
+  said(() => velocity(q, q.slice(0, 6))),
+  said(() => kernels.unwrap(q.slice(0, 4))),
+  kernels.unwrap(new Float64Array(0)).length,
+  said(() => kernels.quaternion(["1", "2", "3"])),
+  said(() => kernels.quaternion("123")),
+  said(() => kernels.from_rotation_matrix([[1, 0, 0], [0, 1, 0], [0, 0, null]])),
+  said(() => turned([0, 0, 0, 0, undefined, 0])),
+]));
+"""
+
+
+def test_many_orientations_are_flat_arrays(tmp_path: Path):
+    derived("ZXZ").kernels("javascript", conversions=True).write(tmp_path)
+    (tmp_path / "main.mjs").write_text(BATCHES, encoding="utf-8")
+    done = subprocess.run(
+        ["node", "main.mjs"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == [
+        *(True, True, True, 0, True, True, 0),
+        "RangeError: q: expected rows of 3 numbers, got 7 numbers",
+        "RangeError: q: expected rows of 3 numbers, got undefined numbers",
+        "RangeError: out: expected 1000 rows of 9 numbers, got 9 numbers",
+        "RangeError: q_dot: expected 1000 rows or one, got 2",
+        "RangeError: q: expected rows of 3 numbers, got 4 numbers",
+        0,
+        "TypeError: q: expected numbers, got string at 0",  # + would join them
+        "TypeError: q: expected numbers, got string at 0",
+        "TypeError: matrix: expected numbers, got null at 8",
+        "TypeError: q: expected numbers, got undefined at 4",
+    ]
+
+
+@pytest.mark.parametrize("rotation", ["ZXZ", "rotation_vector"])
+def test_batches_of_every_quantity_are_numpys(rotation):
+    motion = motion_of(rotation)
+    kernels, known = motion.kernels("javascript").load(), motion.kernels().load()
+    for step in motion.steps:
+        arrays = given(motion, step.quantity.inputs, 50)
+        found = getattr(kernels, f"{step.quantity.name}_batch")(*(a.ravel() for a in arrays))
+        expected = getattr(known, step.quantity.name)(*arrays)
+        np.testing.assert_allclose(found, expected.ravel(), rtol=1e-11, atol=1e-12)
+
+
+def test_a_derivative_comes_with_its_value():
+    asked = ["angular_velocity_body by q", "angular_velocity_body by q_dot vjp"]
+    motion = derived("ZXZ").select(["angular_velocity_body"])
+    kernels, known = (motion.kernels(t, derivatives=asked).load() for t in ("javascript", "numpy"))
+    q, q_dot = given(motion, ("q", "q_dot"), 5)
+    for name, arrays in (
+        ("angular_velocity_body_jacobian_q", (q, q_dot)),
+        ("angular_velocity_body_vjp_q_dot", (q, q_dot, q)),
+    ):
+        for found, expected in zip(
+            getattr(kernels, name)(*arrays), getattr(known, name)(*arrays), strict=True
+        ):
+            np.testing.assert_allclose(found, expected, rtol=0, atol=4e-15)
+
+
+def test_text_in_a_title_stays_in_its_comment():
+    motion = turned_by("turns", "await", "Math", "of")
+    odd = rs.Motion(**{**vars(motion), "title": "*/ throw 1; /* </script>"})
+    kernels = odd.kernels("javascript")
+    assert "*/ throw" not in kernels.source
+    q = [0.1, 0.2, 0.3]
+    found = kernels.load().rotation_matrix(q)
+    assert np.allclose(found, motion.kernels().load().rotation_matrix(q), atol=1e-15)
+
+
+def test_a_component_may_be_called_as_its_vector_is():
+    vector = Argument(name="q", components=("q",), units=("rad",), about="")
+    kernel = Kernel(
+        name="minus", arguments=(vector,), assignments=(), outputs=(Negative(Name("q")),), shape=()
+    )
+    made = javascript.load("made", {"made.mjs": javascript.bare([kernel])})
+    assert made.minus([2.0]) == -2.0
+
+
+def test_a_module_is_written_and_node_accepts_it(tmp_path: Path):
+    kernels = derived("ZXZ").kernels("javascript", conversions=True)
+    path = kernels.write(tmp_path)
+    assert path == tmp_path / f"{NAME}.mjs"
+    subprocess.run(["node", "--check", path], check=True)
+    assert kernels.load().quaternion([0.0, 0.0, 0.0]).tolist() == [1.0, 0.0, 0.0, 0.0]
+
+
+def test_without_node_it_is_said(monkeypatch):
+    monkeypatch.setenv("PATH", "")
+    kernels = derived("ZXZ").kernels("javascript")
+    with pytest.raises(MissingTool, match="no program `node`"):
+        kernels.load()

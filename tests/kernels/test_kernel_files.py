@@ -1,0 +1,176 @@
+"""Generated NumPy modules as files: formatted, documented, alone, and the way to them."""
+
+from __future__ import annotations
+
+import inspect
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import derived
+from kernel_modules import QUANTITIES, inputs, module, turned_by
+from numpy.testing import assert_array_equal
+
+import rigidsym as rs
+from rigidsym import __version__
+from rigidsym.errors import KernelError
+from rigidsym.kernels.lowering.lower import MARGIN
+from rigidsym.kernels.module import KernelModule, generate
+from rigidsym.motion import derive
+
+
+def test_the_module_of_the_lecture(golden):
+    source = generate(derived("ZXZ")).source
+    golden("euler_zxz_intrinsic.py.txt", source.replace(f"rigidsym {__version__};", "rigidsym *;"))
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """All 24 conventions, active and passive, and long names, as files."""
+    folder = tmp_path_factory.mktemp("written")
+    for sequence in rs.EULER_SEQUENCES:
+        generate(derived(sequence)).write(folder)
+        generate(derived(sequence, passive=True)).write(folder)
+    long = ["the_first_angle_of_the_three_that_we_use", "second_angle_of_the_three", "l"]
+    generate(turned_by("long_names", *long)).write(folder)
+    return folder
+
+
+@pytest.mark.parametrize("command", [("format", "--check"), ("check",)])
+def test_ruff_would_leave_every_module_as_it_is(written, command):
+    done = subprocess.run(
+        [sys.executable, "-m", "ruff", *command, "--isolated", "--no-cache", str(written)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert len(list(written.glob("*.py"))) == 49
+
+
+ALONE = """
+import sys
+for name in ("sympy", "rigidsym", "scipy", "jinja2"):
+    sys.modules[name] = None
+sys.path.insert(0, sys.argv[1])
+import euler_zxz_intrinsic as kernels
+import pickle
+value = kernels.angular_velocity_body([0.1, 0.2, 0.3], [[1, 2, 3]])
+assert value.shape == (1, 3)
+assert pickle.loads(pickle.dumps(kernels.rotation_matrix)) is kernels.rotation_matrix
+third_party = {name.partition(".")[0] for name in sys.modules} - set(sys.stdlib_module_names)
+print(sorted(n for n in third_party if sys.modules[n] and getattr(sys.modules[n], "__file__", "")))
+"""
+
+
+def test_a_written_module_needs_numpy_alone(written):
+    done = subprocess.run(
+        [sys.executable, "-I", "-c", ALONE, str(written)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "'numpy'" in done.stdout
+    assert "sympy" not in done.stdout
+
+
+GENERATES = """
+import sys
+import rigidsym as rs
+source = rs.derive(rs.EulerAngles("ZXZ")).kernels().source
+assert "def angular_velocity_body(q, q_dot, *, out=None, threads=1):" in source
+assert "numpy" not in sys.modules
+"""
+
+
+def test_generation_does_not_import_numpy():
+    done = subprocess.run(
+        [sys.executable, "-c", GENERATES], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_every_function_is_documented_and_exported(sequence):
+    functions = module(sequence)
+    names = [*QUANTITIES, MARGIN]
+    assert functions.__all__ == sorted([*names, *(f"{name}_scalar" for name in names)])
+    for number, (name, (arguments, shape)) in enumerate(QUANTITIES.items(), start=1):
+        function = getattr(functions, name)
+        assert list(inspect.signature(function).parameters) == [*arguments, "out", "threads"]
+        inputs = ",".join("(3)" for _ in arguments)
+        assert function.signature == f"{inputs}->({','.join(map(str, shape))})"
+        about = inspect.getdoc(function)
+        assert f"Equation ({number}) of the note; " in about
+        (returned,) = (line for line in about.splitlines() if line.startswith("  returns "))
+        assert f"(..., {', '.join(map(str, shape))})" in returned
+        assert " operations: " in about
+        assert "Raises TypeError for a dtype and ValueError for a shape" in about
+        assert ("Divides by" in about) == ("inverse" in name or "rates_from" in name)
+
+
+def test_the_same_text_every_time():
+    fresh = derive(rs.EulerAngles("YZX"))
+    assert generate(fresh).source == generate(derived("YZX")).source
+
+
+def test_names_that_clash_are_kept_apart():
+    for names in (("x0", "out", "np"), ("phi", "sin_phi", "phi_dot"), ("lambda", "q", "sin")):
+        functions = generate(turned_by("clash", *names)).load()
+        q, q_dot = inputs("angular_velocity_body", (4,))
+        for name in ("rotation_matrix", "angular_velocity_body", "angular_acceleration_space"):
+            arrays = [q, q_dot, q_dot][: len(QUANTITIES[name][0])]
+            found = getattr(functions, name)(*arrays)
+            assert_array_equal(found, getattr(module(), name)(*arrays))
+            pole = np.full(3, np.inf)
+            assert np.isnan(getattr(functions, name)(*[pole] * len(arrays))).any()
+    parameters = inspect.signature(functions.rotation_matrix_scalar).parameters
+    assert list(parameters) == ["lambda_", "q", "sin_"]
+
+
+def test_an_angle_named_np_is_no_module():
+    functions = generate(turned_by("clash", "phi", "np", "psi", axes="xyz")).load()
+    (q,) = inputs("inverse_rate_matrix_space", (4,))
+    found = functions.inverse_rate_matrix_space(q)
+    assert_array_equal(found, module("XYZ").inverse_rate_matrix_space(q))
+
+
+def test_text_of_a_person_cannot_leave_the_docstring():
+    functions = generate(turned_by("quotes", "a", "b", "c")).load()
+    assert functions.__doc__.startswith('Turns "by" any \\name """: functions of NumPy arrays.')
+
+
+def test_an_unknown_target_is_named_with_those_there_are():
+    with pytest.raises(KernelError) as caught:
+        generate(derived("ZXZ"), "fortran")
+    assert str(caught.value).startswith("no target 'fortran'; there is numpy")
+    assert caught.value.exit_code == 2
+
+
+def test_a_module_knows_its_name_and_ending():
+    kernels = derived("zyx").kernels(target="numpy")
+    assert isinstance(kernels, KernelModule)
+    assert (kernels.name, kernels.target, kernels.main) == (
+        "euler_zyx_extrinsic",
+        "numpy",
+        "euler_zyx_extrinsic.py",
+    )
+    loaded = kernels.load()
+    assert loaded.__name__ == "euler_zyx_extrinsic"
+    assert loaded.__name__ not in sys.modules
+    assert inspect.getsource(loaded) == kernels.source
+
+
+def test_writing_takes_a_file_or_a_folder(tmp_path):
+    kernels = generate(derived("ZXZ"))
+    assert kernels.write(tmp_path) == tmp_path / "euler_zxz_intrinsic.py"
+    path = kernels.write(str(tmp_path / "mine.py"))
+    assert path.read_text(encoding="utf-8") == kernels.source
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["euler_zxz_intrinsic.py", "mine.py"]
+
+
+def test_kernel_modules_are_data():
+    kernels = generate(derived("ZXZ"))
+    assert pickle.loads(pickle.dumps(kernels)) == kernels

@@ -1,0 +1,342 @@
+"""Kernels at poles, near them and where a singularity is removable, against 50 digits."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from functools import cache
+from itertools import chain
+
+import numpy as np
+import pytest
+import sympy as sp
+from conftest import derived
+from kernel_modules import module
+from numpy.testing import assert_array_equal
+from witness import evaluate, hat, mp
+
+import rigidsym as rs
+from rigidsym.algebra.series import series_of
+from rigidsym.kernels.lowering.lower import MARGIN
+from rigidsym.models.library import PARAMETRISATIONS
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.motion import derive
+
+DTYPES = [np.float64, np.float32]
+INVERSES = [
+    f"{name}_{frame}"
+    for name in ("inverse_rate_matrix", "rates_from_angular_velocity")
+    for frame in ("space", "body")
+]
+OMEGA = (0.7, -1.1, 0.4)
+
+
+@cache
+def kernels(name: str):
+    return derive(rotation_from(name)).kernels().load()
+
+
+def arguments_of(name: str, q, dtype) -> list[np.ndarray]:
+    given = [np.asarray(q, dtype)]
+    return given + ([np.array(OMEGA, dtype)] if name.startswith("rates") else [])
+
+
+def both(functions, name: str, arguments: list[np.ndarray]) -> list[np.ndarray]:
+    """The values of one orientation by arrays and, in double precision, by the twin."""
+    found = [getattr(functions, name)(*(np.stack([a, a]) for a in arguments))[1]]
+    assert found[0].dtype == arguments[0].dtype
+    if arguments[0].dtype == np.float64:
+        twin = getattr(functions, f"{name}_scalar")(*chain(*(a.tolist() for a in arguments)))
+        found.append(np.array(twin))
+    return found
+
+
+def truth(motion: rs.Motion, name: str, arguments: list[np.ndarray]) -> list:
+    vectors = motion.step(name).quantity.inputs
+    symbols = [s for vector in vectors for s in motion.argument(vector).symbols]
+    values = map(mp.mpf, chain(*(a.tolist() for a in arguments)))
+    return list(evaluate(motion.step(name).expression, dict(zip(symbols, values, strict=True))))
+
+
+def poles(sequence: str, dtype) -> list[float]:
+    """Middle angles that round to a pole, computed in several ways."""
+    is_proper = sequence[0] == sequence[2]
+    turns = (0, 1, -1, 2, 7) if is_proper else (0.5, -0.5, 1.5, 2.5, -3.5)
+    return [dtype(turn) * dtype(np.pi) for turn in turns]
+
+
+def divides(entry: sp.Expr) -> bool:
+    return bool(entry.atoms(sp.tan, sp.cot)) or sp.denom(sp.together(entry)).has(sp.sin, sp.cos)
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+@pytest.mark.parametrize("name", INVERSES)
+def test_at_a_pole_what_is_divided_is_nan_and_nothing_else(sequence, name, dtype):
+    expected = np.array([divides(entry) for entry in derived(sequence).step(name).expression])
+    for pole in poles(sequence, dtype):
+        for found in both(module(sequence), name, arguments_of(name, [0.3, pole, -0.7], dtype)):
+            assert_array_equal(np.isnan(found.ravel()), expected)
+            assert np.isfinite(found.ravel()[~expected]).all()
+
+
+DISTANCES = [sign * 10.0**-power for power in range(1, 16) for sign in (1, -1)]
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+@pytest.mark.parametrize("name", INVERSES)
+@pytest.mark.parametrize("sequence", ["ZXZ", "ZYX", "xyz", "yzy"])
+def test_near_a_pole_the_error_is_a_few_eps_or_the_result_is_nan(sequence, name, dtype):
+    """NaN exactly where the sine or cosine is within eps times the angle."""
+    eps = float(np.finfo(dtype).eps)
+    motion = derived(sequence)
+    divisor = mp.sin if sequence[0] == sequence[2] else mp.cos
+    for pole in poles(sequence, dtype)[:3]:
+        for distance in DISTANCES:
+            middle = dtype(pole + distance)
+            arguments = arguments_of(name, [0.3, middle, -0.7], dtype)
+            near = abs(divisor(mp.mpf(float(middle)))) / abs(mp.mpf(float(middle)))
+            for found in both(module(sequence), name, arguments):
+                if abs(near / eps - 1) > 1e-6:
+                    assert np.isnan(found).any() == (near <= eps)
+                if near > eps:
+                    exact = truth(motion, name, arguments)
+                    assert worst(found, exact) <= 8 * eps, (middle, worst(found, exact) / eps)
+
+
+def worst(found: np.ndarray, exact: list, scale=None) -> float:
+    """The largest error over the largest entry, or over a given scale."""
+    scale = max(map(abs, exact)) if scale is None else scale
+    pairs = zip(found.ravel().tolist(), exact, strict=True)
+    return float(max(abs(mp.mpf(value) - true) for value, true in pairs) / scale)
+
+
+def test_a_tiny_sine_is_told_from_zero():
+    """sin θ = θ has all its digits, however small θ is."""
+    for found in both(module("ZXZ"), INVERSES[0], arguments_of(INVERSES[0], [0, 1e-200, 0], float)):
+        assert found[1].tolist() == [1, 0, 0]
+        assert found[2, 1] == pytest.approx(-1e200, rel=1e-15)
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+def test_the_margin_is_the_size_of_the_determinant(sequence, dtype):
+    eps = float(np.finfo(dtype).eps)
+    angles = [*poles(sequence, dtype), *np.linspace(-7, 7, 15).astype(dtype)]
+    for middle in angles:
+        arguments = [np.array([0.3, middle, -0.7], dtype)]
+        matrix = truth(derived(sequence), "rate_matrix_space", arguments)
+        exact = abs(mp.det(square(matrix)))
+        for found in both(module(sequence), MARGIN, arguments):
+            assert found.shape == ()
+            assert abs(mp.mpf(float(found)) - exact) <= 3 * eps * exact
+            assert 0 <= found <= 1
+
+
+def square(entries: list):
+    return mp.matrix([entries[:3], entries[3:6], entries[6:]])
+
+
+def test_the_margin_is_one_far_away_and_small_at_a_pole():
+    assert module("ZYX").singularity_margin([0.1, 0.0, 0.2]) == 1
+    assert module("ZYX").singularity_margin([0.1, np.pi / 2, 0.2]) < 1e-16
+    margins = kernels("rotation_vector").singularity_margin
+    assert margins([0.0, 0.0, 0.0]) == 1
+    assert margins([0.0, 2 * np.pi, 0.0]) < 1e-30
+    assert margins(np.zeros((2, 5, 3))).shape == (2, 5)
+    skew = derive(rotation_from("z(phi) x(theta) [1,1,0](psi)")).kernels().load()
+    assert skew.singularity_margin([0.1, 0.0, 0.2]) == pytest.approx(np.sqrt(0.5))
+
+
+@pytest.mark.parametrize("name", ["gibbs_vector", "modified_rodrigues"])
+def test_no_margin_where_the_rates_never_fail(name):
+    found = derive(rotation_from(name)).singularities
+    assert found.is_solved
+    assert not found.points
+    assert not hasattr(kernels(name), "singularity_margin")
+
+
+def test_no_margin_beside_quantities_without_rates():
+    chosen = derived("ZXZ").select(["rotation_matrix"]).kernels().load()
+    assert not hasattr(chosen, "singularity_margin")
+
+
+# The rotation vector: R = exp C(v), W = Σ C(v)^k/(k+1)!, by their series alone.
+
+
+def summed(matrix, shift: int):
+    """Σ M^k/(k + shift)!, to 40 digits."""
+    total, term, k = mp.zeros(matrix.rows), mp.eye(matrix.rows), 0
+    while k < 6 or max(map(abs, term)) > mp.mpf(10) ** -45 * mp.factorial(k + shift):
+        total += term / mp.factorial(k + shift)
+        term, k = term * matrix, k + 1
+    return total
+
+
+def along(first, second):
+    """(f(A), its derivative along B): the blocks of f of the matrix ((A, B), (0, A))."""
+    n = first.rows
+    block = mp.zeros(2 * n)
+    block[:n, :n], block[n:, n:], block[:n, n:] = first, first, second
+    return block
+
+
+def rotation_vector_truth(v, rate, second) -> dict:
+    v, rate, second = (mp.matrix([mp.mpf(x) for x in a.tolist()]) for a in (v, rate, second))
+    both_blocks = along(hat(v), hat(rate))
+    R, W = summed(both_blocks, 0), summed(both_blocks, 1)
+    turned, matrix = R[:3, :3], W[:3, :3]
+    omega, alpha = matrix * rate, matrix * second + W[:3, 3:] * rate
+    found = {
+        "rotation_matrix": turned,
+        "rotation_rate": R[:3, 3:],
+        "rate_matrix_space": matrix,
+        "rate_matrix_body": matrix.T,
+        "angular_velocity_space": omega,
+        "angular_velocity_body": turned.T * omega,
+        "angular_acceleration_space": alpha,
+        "angular_acceleration_body": turned.T * alpha,
+        "inverse_rate_matrix_space": matrix**-1,
+        "inverse_rate_matrix_body": (matrix**-1).T,
+        "rates_from_angular_velocity_space": matrix**-1 * rate,
+        "rates_from_angular_velocity_body": (matrix**-1).T * rate,
+    }
+    return {name: list(value) for name, value in found.items()}
+
+
+def scale_of(name: str, rate, second, norm_of_inverse: float) -> float:
+    """What errors are relative to: the sizes of what is multiplied, of order one where R is."""
+    if "acceleration" in name:
+        return float(np.linalg.norm(rate) ** 2 + np.linalg.norm(second))
+    inverse = norm_of_inverse if name.startswith(("inverse", "rates")) else 1.0
+    return inverse * (1.0 if "matrix" in name else float(np.linalg.norm(rate)))
+
+
+SWITCHES = [float(series_of(order).switch) ** 0.5 for order in (3, 4, 5)]
+SIDES = [switch * side for switch in SWITCHES for side in (1 - 1e-6, 1 + 1e-6)]
+LENGTHS = [0, 1e-30, 1e-8, 1e-4, 1e-2, 0.1, 1, *SIDES, np.pi, 5, 6, 6.2, 6.28, 6.29, 9, 20]
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+@pytest.mark.parametrize("length", LENGTHS)
+def test_the_rotation_vector_is_accurate_at_every_length(length, dtype):
+    """Within 4 eps up to one radian; from there the rounding of n counts as eps n."""
+    functions, eps = kernels("rotation_vector"), float(np.finfo(dtype).eps)
+    random = np.random.default_rng(int(1000 * length))
+    for axis in (random.normal(size=3), np.array([0, 1.0, 0])):
+        v = (length * axis / np.linalg.norm(axis)).astype(dtype)
+        rate, second = random.normal(size=(2, 3)).astype(dtype)
+        exact = rotation_vector_truth(v, rate, second)
+        norm = float(max(map(abs, exact["inverse_rate_matrix_space"])))
+        for name, true in exact.items():
+            given = [v] if "matrix" in name else [v, rate]
+            given += [second] if "acceleration" in name else []
+            spread = max(1, length)
+            if name.startswith(("inverse", "rates")) and length > 1:
+                spread = length / abs(np.sin(length / 2))
+            for found in both(functions, name, given):
+                error = worst(found, true, scale_of(name, rate, second, norm))
+                assert error <= 4 * eps * spread, (name, error / eps, spread)
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+@pytest.mark.parametrize("turns", [1, 2, 3])
+def test_at_whole_turns_the_rates_of_the_rotation_vector_are_nan(turns, dtype):
+    length = 2 * np.pi * turns
+    for axis in ([0, 0, 1.0], [0.6, -0.8, 0], [2 / 3, 1 / 3, -2 / 3]):
+        v = (length * np.array(axis)).astype(dtype)
+        for name in INVERSES:
+            for found in both(kernels("rotation_vector"), name, arguments_of(name, v, dtype)):
+                assert np.isnan(found).any()
+    near = v * dtype(1 + 1e-3)
+    for name in INVERSES:
+        for found in both(kernels("rotation_vector"), name, arguments_of(name, near, dtype)):
+            assert np.isfinite(found).all()
+
+
+def test_whole_turns_are_said_in_words():
+    motion = derive(rotation_from("rotation_vector"))
+    found = motion.singularities
+    (point,) = found.points
+    assert found.is_solved
+    (place,) = point.places
+    assert (place.coordinate, place.value, point.rank) == (found.length, 2 * sp.pi, 1)
+    assert list(point.reached) == list(motion.model.coordinates)
+    text = " ".join(motion.note().latex().split())
+    assert "$n = 2 \\pi k$ with $k = 1, 2, \\ldots$, and nowhere else; at $n = 0$" in text
+    assert "rates turn the body about ($v_{1}$, $v_{2}$, $v_{3}$) alone." in text
+    values = dict(zip(motion.model.coordinates, (0, 0, 2 * mp.pi), strict=True))
+    at = evaluate(motion.rate_matrix_space, values)
+    assert max(map(abs, at - mp.diag([0, 0, 1]))) < mp.mpf(10) ** -40
+
+
+# Other divisors.
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+def test_the_axis_is_undetermined_without_a_turn(dtype):
+    functions = kernels("axis_angle")
+    for angle in (0.0, 2 * np.pi, -2 * np.pi, 4 * np.pi):
+        for name in INVERSES:
+            q = [0.6, 0.0, 0.8, angle]
+            for found in both(functions, name, arguments_of(name, q, dtype)):
+                assert np.isnan(found).any()
+                assert np.isfinite(found[3]).all()  # the rate of the angle is Ω along the axis
+
+
+@pytest.mark.parametrize("angle", [1e-12, 1e-6, 1e-3, 0.1, 1.0, 3.0, 6.2, 6.283])
+def test_the_rates_of_axis_and_angle_keep_their_digits(angle):
+    """½ cot(φ/2) has them where sin φ/(1 − cos φ) loses them."""
+    functions, motion = kernels("axis_angle"), derive(rotation_from("axis_angle"))
+    for name in INVERSES:
+        given = arguments_of(name, [0.6, 0.0, 0.8, angle], float)
+        for found in both(functions, name, given):
+            assert worst(found, truth(motion, name, given)) <= 8 * 2.0**-52
+
+
+@pytest.mark.parametrize(
+    ("dtype", "size"),
+    [(np.float64, size) for size in (0.0, 1e-200, 1e-160, 1e-150)]
+    + [(np.float32, size) for size in (0.0, 1e-30, 1e-21, 1e-17)],
+)
+def test_a_quaternion_that_is_zero_or_underflows_is_no_rotation(dtype, size):
+    q = (size * np.array([0.5, 0.5, -0.5, 0.5])).astype(dtype)
+    for found in both(kernels("quaternion"), "rotation_matrix", [q]):
+        assert np.isnan(found).all()
+
+
+@pytest.mark.parametrize("size", [1e-140, 1e-3, 1.0, 1e140])
+def test_a_quaternion_of_any_other_size_is_one(size):
+    q = size * np.array([0.5, 0.5, -0.5, 0.5])
+    for found in both(kernels("quaternion"), "rotation_matrix", [q]):
+        assert np.abs(found @ found.T - np.eye(3)).max() <= 4 * 2.0**-52
+
+
+def test_a_gimbal_that_locks_gives_nan():
+    """Four turns: at ψ = π/2 and θ = 0 three of the axes lie in a plane with the fourth."""
+    functions = kernels("z(phi) x(theta) z(psi) y(delta)")
+    for name in INVERSES:
+        for found in both(functions, name, arguments_of(name, [0.2, 0, np.pi / 2, 0.4], float)):
+            assert np.isnan(found).any()
+        for found in both(functions, name, arguments_of(name, [0.2, 0.1, 1.0, 0.4], float)):
+            assert np.isfinite(found).all()
+
+
+def test_ruff_would_leave_the_modules_as_they_are(tmp_path):
+    chains = ("z(phi) x(theta) z(psi) y(delta)", "z(phi) x(theta) [0,3,4](psi)", "z(2*phi)")
+    for place, name in enumerate((*PARAMETRISATIONS, *chains)):
+        derive(rotation_from(name)).kernels().write(tmp_path / f"module_{place}.py")
+    for command in (("format", "--check"), ("check",)):
+        done = subprocess.run(
+            [sys.executable, "-m", "ruff", *command, "--isolated", "--no-cache", str(tmp_path)],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_docstrings_say_where_the_poles_are():
+    assert "cos_theta" in module("ZYX").rates_from_angular_velocity_body.__doc__
+    assert "eps times its angle" in " ".join(module("ZYX").__doc__.split())
+    about = " ".join(kernels("rotation_vector").__doc__.split())
+    assert "c3, 11 terms for n² < 3.75, error at most 4 eps on both sides" in about
+    assert "c_k" not in module("ZYX").__doc__

@@ -1,0 +1,288 @@
+"""The C source by itself: what compilers and sanitizers say, what it needs, how it is built."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import platform
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_cli import call
+from witness import mp
+
+import rigidsym as rs
+from rigidsym.errors import CheckError, MissingTool
+from rigidsym.kernels.lowering.sincos import reduction, two_over_pi
+from rigidsym.kernels.targets.c import build as c_build
+from rigidsym.kernels.targets.c.precision import PRECISIONS
+
+REQUIRED = os.environ.get("RIGIDSYM_REQUIRE_COMPILERS") == "1"  # then they fail, not skip
+COMPILERS = [
+    pytest.param(
+        name,
+        marks=pytest.mark.skipif(not (REQUIRED or shutil.which(name)), reason=f"no {name}"),
+    )
+    for name in ("gcc", "clang")
+]
+CPU = Path("/proc/cpuinfo").read_text("utf-8") if Path("/proc/cpuinfo").is_file() else ""
+STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wshadow", "-Wconversion")
+ROTATIONS = ("ZXZ", "rotation_vector", "quaternion")
+NAME = "euler_zxz_intrinsic"
+
+MAIN = """
+#include <stdio.h>
+#include "euler_zxz_intrinsic.h"
+
+#define N 131
+static double q[3 * N], q_dot[3 * N], matrix[9 * N], body[3 * N];
+static float qf[3 * N], matrixf[9 * N];
+
+int main(void)
+{
+    const double sizes[] = {1.0, 1e4, 1e6, 1e15, 1e22, 1e300, 1e-300, 0.0};
+    for (int i = 0; i < N; i++) {
+        for (int k = 0; k < 3; k++) {
+            q[3 * i + k] = (0.37 * i - 20.0 + k) * sizes[i % 8];
+            q_dot[3 * i + k] = 0.1 * i - k;
+            qf[3 * i + k] = (float)((0.37 * i - 20.0 + k) * (i % 8 == 5 ? 1e30 : sizes[i % 8]));
+        }
+    }
+    volatile double zero = 0.0;
+    q[27] = 1.0 / zero;
+    q[32] = zero / zero;
+    for (size_t count = 0; count <= N; count += 1 + count / 3) {
+        euler_zxz_intrinsic_rotation_matrix_array(count, q, 3, 1, matrix, 9, 1);
+        euler_zxz_intrinsic_rotation_matrix_arrayf(count, qf, 3, 1, matrixf, 9, 1);
+        euler_zxz_intrinsic_angular_velocity_body_array(
+            count, q + 3 * (N - 1), -3, 1, q_dot, 0, 1, body, 3, 1);
+        euler_zxz_intrinsic_from_rotation_matrix_array(count, matrix, 9, 1, body, 3, 1);
+        euler_zxz_intrinsic_from_quaternion_array(count, q, 2, 1, body, 3, 1);
+        euler_zxz_intrinsic_from_quaternion_arrayf(count, qf, 2, 1, matrixf, 3, 1);
+    }
+    euler_zxz_intrinsic_rotation_matrix_arrayf(N, qf, 3, 1, matrixf, 9, 1);
+    euler_zxz_intrinsic_rotation_matrix(q + 12, matrix + 36);
+    euler_zxz_intrinsic_rates_from_angular_velocity_space(q, q_dot + 3, body + 3);
+    printf("%.17g %.17g %.9g\\n", matrix[0], matrix[53], (double)matrixf[35]);
+    printf("%.17g %.17g %.17g\\n", q[1], q[16], (double)qf[10]);
+    return 0;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("c")
+    for rotation in ROTATIONS:
+        rs.derive(rotation).kernels("c").write(folder)
+    return folder
+
+
+def run(*command: str, cwd) -> str:
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_compilers_have_nothing_to_say(sources, tmp_path, compiler):
+    for rotation in ROTATIONS:
+        name = rs.derive(rotation, only=["rotation_matrix"]).name
+        run(compiler, *STRICT, "-O1", "-c", f"{name}.c", "-o", f"{compiler}.o", cwd=sources)
+    for rotation in (*ROTATIONS, "direction_cosines", "z(phi) [a,b,c](beta)"):
+        alone = rs.derive(rotation, only=["rotation_matrix"])
+        source = alone.kernels("c", conversions=True).write(tmp_path)
+        run(compiler, *STRICT, "-fsyntax-only", source.name, cwd=tmp_path)
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_names_of_angles_may_be_words_of_c(tmp_path, compiler):
+    names = ("φ", "double", "NAN")
+    motion = rs.derive(rs.EulerAngles("ZXZ", angles=names), only=["rotation_matrix"])
+    source = motion.kernels("c").write(tmp_path)
+    run(compiler, *STRICT, "-fsyntax-only", source.name, cwd=tmp_path)
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+def test_it_needs_nothing_and_keeps_nothing(sources):
+    run("gcc", "-std=c99", "-O2", "-fno-math-errno", "-c", f"{NAME}.c", "-o", "n.o", cwd=sources)
+    symbols = [line.split()[-2:] for line in run("nm", "n.o", cwd=sources).splitlines()]
+    assert {kind for kind, _ in symbols} <= {"T", "t", "r"}  # no data, nothing undefined
+    text = (sources / f"{NAME}.c").read_text(encoding="utf-8")
+    assert not re.search(r"\b(malloc|calloc|alloca|goto|setjmp)\b", text)
+    (tile,) = re.findall(r"TILE = (\d+)", text)
+    header = (sources / f"{NAME}.h").read_text(encoding="utf-8").replace("\n * ", " ")
+    assert f"takes room for {tile} orientations" in header
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+@pytest.mark.parametrize("contract", ["off", "fast"])
+def test_sine_and_cosine_keep_two_eps_of_their_size_at_any_angle(sources, contract):
+    made = sources / f"{contract}.so"
+    flags = ("-std=c99", "-O2", "-fPIC", "-shared", f"-ffp-contract={contract}", "-march=native")
+    run("gcc", *flags, f"{NAME}.c", "-o", str(made), "-lm", cwd=sources)
+    library = ctypes.CDLL(str(made))
+    random = np.random.default_rng(2)
+    for dtype, suffix, most in ((np.float64, "", 300), (np.float32, "f", 37)):
+        angles = np.concatenate(
+            [
+                random.choice([-1.0, 1.0], 150) * 10.0 ** random.uniform(-6, most, 150),
+                np.arange(-40, 40) * np.pi / 2,
+                random.uniform(-1e4, 1e4, 80),
+                random.uniform(-4e6, 4e6, 80),
+            ]
+        ).astype(dtype)
+        q, matrix = np.zeros((len(angles), 3), dtype), np.zeros((len(angles), 9), dtype)
+        q[:, 1] = angles
+        function = getattr(library, f"{NAME}_rotation_matrix{suffix}")
+        for row, out in zip(q, matrix, strict=True):
+            function(ctypes.c_void_p(row.ctypes.data), ctypes.c_void_p(out.ctypes.data))
+        with mp.workdps(400):
+            for angle, row in zip(angles.tolist(), matrix.tolist(), strict=True):
+                for found, truth in ((row[7], mp.sin(angle)), (row[8], mp.cos(angle))):
+                    limit = 2 * float(np.finfo(dtype).eps) * abs(truth)
+                    assert abs(found - truth) <= limit, angle
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_sanitizers_find_nothing_at_any_size(tmp_path, compiler):
+    rs.derive("ZXZ").kernels("c", conversions=True).write(tmp_path)
+    (tmp_path / "main.c").write_text(MAIN, encoding="utf-8")
+    flags = ("-std=c99", "-g", "-O1", "-fsanitize=address,undefined,float-cast-overflow")
+    made = f"main_{compiler}"
+    run(
+        *(compiler, *flags, "-fno-sanitize-recover=all", f"{NAME}.c", "main.c"),
+        *("-o", made, "-lm"),
+        cwd=tmp_path,
+    )
+    values, angles = (
+        [float(x) for x in line.split()]
+        for line in run(str(tmp_path / made), cwd=tmp_path).splitlines()
+    )
+    with mp.workdps(400):
+        assert abs(values[1] - mp.cos(mp.mpf(angles[1]))) < 1e-15
+        assert abs(values[2] - mp.cos(mp.mpf(angles[2]))) < 3e-7
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("shuffled", [True, False])
+def test_rows_stand_where_they_belong(sources, compiler, shuffled):
+    """Any count, from any place in a line of the cache, into rows side by side and apart."""
+    text = (sources / f"{NAME}.c").read_text(encoding="utf-8")
+    assert text.count("#define SHUFFLED\n") == 1
+    name = f"rows_{compiler}_{shuffled}"
+    kept = text if shuffled else text.replace("#define SHUFFLED\n", "")
+    (sources / f"{name}.c").write_text(kept, encoding="utf-8")
+    flags = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off")
+    run(compiler, *flags, f"{name}.c", "-o", f"{name}.so", "-lm", cwd=sources)
+    library = ctypes.CDLL(str(sources / f"{name}.so"))
+    for dtype, suffix in ((np.float64, ""), (np.float32, "f")):
+        one = getattr(library, f"{NAME}_rotation_matrix{suffix}")
+        many = getattr(library, f"{NAME}_rotation_matrix_array{suffix}")
+        q = np.random.default_rng(0).uniform(-3, 3, (120, 3)).astype(dtype)
+        expected = np.zeros((120, 9), dtype)
+        for row, out in zip(q, expected, strict=True):
+            one(ctypes.c_void_p(row.ctypes.data), ctypes.c_void_p(out.ctypes.data))
+        for start in range(9):
+            for count in (0, 1, 31, 32, 33, 64, 95, 111):
+                for width in (9, 11):
+                    found = np.full((count + 1, width), 7.0, dtype)
+                    given, filled = (ctypes.c_void_p(a.ctypes.data) for a in (q[start:], found))
+                    steps = map(ctypes.c_ssize_t, (3, 1))
+                    across = map(ctypes.c_ssize_t, (width, 1))
+                    many(ctypes.c_size_t(count), given, *steps, filled, *across)
+                    assert np.array_equal(found[:count, :9], expected[start : start + count])
+                    assert (found[count:] == 7).all()
+                    assert (found[:, 9:] == 7).all()
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+@pytest.mark.skipif("avx" not in CPU, reason="a processor without AVX")
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_no_loop_leaves_wide_registers_in_use(tmp_path, monkeypatch, compiler):
+    """Where one does, all that was compiled for older processors slows down after it."""
+    monkeypatch.setenv("CC", compiler)
+    rs.derive("ZXZ", only=["rotation_matrix"]).kernels("c").write(tmp_path)
+    c_build.build(tmp_path / f"{NAME}.c")
+    (library,) = tmp_path.glob("*.so")
+    text = run("objdump", "-d", "--no-show-raw-insn", library.name, cwd=tmp_path)
+    loops = [part for part in text.split("\n\n") if "_loop" in part.partition("\n")[0]]
+    assert len(loops) >= 2
+    for loop in loops:
+        assert "vzeroupper" in loop
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+def test_a_portable_module_has_no_instruction_of_this_processor_alone(tmp_path):
+    rs.derive("ZXZ", only=["rotation_matrix"]).kernels("c").write(tmp_path)
+    made = call("build", "--portable", f"{NAME}.c", cwd=tmp_path).stdout.strip()
+    assert made == f"{NAME}_c.py"
+    (library,) = tmp_path.glob("*.so")
+    text = run("objdump", "-d", "--no-show-raw-insn", library.name, cwd=tmp_path)
+    assert "mulpd" in text or platform.machine() != "x86_64"
+    assert not re.search(r"%[yz]mm", text)
+
+
+@pytest.mark.skipif(not shutil.which("cc"), reason="no cc")
+def test_build_takes_a_rotation_and_a_file_and_says_what_is_missing(tmp_path):
+    made = call("build", "quaternion", "--out", ".", cwd=tmp_path).stdout.strip()
+    assert made == "quaternion/quaternion_c.py"
+    code = (
+        "import numpy as np, pickle, quaternion_c as m\n"
+        "assert pickle.loads(pickle.dumps(m.rotation_matrix)) is m.rotation_matrix\n"
+        "print(m.rotation_matrix(np.array([1.0, 0, 0, 0])).tolist())"
+    )
+    folder = tmp_path / "quaternion"
+    assert run(sys.executable, "-c", code, cwd=folder).startswith("[[1.0, 0.0, 0.0], [0.0")
+    (tmp_path / "mine.toml").write_text('[rotation]\nsequence = "z(phi)"\n')
+    made = call("build", "mine.toml", "--out", ".", cwd=tmp_path).stdout.strip()
+    assert made == "mine/mine_c.py"
+    (folder / "quaternion.h").unlink()
+    wrong = call("build", "quaternion/quaternion.c", cwd=tmp_path, status=2).stderr
+    assert wrong.startswith("rigidsym: quaternion/quaternion.h: not there;")
+    bare = call("build", "quaternion", "--out", ".", cwd=tmp_path, status=4, PATH="/nowhere", CC="")
+    assert "needs a C compiler, cc, gcc, clang, not found here" in bare.stderr
+    assert (folder / "quaternion.h").is_file()
+    checked = call("check", "quaternion", cwd=tmp_path).stdout
+    assert "quaternion/quaternion.c: as derived" in checked
+    assert "quaternion/quaternion_module.c: as derived" in checked
+
+
+def test_a_missing_file_or_compiler_is_named(tmp_path, monkeypatch):
+    with pytest.raises(CheckError, match=r"none\.h"):
+        c_build.build(tmp_path / "none.c")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+    with pytest.raises(MissingTool, match="apt install gcc"):
+        c_build.compiler()
+
+
+@pytest.mark.parametrize("precision", PRECISIONS, ids=lambda p: p.real)
+def test_the_reduction_and_its_polynomials_keep_their_bounds(precision):
+    found = reduction(precision.digits)
+    with mp.workdps(60):
+        total = sum(mp.mpf(p.numerator) / p.denominator for p in found.parts)
+        assert abs(total - mp.pi / 2) < mp.mpf(2) ** -(3 * found.turns + precision.digits // 2)
+        for part in found.parts[:-1]:
+            assert part.numerator.bit_length() + found.turns <= precision.digits
+        for r in np.linspace(0.01, 0.78, 60):
+            x = mp.mpf(float(r))
+            z = x * x
+            sine, cosine = (
+                sum(mp.mpf(a.numerator) / a.denominator * z**k for k, a in enumerate(terms))
+                for terms in (found.sine, found.cosine)
+            )
+            bound = mp.mpf(found.error.numerator) / found.error.denominator
+            assert abs((x + x * z * sine) / mp.sin(x) - 1) < bound
+            assert abs((1 - z / 2 + z * z * cosine) / mp.cos(x) - 1) < bound
+
+
+def test_two_over_pi_is_right_to_the_last_bit():
+    with mp.workdps(420):
+        value = sum(mp.mpf(2) ** (32 * (1 - k)) * word for k, word in enumerate(two_over_pi()))
+        assert 0 <= 2 / mp.pi - value < mp.mpf(2) ** (-32 * 38)

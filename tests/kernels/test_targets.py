@@ -1,0 +1,269 @@
+"""One list of rotations and one set of laws for every target that computes on arrays.
+
+A new target is one line of ARRAYS. Values are judged by the derivation's own expressions at 50
+digits, of the very floats that the functions are given.
+"""
+
+from __future__ import annotations
+
+import pickle
+import sys
+from functools import cache
+from types import ModuleType
+
+import numpy as np
+import pytest
+from witness import evaluate, mp
+
+import rigidsym as rs
+from rigidsym.commands.list import inventory
+from rigidsym.errors import MissingExtra, RigidsymError
+from rigidsym.kernels.targets import TARGETS
+
+ARRAYS = ("numpy", "c", "numba")
+PRESENT = [
+    pytest.param(
+        name,
+        marks=pytest.mark.skipif(bool(TARGETS[name].missing), reason=TARGETS[name].missing),
+    )
+    for name in ARRAYS
+]
+ROTATIONS = {  # and some quantities of each
+    "ZXZ": (  # angles, and divisors that vanish
+        "rotation_matrix",
+        "angular_velocity_space",
+        "angular_velocity_body",
+        "inverse_rate_matrix_space",
+        "rates_from_angular_velocity_body",
+    ),
+    "rotation_vector": ("rotation_matrix", "angular_acceleration_body", "inverse_rate_matrix_body"),
+    "quaternion": ("angular_velocity_space", "rates_from_angular_velocity_body"),
+    "z(phi) [1,2,2](theta) x(psi0)": ("rotation_matrix", "angular_velocity_body"),
+}
+EPS = {np.float64: 2.0**-52, np.float32: 2.0**-23}
+MOST = 16  # eps of the largest entry, for rates and matrices of points that are no poles
+KINEMATICS = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
+FOUR = 4  # eps of the largest entry, for those
+
+LEADING = ((), (0,), (1,), (63,), (64,), (65,), (2, 0, 3), (3, 70))
+
+
+@cache
+def motion(rotation: str) -> rs.Motion:
+    return rs.derive(rotation, only=ROTATIONS[rotation])
+
+
+@cache
+def module(rotation: str, target: str) -> ModuleType:
+    return motion(rotation).kernels(target).load()
+
+
+def names(rotation: str) -> list[str]:
+    return [step.quantity.name for step in motion(rotation).steps]
+
+
+def given(rotation: str, name: str, leading, dtype=np.float64, seed: int = 1, size: float = 3.0):
+    random = np.random.default_rng(seed)
+    step = motion(rotation).step(name)
+    return [
+        random.uniform(-size, size, (*leading, len(motion(rotation).argument(n).names))).astype(
+            dtype
+        )
+        for n in step.quantity.inputs
+    ]
+
+
+def exact(rotation: str, name: str, point) -> np.ndarray:
+    """The expression at 50 digits of one orientation, as mpmath's numbers."""
+    step = motion(rotation).step(name)
+    symbols = [s for n in step.quantity.inputs for s in motion(rotation).argument(n).symbols]
+    flat = [mp.mpf(float(x)) for vector in point for x in vector]
+    values = evaluate(step.expression, dict(zip(symbols, flat, strict=True)))
+    return np.array(list(values), dtype=object)
+
+
+def error(rotation: str, target: str, name: str, arrays) -> float:
+    """The largest error of a batch, in eps of the largest entry of each orientation."""
+    found = getattr(module(rotation, target), name)(*arrays)
+    worst = 0.0
+    for k, row in enumerate(found.reshape(len(found), -1)):
+        truth = exact(rotation, name, [array[k] for array in arrays])
+        size = max(map(abs, truth))
+        off = max(abs(mp.mpf(float(a)) - b) for a, b in zip(row, truth, strict=True))
+        worst = max(worst, float(off / size) if size else float(off))
+    return worst / EPS[found.dtype.type]
+
+
+@pytest.mark.parametrize("dtype", EPS, ids=["double", "float"])
+@pytest.mark.parametrize("target", PRESENT)
+@pytest.mark.parametrize("rotation", ROTATIONS)
+def test_functions_agree_with_their_expressions_at_50_digits(rotation, target, dtype):
+    for name in names(rotation):
+        found = error(rotation, target, name, given(rotation, name, (4,), dtype))
+        assert found <= MOST, (name, found)
+
+
+@pytest.mark.parametrize("dtype", EPS, ids=["double", "float"])
+@pytest.mark.parametrize("target", PRESENT)
+def test_kinematics_keep_four_eps_up_to_ten_thousand_radians(target, dtype):
+    for name in KINEMATICS:
+        arrays = given("ZXZ", name, (40,), dtype, size=1e4)
+        assert error("ZXZ", target, name, arrays) <= FOUR, name
+
+
+@pytest.mark.parametrize("size", [1e6, 1e15, 1e22, 1e300])
+@pytest.mark.parametrize("target", PRESENT)
+def test_large_angles_are_right(target, size):
+    arrays = given("ZXZ", "rotation_matrix", (20,), size=size)
+    with mp.workdps(400):
+        assert error("ZXZ", target, "rotation_matrix", arrays) <= FOUR
+
+
+@pytest.mark.parametrize("dtype", EPS, ids=["double", "float"])
+@pytest.mark.parametrize("target", PRESENT)
+def test_nan_and_infinity_give_nan_and_disturb_no_neighbour(target, dtype):
+    turned = module("ZXZ", target).rotation_matrix
+    (q,) = given("ZXZ", "rotation_matrix", (130,), dtype)
+    clean = turned(q)
+    q[3, 1], q[70, 1], q[129, 1] = np.nan, np.inf, -np.inf
+    wrong = [3, 70, 129]
+    found = turned(q)
+    assert np.isnan(found[wrong][:, 2, 2]).all()
+    assert np.array_equal(np.delete(found, wrong, 0), np.delete(clean, wrong, 0))
+
+
+@pytest.mark.parametrize("leading", LEADING, ids=str)
+@pytest.mark.parametrize("target", PRESENT)
+@pytest.mark.parametrize("rotation", ["ZXZ", "rotation_vector"])
+def test_a_batch_is_its_orientations_one_by_one(rotation, target, leading):
+    for name in names(rotation):
+        function = getattr(module(rotation, target), name)
+        arrays = given(rotation, name, leading)
+        found = function(*arrays)
+        assert found.shape == (*leading, *_shape(rotation, name))
+        for place in np.ndindex(leading):
+            single = function(*(array[place] for array in arrays))
+            largest = np.abs(found).max()  # a sum may cancel in one orientation
+            assert np.abs(found[place] - single).max() <= MOST * 2.0**-52 * largest, name
+
+
+def _shape(rotation, name):
+    return motion(rotation).step(name).shape
+
+
+@pytest.mark.parametrize("dtype", EPS, ids=["double", "float"])
+@pytest.mark.parametrize("target", PRESENT)
+def test_any_strides_broadcasts_and_byte_orders_give_the_same(target, dtype):
+    body = module("ZXZ", target).angular_velocity_body
+    q, q_dot = given("ZXZ", "angular_velocity_body", (200,), dtype)
+    expected = body(q, q_dot)
+    wide = np.empty((400, 5), dtype)
+    wide[::2, 1:4] = q
+    swapped = q.astype(q.dtype.newbyteorder())
+    assert np.array_equal(body(wide[::2, 1:4], q_dot), expected)
+    assert np.array_equal(body(np.asfortranarray(q), q_dot), expected)
+    assert np.array_equal(body(q[::-1], q_dot[::-1]), expected[::-1])
+    q.flags.writeable = False
+    assert np.array_equal(body(q, q_dot), expected)
+    one = body(q[:, np.newaxis], q_dot[np.newaxis])
+    for k in (0, 77, 199):
+        assert np.allclose(one[k, k], expected[k], rtol=0, atol=MOST * EPS[dtype] * 10)
+    assert np.array_equal(body(swapped, q_dot), expected)
+
+
+@pytest.mark.parametrize("target", PRESENT)
+def test_out_is_filled_wherever_it_lies(target):
+    loaded = module("ZXZ", target)
+    q, q_dot = given("ZXZ", "angular_velocity_body", (150,))
+    velocity, matrix = loaded.angular_velocity_body(q, q_dot), loaded.rotation_matrix(q)
+    wide = np.zeros((300, 7))
+    found = loaded.angular_velocity_body(q, q_dot, out=wide[::2, 1:6:2])
+    assert np.array_equal(found, velocity)
+    assert not wide[1::2].any()
+    turned = np.zeros((3, 3, 150)).transpose(2, 1, 0)
+    assert loaded.rotation_matrix(q, out=turned) is turned
+    assert np.array_equal(turned, matrix)
+    inside = q.copy()
+    assert np.array_equal(loaded.angular_velocity_body(inside, q_dot, out=inside), velocity)
+    shifted = np.concatenate([q, np.zeros((1, 3))])
+    assert np.array_equal(
+        loaded.angular_velocity_body(shifted[:-1], q_dot, out=shifted[1:]), velocity
+    )
+
+
+@pytest.mark.parametrize("target", PRESENT)
+def test_threads_change_nothing(target):
+    loaded = module("ZXZ", target)
+    for leading in ((1000,), (2, 501), (1, 1)):
+        for name in ("rotation_matrix", "angular_velocity_body"):
+            arrays = given("ZXZ", name, leading)
+            function = getattr(loaded, name)
+            assert np.array_equal(function(*arrays, threads=3), function(*arrays))
+
+
+@pytest.mark.parametrize("target", PRESENT)
+def test_what_cannot_be_taken_is_refused_by_name(target):
+    loaded = module("ZXZ", target)
+    with pytest.raises(TypeError, match=r"^q: got dtype complex128"):
+        loaded.rotation_matrix(np.zeros(3, complex))
+    with pytest.raises(ValueError, match=r"^q: got shape \(4,\); expected \(\.\.\., 3\)"):
+        loaded.rotation_matrix(np.zeros(4))
+    with pytest.raises(TypeError, match=r"^out: got dtype float32"):
+        loaded.rotation_matrix(np.zeros(3), out=np.zeros((3, 3), np.float32))
+
+
+@pytest.mark.parametrize("target", PRESENT)
+def test_scalar_twins_agree_with_arrays(target):
+    for rotation in ROTATIONS:
+        loaded = module(rotation, target)
+        for name in names(rotation):
+            arrays = given(rotation, name, ())
+            scalar = getattr(loaded, f"{name}_scalar")(*np.concatenate(arrays).tolist())
+            batch = getattr(loaded, name)(*(array[np.newaxis] for array in arrays))[0]
+            assert (
+                np.abs(np.array(scalar) - batch).max()
+                <= MOST * EPS[np.float64] * np.abs(batch).max()
+            ), name
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_what_is_written_is_data_with_names_of_its_own(target, tmp_path):
+    kernels = motion("ZXZ").kernels(target)
+    assert pickle.loads(pickle.dumps(kernels)) == kernels
+    path = kernels.write(tmp_path)
+    assert path.read_text(encoding="utf-8") == kernels.source
+    assert sorted(file.name for file in tmp_path.iterdir()) == sorted(kernels.files)
+    others = {name for other in TARGETS if other != target for name in _files(other)}
+    assert others.isdisjoint(kernels.files)
+
+
+def _files(target):
+    return motion("ZXZ").kernels(target).files
+
+
+@pytest.mark.parametrize(
+    ("target", "hidden"),
+    [("c", None), ("javascript", None), ("jax", "jax.numpy"), ("numba", "numba")],
+)
+def test_without_its_tools_a_target_is_written_and_loading_ends_in_code_4(
+    target, hidden, monkeypatch
+):
+    monkeypatch.setenv("PATH", "/nowhere")
+    monkeypatch.delenv("CC", raising=False)
+    if hidden is not None:
+        monkeypatch.setitem(sys.modules, hidden, None)
+    monkeypatch.setattr("rigidsym.kernels.targets.find_spec", lambda _: None)
+    kernels = motion("ZXZ").kernels(target)
+    with pytest.raises(RigidsymError) as raised:
+        kernels.load()
+    assert raised.value.exit_code == 4
+    assert TARGETS[target].missing
+    assert f"{TARGETS[target].missing} is missing here" in inventory()
+
+
+def test_a_missing_package_is_named_with_its_extra(monkeypatch):
+    monkeypatch.setattr("rigidsym.kernels.targets.find_spec", lambda _: None)
+    kernels = motion("ZXZ").kernels("numba")  # written all the same
+    with pytest.raises(MissingExtra, match=r"pip install 'rigidsym\[numba\]'"):
+        kernels.load()
+    assert TARGETS["numba"].missing == "the package numba"

@@ -1,0 +1,165 @@
+"""The formulas of the lecture, typed from its page, are the formulas of the derivation.
+
+Compared by ==, which in SymPy is equality of the form and not only of the value.
+"""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+from sympy import cos, sin
+from sympy.physics.vector import dynamicsymbols
+from witness import agree, evaluate, paths, values_along
+
+from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.models.so3 import elementary, hat
+
+phi, theta, psi = dynamicsymbols("phi theta psi")
+phi_dot, theta_dot, psi_dot = dynamicsymbols("phi theta psi", 1)
+
+R_PRINTED = sp.ImmutableMatrix(
+    [
+        [
+            cos(phi) * cos(psi) - sin(phi) * sin(psi) * cos(theta),
+            -cos(phi) * sin(psi) - sin(phi) * cos(psi) * cos(theta),
+            sin(phi) * sin(theta),
+        ],
+        [
+            sin(phi) * cos(psi) + cos(phi) * sin(psi) * cos(theta),
+            cos(phi) * cos(psi) * cos(theta) - sin(phi) * sin(psi),
+            -cos(phi) * sin(theta),
+        ],
+        [sin(psi) * sin(theta), cos(psi) * sin(theta), cos(theta)],
+    ]
+)
+SPIN_PRINTED = sp.ImmutableMatrix(
+    [
+        [
+            0,
+            -phi_dot - psi_dot * cos(theta),
+            sin(phi) * theta_dot - psi_dot * cos(phi) * sin(theta),
+        ],
+        [
+            phi_dot + psi_dot * cos(theta),
+            0,
+            -psi_dot * sin(phi) * sin(theta) - cos(phi) * theta_dot,
+        ],
+        [
+            psi_dot * cos(phi) * sin(theta) - sin(phi) * theta_dot,
+            psi_dot * sin(phi) * sin(theta) + cos(phi) * theta_dot,
+            0,
+        ],
+    ]
+)
+OMEGA_PRINTED = sp.ImmutableMatrix(
+    [
+        psi_dot * sin(phi) * sin(theta) + cos(phi) * theta_dot,
+        sin(phi) * theta_dot - psi_dot * cos(phi) * sin(theta),
+        phi_dot + psi_dot * cos(theta),
+    ]
+)
+EQUATION_18 = sp.ImmutableMatrix(
+    [
+        phi_dot * sin(psi) * sin(theta) + theta_dot * cos(psi),
+        phi_dot * sin(theta) * cos(psi) - theta_dot * sin(psi),
+        phi_dot * cos(theta) + psi_dot,
+    ]
+)
+
+
+def turn_z(beta: sp.Expr) -> sp.Matrix:
+    """R_z(β) as the lecture prints it below equation 17."""
+    return sp.Matrix([[cos(beta), -sin(beta), 0], [sin(beta), cos(beta), 0], [0, 0, 1]])
+
+
+def turn_x(beta: sp.Expr) -> sp.Matrix:
+    """R_x(β) as the lecture prints it below equation 17."""
+    return sp.Matrix([[1, 0, 0], [0, cos(beta), -sin(beta)], [0, sin(beta), cos(beta)]])
+
+
+MODEL = EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
+MOTION = derive(MODEL)
+
+
+def test_elementary_turns_are_those_printed():
+    beta = sp.Symbol("beta")
+    assert elementary("z", beta) == turn_z(beta)
+    assert elementary("x", beta) == turn_x(beta)
+
+
+def test_skew_operator_is_the_one_printed():
+    u = sp.Matrix(sp.symbols("u1:4"))
+    v = sp.Matrix(sp.symbols("v1:4"))
+    assert hat(u) == sp.Matrix([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]])
+    assert hat(u) * v == u.cross(v)
+
+
+def test_equation_17_is_the_product_as_written():
+    assert MODEL.matrix == turn_z(phi) * turn_x(theta) * turn_z(psi)
+    assert [(turn.axis, turn.angle) for turn in MODEL.turns] == [
+        ("z", phi),
+        ("x", theta),
+        ("z", psi),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("quantity", "printed"),
+    [
+        ("rotation_matrix", R_PRINTED),
+        ("spin_matrix", SPIN_PRINTED),
+        ("angular_velocity_space", OMEGA_PRINTED),
+        ("angular_velocity_body", EQUATION_18),
+    ],
+    ids=["R", "dR/dt R^T", "Omega", "equation 18"],
+)
+def test_derived_term_by_term(quantity, printed):
+    derived = getattr(MOTION, quantity)
+    assert derived.shape == printed.shape
+    for entry, expected in zip(derived, printed, strict=True):
+        assert entry == expected
+
+
+def test_equation_16_joins_what_is_printed():
+    assert hat(OMEGA_PRINTED) == SPIN_PRINTED
+    (path,) = paths(1)
+    values = values_along(MODEL.coordinates, path)
+    turned = evaluate(R_PRINTED, values).T * evaluate(OMEGA_PRINTED, values)
+    assert agree(turned, evaluate(EQUATION_18, values))
+
+
+def test_rate_matrices_are_the_coefficients_of_the_printed_velocities():
+    rates = [phi_dot, theta_dot, psi_dot]
+    assert MOTION.rate_matrix_space == OMEGA_PRINTED.jacobian(rates)
+    assert MOTION.rate_matrix_body == EQUATION_18.jacobian(rates)
+
+
+def test_only_the_sum_of_the_outer_angles_matters_where_theta_vanishes():
+    """The lecture: for θ = 0 all φ and ψ of one sum lead to one orientation."""
+    at_zero, at_pi = MOTION.singularities.points
+    for point, value in ((at_zero, 0), (at_pi, sp.pi)):
+        (place,) = point.places
+        assert (place.coordinate, place.value, point.rank) == (theta, value, 2)
+    assert at_zero.undetermined == sp.Matrix([1, 0, -1])
+    assert at_pi.undetermined == sp.Matrix([1, 0, 1])
+    assert MOTION.singularities.is_solved
+    alpha = sp.Symbol("alpha")
+    level = MOTION.rotation_matrix.subs(theta, 0)
+    assert level.subs(psi, alpha - phi).applyfunc(sp.expand_trig).applyfunc(
+        lambda entry: sp.expand(entry).subs(sin(phi) ** 2, 1 - cos(phi) ** 2).expand()
+    ) == turn_z(alpha)
+
+
+def test_sources_are_the_equations_of_the_lecture():
+    def equation(name):
+        return MOTION.step(name).quantity.source.equation
+
+    assert equation("rotation_matrix") == "17"
+    assert equation("spin_matrix") == "15"
+    assert equation("angular_velocity_body") == "16"
+    assert MODEL.source.equation == "17"
+
+
+def test_digits_and_default_angles_are_the_lecture():
+    assert EulerAngles("313") == MODEL

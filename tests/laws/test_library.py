@@ -1,0 +1,396 @@
+"""Every rotation that can be asked for obeys the laws, against rotations built another way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+from witness import derivative, evaluate, hat, mp, number, paths, rotation, unhat
+
+from rigidsym.errors import ExpressionError, ModelError, QuantityError
+from rigidsym.mechanics.kinematics import derive as kinematics
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.motion import Motion, derive
+from rigidsym.notes.formats.terminal import show
+from rigidsym.spec.derivation_file import DerivationSpec, spec_for
+
+CLOSE = mp.mpf(10) ** -30
+Curve = Callable[[Any], list[Any]]  # coordinates at a time
+Build = Callable[[list[Any]], Any]  # R from coordinates
+
+CONSTANTS = {"alpha0": (2, 7), "a": (2, 7), "b": (3, 7), "c": (6, 7)}  # a unit vector
+IN_A_PLANE = CONSTANTS | {"b": (3, 5), "c": (4, 5)}  # for an axis without a first component
+CHAINS = (
+    "z(phi)",
+    "y(phi) x(theta)",
+    "z(phi) x(theta) z(psi) y(delta)",
+    "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5)",
+    "x(alpha0) z(phi) y(pi/4) x(theta)",
+    "[1,1,0](beta)",
+    "z(phi) [a,b,c](beta) [1,2,2](psi)",
+    "z(2*phi - psi) x(theta) z(psi)",
+    "z(phi) x(phi)",
+    "z(phi/2) x(theta) z(psi/3)",
+    "z(phi) x(theta/2) z(psi)",
+    "z(a) x(b) x(c)",
+)
+
+
+def turned(axis: list[Any], angle: Any) -> Any:
+    """The turn about a unit axis, as the exponential of its matrix."""
+    return mp.expm(angle * hat(axis))
+
+
+def by_quaternion(w: Any, x: Any, y: Any, z: Any) -> Any:
+    """R whose columns are q e q*, by the products i j = k."""
+
+    def times(p, q):
+        return [
+            p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+            p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+            p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
+            p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
+        ]
+
+    size = w * w + x * x + y * y + z * z
+    result = mp.matrix(3, 3)
+    for column in range(3):
+        unit = [0, *(int(column == k) for k in range(3))]
+        image = times(times([w, x, y, z], unit), [w, -x, -y, -z])
+        for row in range(3):
+            result[row, column] = image[row + 1] / size
+    return result
+
+
+def by_cayley(vector: list[Any]) -> Any:
+    """(1 − C)⁻¹ (1 + C): Cayley's transform of the skew matrix of a Gibbs vector."""
+    return mp.inverse(mp.eye(3) - hat(vector)) * (mp.eye(3) + hat(vector))
+
+
+def unitary(q: list[Any]) -> Any:
+    """R from the Cayley-Klein matrix U: the components of U σ·x U*, by traces."""
+    a, b, c, d = q
+    u = mp.matrix([[mp.mpc(a, b), mp.mpc(c, d)], [mp.mpc(-c, d), mp.mpc(a, -b)]])
+    pauli = [
+        mp.matrix([[0, 1], [1, 0]]),
+        mp.matrix([[0, mp.mpc(0, -1)], [mp.mpc(0, 1), 0]]),
+        mp.matrix([[1, 0], [0, -1]]),
+    ]
+    result = mp.matrix(3, 3)
+    for row in range(3):
+        for column in range(3):
+            image = u.H * pauli[column] * u
+            product = pauli[row] * image
+            result[row, column] = mp.re(product[0, 0] + product[1, 1]) / 2
+    return result
+
+
+def normalised(values: list[Any], size: int) -> list[Any]:
+    """The first `size` values made a unit vector, the others as they are."""
+    length = mp.sqrt(sum(value**2 for value in values[:size]))
+    return [value / length for value in values[:size]] + values[size:]
+
+
+def nearly_straight(size: int, start: int = 3) -> Curve:
+    path = paths(1, size=size, seed=start)[0]
+    return lambda t: list(path.at(t))
+
+
+WITNESSES: dict[str, tuple[Curve, Build]] = {
+    "quaternion": (nearly_straight(4), lambda q: by_quaternion(*q)),
+    "unit_quaternion": (
+        lambda t: normalised(nearly_straight(4)(t), 4),
+        lambda q: by_quaternion(*q),
+    ),
+    "axis_angle": (lambda t: normalised(nearly_straight(4)(t), 3), lambda q: turned(q[:3], q[3])),
+    "rotation_vector": (nearly_straight(3), lambda q: mp.expm(hat(q))),
+    "gibbs_vector": (nearly_straight(3), by_cayley),
+    "modified_rodrigues": (nearly_straight(3), lambda q: by_cayley(q) ** 2),
+    "cayley_klein": (lambda t: normalised(nearly_straight(4)(t), 4), unitary),
+    "direction_cosines": (
+        lambda t: list(rotation("ZYX", nearly_straight(3)(t))),
+        lambda q: mp.matrix([q[:3], q[3:6], q[6:]]),
+    ),
+}
+
+
+@cache
+def motion_of(text: str, *, passive: bool = False) -> Motion:
+    return derive(rotation_from(text, passive=passive))
+
+
+def values_on(motion: Motion, curve: Curve) -> dict[sp.Expr, Any]:
+    """Coordinates and rates at t = 0 of a curve, and values of the constants."""
+    values = constants_of(motion)
+    for order in range(3):
+        for place, symbol in enumerate(motion.arguments[order].symbols):
+            values[symbol] = mp.diff(lambda t, k=place: curve(t)[k], 0, order)
+    return values
+
+
+def constants_of(motion: Motion) -> dict[sp.Expr, Any]:
+    chosen = IN_A_PLANE if motion.name.startswith("davenport") else CONSTANTS
+    return {sp.Symbol(name): mp.mpf(p) / q for name, (p, q) in chosen.items()}
+
+
+def agree(first: Any, second: Any) -> bool:
+    return max(abs(entry) for entry in first - second) < CLOSE
+
+
+def chain_witness(motion: Motion) -> Build:
+    """R of a chain: a product of exponentials of its axes."""
+
+    def build(q: list[Any]) -> Any:
+        values = dict(zip(motion.model.coordinates, q, strict=True))
+        values |= constants_of(motion)
+        result = mp.eye(3)
+        for turn in motion.model.turns:
+            axis = [number(sp.sympify(part), values) for part in turn.direction]
+            result = result * turned(axis, number(turn.angle, values))
+        return result
+
+    return build
+
+
+def cases() -> list[Any]:
+    texts = [*PARAMETRISATIONS, *PRESETS, *CHAINS]
+    return [pytest.param(t, p, id=f"{t}{'-passive' * p}") for t in texts for p in (False, True)]
+
+
+@pytest.mark.parametrize(("text", "passive"), cases())
+def test_the_laws_hold_for_every_rotation(text, passive):
+    motion = motion_of(text, passive=passive)
+    assert motion.is_proved
+    size = len(motion.model.coordinates)
+    curve, build = WITNESSES.get(text) or (nearly_straight(size), chain_witness(motion))
+    values = values_on(motion, curve)
+
+    def shown(name: str) -> Any:
+        return evaluate(motion.step(name).expression, values)
+
+    def R(t: Any) -> Any:
+        return build(curve(t))
+
+    rate, second = derivative(R), derivative(R, order=2)
+    still = R(0)
+    omega = unhat(rate * still.T)
+    acceleration = unhat(second * still.T + rate * rate.T)
+    is_shown_transposed = motion.model.passive
+    assert agree(shown("rotation_matrix"), still.T if is_shown_transposed else still)
+    assert agree(shown("rotation_rate"), rate.T if is_shown_transposed else rate)
+    spin = rate.T * still if is_shown_transposed else rate * still.T
+    assert agree(shown("spin_matrix"), spin)
+    assert agree(shown("angular_velocity_space"), omega)
+    assert agree(shown("angular_velocity_body"), still.T * omega)
+    assert agree(shown("angular_acceleration_space"), acceleration)
+    assert agree(shown("angular_acceleration_body"), still.T * acceleration)
+    check_rates(motion, values, omega, still)
+
+
+def check_rates(motion: Motion, values: dict[sp.Expr, Any], omega: Any, still: Any) -> None:
+    """W q̇ = Ω, and the rates that Ω gives, in both frames.
+
+    They give this Ω back, keep R a rotation, and are the smallest that do: the given ones differ
+    from them by what is at right angles.
+    """
+    rates = mp.matrix([values[symbol] for symbol in motion.argument("q_dot").symbols])
+    for frame, vector in (("space", omega), ("body", still.T * omega)):
+        matrix = evaluate(motion.step(f"rate_matrix_{frame}").expression, values)
+        assert agree(matrix * rates, vector)
+        name = f"rates_from_angular_velocity_{frame}"
+        assert hasattr(motion, name) == (motion.singularities.rank == 3)
+        if not hasattr(motion, name):
+            continue
+        given = dict(zip(motion.argument(f"omega_{frame}").symbols, vector, strict=True))
+        found = evaluate(motion.step(name).expression, values | given)
+        assert agree(matrix * found, vector)
+        assert abs((found.T * (rates - found))[0]) < CLOSE
+        moved = dict(zip(motion.argument("q_dot").symbols, found, strict=True))
+        spin = evaluate(motion.spin_matrix, values | moved)
+        assert agree(spin, evaluate(motion.spin_matrix, values))
+
+
+@pytest.mark.parametrize("text", [*PARAMETRISATIONS, *PRESETS, *CHAINS])
+def test_kernels_give_what_the_derivation_says(text):
+    motion = motion_of(text)
+    module = motion.kernels().load()
+    size = len(motion.model.coordinates)
+    curve, _ = WITNESSES.get(text) or (nearly_straight(size), chain_witness(motion))
+    values = values_on(motion, curve)
+    for frame in ("omega_space", "omega_body"):
+        values |= dict(zip(motion.argument(frame).symbols, (mp.mpf(1), -2, 3), strict=True))
+    for step in motion.steps:
+        vectors = [motion.argument(name) for name in step.quantity.inputs]
+        given = [np.array([float(values[s]) for s in vector.symbols]) for vector in vectors]
+        found = getattr(module, step.quantity.name)(*[np.stack([g, g]) for g in given])
+        exact = np.array(evaluate(step.expression, values).tolist(), dtype=float)
+        assert found.shape == (2, *step.shape)
+        np.testing.assert_allclose(found[1].reshape(exact.shape), exact, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("text", PARAMETRISATIONS)
+def test_vectors_are_shown_as_vectors(text):
+    motion = motion_of(text)
+    names = ("angular_velocity_space", "angular_velocity_body")
+    if not motion.model.vector:
+        assert [motion.step(name).vector_form for name in names] == [None, None]
+        return
+    curve, _ = WITNESSES[text]
+    values = values_on(motion, curve)
+    vector = mp.matrix([values[part] for part in motion.model.vector])
+    rate = mp.matrix([values[sp.Derivative(p, sp.Symbol("t"))] for p in motion.model.vector])
+    once = hat(vector) * rate
+    named = {
+        "v": vector,
+        "v̇": rate,
+        "v × v̇": once,
+        "v × (v × v̇)": hat(vector) * once,
+        "(v·v̇) v": (vector.T * rate)[0] * vector,
+    }
+    for name in names:
+        step = motion.step(name)
+        lengths = values | {step.vector_form.length: mp.norm(vector)}
+        total = mp.matrix(3, 1)
+        for term in step.vector_form.terms:
+            total += number(term.coefficient, lengths) * named[term.vector.text]
+        assert agree(total, evaluate(step.expression, values))
+
+
+def test_the_rotation_vector_has_the_form_of_the_textbooks():
+    n = motion_of("rotation_vector").step("angular_velocity_space").vector_form.length
+    terms = motion_of("rotation_vector").step("angular_velocity_space").vector_form.terms
+    assert [term.vector.text for term in terms] == ["v̇", "v × v̇", "v × (v × v̇)"]
+    expected = [1, (1 - sp.cos(n)) / n**2, (n - sp.sin(n)) / n**3]
+    for term, coefficient in zip(terms, expected, strict=True):
+        assert sp.expand(term.coefficient - coefficient) == 0
+
+
+def test_eight_turns_are_proved_turn_by_turn():
+    text = " ".join(f"{axis}(a_{k})" for k, axis in enumerate("zxzyxzyx", start=1))
+    names = ("angular_velocity_space", "angular_velocity_body")
+    motion = kinematics.derive(rotation_from(text), only=names)
+    assert motion.is_proved
+    assert tuple(step.quantity.name for step in motion.steps) == names
+    path = paths(1, size=8)[0]
+    values = values_on(motion, lambda t: list(path.at(t)))
+    build = chain_witness(motion)
+    spin = derivative(lambda t: build(list(path.at(t)))) * build(list(path.at(0))).T
+    assert agree(evaluate(motion.angular_velocity_space, values), unhat(spin))
+
+
+def test_turns_are_no_longer_than_the_sum_that_they_add_up_to():
+    """Each further turn costs: the operations of Ω grow with the number of turns."""
+    counts = []
+    for size in range(1, 7):
+        text = " ".join(f"{'zxzyxz'[k]}(a_{k + 1})" for k in range(size))
+        motion = kinematics.derive(rotation_from(text), only=("angular_velocity_space",))
+        counts.append(sp.count_ops(motion.angular_velocity_space))
+    assert all(first < second for first, second in pairwise(counts))
+    assert counts[2] <= 36
+
+
+@pytest.mark.parametrize("name", ["quaternion", "unit_quaternion"])
+def test_the_scalar_stands_last_on_request(name):
+    first, last = rotation_from(name), rotation_from(name, scalar_last=True)
+    assert last.coordinates == (*first.coordinates[1:], first.coordinates[0])
+    assert last.matrix == first.matrix
+    assert last.name != first.name
+    assert "scalar last" in last.title
+
+
+@pytest.mark.parametrize("text", [*PARAMETRISATIONS, *PRESETS, *CHAINS])
+def test_what_was_asked_for_can_be_asked_for_again(text):
+    spec = spec_for(text, passive=True)
+    assert DerivationSpec.from_data(spec.to_data()) == spec
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("w(phi)", "expected a turn"),
+        ("[0,0,0](phi)", "has no axis"),
+        ("[1,1](phi)", "expected three"),
+        ("[1,1,0,0](phi)", "expected three"),
+        ("z(pi/4)", "does not move"),
+        ("z(phi", "never closed"),
+        ("quaternoin", "did you mean quaternion"),
+        ("goldstien", "did you mean goldstein"),
+        ("z(phi_dot)", "reads as a rate"),
+        ("z(sin(phi)", "never closed"),
+    ],
+)
+def test_a_rotation_that_cannot_be_read_says_why(text, message):
+    with pytest.raises((ModelError, ExpressionError), match=message):
+        rotation_from(text)
+
+
+def test_wrong_options_are_refused():
+    with pytest.raises(ModelError, match="no scalar that could stand last"):
+        rotation_from("ZXZ", scalar_last=True)
+    with pytest.raises(ModelError, match="expected 4 different names"):
+        rotation_from("quaternion", names=["a", "b", "c"])
+    with pytest.raises(QuantityError, match="no quantity speed"):
+        kinematics.derive(rotation_from("ZXZ"), only=("speed",))
+
+
+def test_vectors_are_printed_as_vectors():
+    motion = motion_of("rotation_vector")
+    shown = show(motion, width=120)
+    assert "Ω = v̇ + (1 − cos n)/n² v × v̇ + (n − sin n)/n³ v × (v × v̇)" in shown
+    assert "The vector is v = (v₁, v₂, v₃)." in shown
+    assert "The length |v| is written n, so that n² = v·v and n n\u0307 = v·v\u0307." in shown
+    assert r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})" in motion.note().latex()
+    assert "The vector is" not in show(motion_of("lecture_angles"), width=120)
+
+
+def test_the_conditions_of_a_proof_are_said():
+    motion = motion_of("z(phi) [a,b,c](beta) [1,2,2](psi)")
+    source = " ".join(motion.kernels().source.split())
+    assert "R is a rotation where a**2 + b**2 + c**2 = 1." in source
+    shown = " ".join(show(motion, width=120).split())
+    assert "proved under the condition a² + b² + c² = 1." in shown
+    assert "a^{2} + b^{2} + c^{2} = 1" in motion.note().latex()
+    assert "condition" not in show(motion_of("lecture_angles"), width=120)
+
+
+def test_derive_reads_text_as_the_command_line_does():
+    assert derive("ZXZ").angular_velocity_body == motion_of("ZXZ").angular_velocity_body
+
+
+@pytest.mark.parametrize("model", [3, None, ("Z", "X", "Z")])
+def test_what_is_no_model_is_said_in_one_line(model):
+    with pytest.raises(TypeError, match=r"expected a rotation, such as 'ZXZ' or .*, got "):
+        derive(model)
+
+
+def test_zero_names_a_constant_and_ten_does_not():
+    model = rotation_from("z(a_9) x(alpha0) y(a_10) x(b_0)")
+    assert [symbol.name for symbol in model.constants] == ["alpha0", "b_0"]
+    assert [q.func.__name__ for q in model.coordinates] == ["a_9", "a_10"]
+
+
+def test_a_name_is_a_coordinate_or_a_constant():
+    with pytest.raises(ModelError, match="a is both a coordinate and a constant"):
+        rotation_from("z(a) [a,b,c](beta)")
+    with pytest.raises(ModelError, match="they go with turns"):
+        rotation_from("ZXZ", constants=["k"])
+
+
+def test_a_step_of_many_turns_is_proved_by_itself():
+    motion = kinematics.derive(
+        rotation_from("z(a_1) x(a_2) z(a_3) x(a_4) y(a_5)"), only=("spin_matrix",)
+    )
+    assert "dR/dt·Rᵀ = C(Ω)" in [proof.claim.text for proof in motion.proofs]
+
+
+def test_rates_have_the_unit_of_the_coordinates():
+    assert motion_of("ZXZ").step("rates_from_angular_velocity_body").quantity.unit == "rad/s"
+    assert motion_of("unit_quaternion").step("rates_from_angular_velocity_body").quantity.unit == (
+        "1/s"
+    )

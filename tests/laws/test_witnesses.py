@@ -1,0 +1,179 @@
+"""Three witnesses for all 24 conventions: mpmath, SciPy and sympy.physics.vector.
+
+None of them shares code with the derivation; the expressions are compared in numbers.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.spatial.transform import Rotation
+from sympy.physics.vector import ReferenceFrame, dynamicsymbols, kinematic_equations
+from witness import (
+    CONVENTIONS,
+    Path,
+    agree,
+    derivative,
+    evaluate,
+    mp,
+    paths,
+    rotation,
+    unhat,
+    values_along,
+)
+
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.models.euler_angles import EulerAngles
+
+ANGLES = dynamicsymbols("phi theta psi")
+PATHS = paths(2, seed=2)
+DOUBLE = 8 * np.finfo(float).eps
+
+every_convention = pytest.mark.parametrize("convention", CONVENTIONS)
+
+
+@cache
+def motion(convention: str) -> Derivation:
+    return derive(EulerAngles(convention))
+
+
+def printed(convention: str, quantity: str, path: Path):
+    return evaluate(getattr(motion(convention), quantity), values_along(ANGLES, path))
+
+
+def turning(convention: str, path: Path):
+    """R along a path, as a function of time."""
+    return lambda t: rotation(convention, path.at(t))
+
+
+def velocity(convention: str, path: Path):
+    """Ω in space components, from the numerical derivative of R."""
+    function = turning(convention, path)
+    return unhat(derivative(function) * function(0).T)
+
+
+def acceleration(convention: str, path: Path):
+    """dΩ/dt in space components, from the numerical derivatives of R."""
+    function = turning(convention, path)
+    first, second = derivative(function), derivative(function, 2)
+    return unhat(second * function(0).T + first * first.T)
+
+
+@every_convention
+@pytest.mark.parametrize("path", PATHS, ids=["first", "second"])
+class TestFiftyDigits:
+    def test_rotation_and_its_rate(self, convention, path):
+        function = turning(convention, path)
+        assert agree(printed(convention, "rotation_matrix", path), function(0))
+        assert agree(printed(convention, "rotation_rate", path), derivative(function))
+
+    def test_spin(self, convention, path):
+        function = turning(convention, path)
+        spin = derivative(function) * function(0).T
+        assert agree(printed(convention, "spin_matrix", path), spin)
+
+    def test_angular_velocity(self, convention, path):
+        omega = velocity(convention, path)
+        body = rotation(convention, path.q).T * omega
+        assert agree(printed(convention, "angular_velocity_space", path), omega)
+        assert agree(printed(convention, "angular_velocity_body", path), body)
+
+    def test_rate_matrices_column_by_column(self, convention, path):
+        """A column is the velocity when one rate alone is 1."""
+        for k in range(3):
+            rate = tuple(mp.mpf(int(k == j)) for j in range(3))
+            column = velocity(convention, Path(path.q, rate, (mp.mpf(0),) * 3))
+            body = rotation(convention, path.q).T * column
+            assert agree(printed(convention, "rate_matrix_space", path)[:, k], column)
+            assert agree(printed(convention, "rate_matrix_body", path)[:, k], body)
+
+    def test_angular_acceleration(self, convention, path):
+        alpha = acceleration(convention, path)
+        body = rotation(convention, path.q).T * alpha
+        assert agree(printed(convention, "angular_acceleration_space", path), alpha)
+        assert agree(printed(convention, "angular_acceleration_body", path), body)
+
+
+@every_convention
+def test_scipy_has_the_same_rotation(convention):
+    for path in PATHS:
+        angles = [float(angle) for angle in path.q]
+        theirs = Rotation.from_euler(convention, angles).as_matrix()
+        ours = np.array(printed(convention, "rotation_matrix", path).tolist(), dtype=float)
+        assert np.abs(ours - theirs).max() <= DOUBLE
+
+
+@every_convention
+def test_scipy_turns_as_our_velocity_says(convention):
+    """A small step along the path is the rotation vector Ω h, to the first order in h."""
+    step = 1e-6
+    for path in PATHS:
+        before, after = (
+            Rotation.from_euler(convention, [float(angle) for angle in path.at(sign * step / 2)])
+            for sign in (-1, 1)
+        )
+        theirs = (after * before.inv()).as_rotvec() / step
+        ours = [float(entry) for entry in printed(convention, "angular_velocity_space", path)]
+        assert np.abs(ours - theirs).max() < 1e-8
+
+
+def turned_frames(convention: str) -> tuple[ReferenceFrame, ReferenceFrame]:
+    """A space frame, and a body frame turned by sympy.physics.vector."""
+    space = ReferenceFrame("N")
+    manner = "Body" if convention.isupper() else "Space"
+    return space, space.orientnew("B", manner, ANGLES, convention.upper())
+
+
+@every_convention
+def test_sympy_has_the_same_rotation_and_velocities(convention):
+    space, body = turned_frames(convention)
+    omega = body.ang_vel_in(space)
+    theirs = {
+        "rotation_matrix": space.dcm(body),
+        "angular_velocity_space": omega.to_matrix(space),
+        "angular_velocity_body": omega.to_matrix(body),
+    }
+    for quantity, expression in theirs.items():
+        assert sp.count_ops(getattr(motion(convention), quantity)) <= sp.count_ops(expression)
+        for path in PATHS:
+            values = values_along(ANGLES, path)
+            assert agree(printed(convention, quantity, path), evaluate(expression, values))
+
+
+@every_convention
+def test_sympy_solves_for_the_same_rates(convention):
+    """Its speeds are the body components of the angular velocity."""
+    given = motion(convention).argument("omega_body").symbols
+    manner = "body" if convention.isupper() else "space"
+    digits = convention.lower().translate(str.maketrans("xyz", "123"))
+    equations = kinematic_equations(given, ANGLES, manner, digits)
+    rates = [sp.Derivative(angle, sp.Symbol("t")) for angle in ANGLES]
+    theirs = sp.Matrix([rate - e for rate, e in zip(rates, equations, strict=True)])
+    ours = motion(convention).rates_from_angular_velocity_body
+    for path in PATHS:
+        values = values_along(ANGLES, path)
+        values |= dict(zip(given, path.q_ddot, strict=True))
+        assert agree(evaluate(ours, values), evaluate(theirs, values))
+
+
+def test_coordinates_are_those_of_dynamicsymbols():
+    q = motion("ZXZ").argument("q").symbols
+    q_dot = motion("ZXZ").argument("q_dot").symbols
+    q_ddot = motion("ZXZ").argument("q_ddot").symbols
+    assert list(q) == ANGLES
+    assert list(q_dot) == dynamicsymbols("phi theta psi", 1)
+    assert list(q_ddot) == dynamicsymbols("phi theta psi", 2)
+
+
+def test_a_wrong_convention_is_seen_by_each_witness():
+    """The witnesses tell the conventions apart, so that their agreement says something."""
+    (path,) = paths(1, seed=3)
+    seen = [rotation(convention, path.q) for convention in CONVENTIONS]
+    velocities = [velocity(convention, path) for convention in CONVENTIONS]
+    for some in (seen, velocities):
+        for k, one in enumerate(some):
+            assert not any(agree(one, other) for other in some[:k])

@@ -1,0 +1,325 @@
+"""Where the rates fail, for every rotation: ranks, directions and completeness, by numbers.
+
+The witness builds R and the rate matrix from exponentials of skew matrices and differences.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+from scipy.spatial.transform import Rotation
+from test_library import CHAINS, CONSTANTS, IN_A_PLANE, WITNESSES, motion_of
+from witness import evaluate, mp, number
+
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.motion import derive
+from rigidsym.notes.formats.record import record
+from rigidsym.notes.formats.terminal import show
+
+Array = np.ndarray[Any, Any]
+
+MORE_CHAINS = (
+    "z(phi) y(2*theta/3) x(psi)",
+    "z(phi) x(theta + alpha0) z(psi)",
+    "z(phi) x(theta) [1,2,2](psi)",
+    "z(phi) x(theta) z(theta)",
+    "x(a) z(b + pi/4) x(c) y(d)",
+    "z(a) z(b)",
+)
+TURNS = (*PRESETS, *CHAINS, *MORE_CHAINS)
+EVERY = (*PARAMETRISATIONS, *TURNS)
+UNDECIDED = "z(phi) [a,b,c](beta) [1,2,2](psi)"  # a cosine and a sine by any constants
+
+
+def constants_of(text: str) -> dict[sp.Symbol, Any]:
+    chosen = IN_A_PLANE if text == "davenport" else CONSTANTS
+    return {sp.Symbol(name): mp.mpf(p) / q for name, (p, q) in chosen.items()}
+
+
+@cache
+def turns_of(text: str) -> tuple[tuple[Array, Array, float], ...]:
+    """Axis, the multiples of the coordinates in its angle, and what is added, of each turn."""
+    model, constants = motion_of(text).model, constants_of(text)
+    found = []
+    for turn in model.turns:
+        axis = np.array([float(number(sp.sympify(e), dict(constants))) for e in turn.direction])
+        weights = [float(sp.diff(turn.angle, q)) for q in model.coordinates]
+        rest = turn.angle.xreplace(dict.fromkeys(model.coordinates, sp.S.Zero))
+        found.append((axis, np.array(weights), float(number(rest, dict(constants)))))
+    return tuple(found)
+
+
+def rate_matrix(text: str, q: Array) -> Array:
+    """W of the rates that the constraints allow, one column for each of them."""
+    if text in WITNESSES:
+        return by_differences(text, q)
+    turned, result = Rotation.identity(), np.zeros((3, len(q)))
+    for axis, weights, rest in turns_of(text):
+        result += np.outer(turned.apply(axis), weights)
+        turned = turned * Rotation.from_rotvec(axis * (weights @ q + rest))
+    return result
+
+
+def by_differences(text: str, q: Array) -> Array:
+    """Columns (∂R Rᵀ)∨ along an orthonormal basis of the allowed rates, at 50 digits."""
+    _, build = WITNESSES[text]
+    columns, point, step = [], [mp.mpf(float(x)) for x in q], mp.mpf(10) ** -20
+    here = build(point)
+    for direction in allowed(text, q).T:
+        ahead = build([x + step * float(d) for x, d in zip(point, direction, strict=True)])
+        spin = (ahead - here) * here.T / step
+        columns.append([float(spin[i, j] - spin[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0))])
+    return np.array(columns).T
+
+
+def allowed(text: str, q: Array) -> Array:
+    """An orthonormal basis, in columns, of the rates that keep to the constraints."""
+    if text in ("unit_quaternion", "cayley_klein"):
+        normals = q[None, :]
+    elif text == "axis_angle":
+        normals = np.array([[*q[:3], 0.0]])
+    elif text == "direction_cosines":
+        rows = q.reshape(3, 3)
+        pairs = [(i, j) for i in range(3) for j in range(i, 3)]
+        normals = np.zeros((6, 9))
+        for place, (i, j) in enumerate(pairs):
+            normals[place, 3 * i : 3 * i + 3] += rows[j]
+            normals[place, 3 * j : 3 * j + 3] += rows[i]
+    else:
+        return np.eye(len(q))
+    return np.linalg.svd(normals)[2][len(normals) :].T
+
+
+def rank(matrix: Array) -> int:
+    return int(np.linalg.matrix_rank(matrix, tol=1e-9))
+
+
+def somewhere(text: str, seed: int = 0) -> Array:
+    """Coordinates at random, such as the constraints allow."""
+    random = np.random.default_rng(seed)
+    size = len(motion_of(text).model.coordinates)
+    if text == "direction_cosines":
+        return Rotation.random(rng=random).as_matrix().ravel()
+    q = random.uniform(-2, 2, size)
+    bound = {"unit_quaternion": 4, "cayley_klein": 4, "axis_angle": 3}.get(text, 0)
+    q[:bound] /= np.linalg.norm(q[:bound]) if bound else 1
+    return q
+
+
+def at(text: str, point: Any, k: int = 0, seed: int = 1) -> Array:
+    """Coordinates at a singular point, k periods on, and otherwise anywhere."""
+    q, coordinates = somewhere(text, seed), motion_of(text).model.coordinates
+    for place in point.places:
+        value = float(number(place.value + k * place.period, dict(constants_of(text))))
+        if place.is_length:
+            q *= value / np.linalg.norm(q)
+        else:
+            q[coordinates.index(place.coordinate)] = value
+    return q
+
+
+def numbers(matrix: sp.ImmutableMatrix, text: str, q: Array) -> Array:
+    values = dict(zip(motion_of(text).model.coordinates, map(mp.mpf, q.tolist()), strict=True))
+    return np.array(evaluate(matrix, values | constants_of(text)).tolist(), float)
+
+
+@pytest.mark.parametrize("text", EVERY)
+def test_away_from_the_points_the_rank_is_the_stated_one(text):
+    found = motion_of(text).singularities
+    assert found.is_solved == (text != UNDECIDED)
+    for seed in range(5):
+        assert rank(rate_matrix(text, somewhere(text, seed))) == found.rank
+
+
+@pytest.mark.parametrize("text", EVERY)
+def test_at_the_points_the_rank_and_the_directions_are_the_stated_ones(text):
+    motion = motion_of(text)
+    for k, point in product((0, 1), motion.singularities.points):
+        q = at(text, point, k=k, seed=k)
+        matrix, basis = rate_matrix(text, q), allowed(text, q)
+        assert rank(matrix) == point.rank
+        idle = numbers(point.undetermined, text, q)
+        assert rank(idle) == basis.shape[1] - point.rank
+        np.testing.assert_allclose(basis @ (basis.T @ idle), idle, atol=1e-9)
+        np.testing.assert_allclose(matrix @ basis.T @ idle, 0, atol=1e-9)
+        if point.lost_space is not None:
+            lost = numbers(point.lost_space, text, q)
+            assert np.linalg.norm(lost) > 1e-3
+            np.testing.assert_allclose(lost.T @ matrix, 0, atol=1e-9)
+            R = numbers(motion.rotation_matrix, text, q)
+            turned = R if motion.model.passive else R.T
+            np.testing.assert_allclose(turned @ lost, numbers(point.lost_body, text, q), atol=1e-9)
+        if point.reached is not None:
+            assert point.rank == 1
+            reached = numbers(point.reached, text, q)
+            assert rank(np.hstack([matrix, reached])) == 1
+
+
+EIGHTHS = np.arange(-4, 4) * (np.pi / 4)
+
+
+@pytest.mark.parametrize("text", [text for text in TURNS if text != UNDECIDED])
+def test_on_a_grid_the_rank_falls_at_the_stated_points_alone(text):
+    """Eighths of a turn, through a whole period, of those coordinates that lie inside."""
+    found = motion_of(text).singularities
+    coordinates = motion_of(text).model.coordinates
+    periods = {place.coordinate: place.period for p in found.points for place in p.places}
+    inside = coordinates[1:-1] if len(coordinates) > 3 else coordinates[1:]
+    steps = [EIGHTHS if q not in periods else grid(periods[q]) for q in inside]
+    stated = [at(text, point) for point in found.points if point.places]
+    fixed = [[coordinates.index(place.coordinate) for place in p.places] for p in found.points]
+    for values in product(*steps):
+        q = np.array([0.3, *values, 0.4])[: len(coordinates)]
+        is_stated = any(
+            np.allclose(np.exp(1j * (q - s)[places] * scale(periods, coordinates, places)), 1)
+            for s, places in zip(stated, fixed, strict=False)
+        )
+        assert (rank(rate_matrix(text, q)) < found.rank) == is_stated, q
+
+
+def grid(period: sp.Expr) -> Array:
+    return np.arange(float(period / (sp.pi / 4))) * (np.pi / 4)
+
+
+def scale(periods: dict[sp.Expr, sp.Expr], coordinates: Any, places: list[int]) -> Array:
+    """What makes the period of each coordinate a whole turn."""
+    return np.array([float(2 * sp.pi / periods[coordinates[place]]) for place in places])
+
+
+@pytest.mark.parametrize("length", np.arange(0, 26) * (np.pi / 4))
+def test_the_rotation_vector_fails_at_whole_turns_alone(length):
+    v = length * np.array([2, -1, 2]) / 3
+    is_whole = length > 0 and np.isclose(np.cos(length), 1)
+    assert rank(rate_matrix("rotation_vector", v)) == (1 if is_whole else 3)
+
+
+@pytest.mark.parametrize("angle", np.arange(-12, 13) * (np.pi / 4))
+def test_axis_and_angle_fail_at_whole_turns_alone(angle):
+    q = np.array([2 / 3, -1 / 3, 2 / 3, angle])
+    assert rank(rate_matrix("axis_angle", q)) == (1 if np.isclose(np.cos(angle), 1) else 3)
+
+
+def test_every_model_says_something_true_where_its_rates_are_shown():
+    expected = {
+        "quaternion": "It never vanishes: the rates always follow",
+        "unit_quaternion": "It never vanishes: the rates always follow",
+        "direction_cosines": "follow without any divisor, so that they fail nowhere",
+        "axis_angle": "At φ = 0 the rates of e₁, e₂ and e₃ are not determined: the rank is 1",
+        "y(phi) x(theta)": "the rank is 2 everywhere",
+        "z(a) z(b)": "Everywhere only a + b is determined",
+        "z(phi) x(theta/2) z(psi)": "up to multiples of 4π for θ, and nowhere else",
+        "z(phi) x(theta) z(psi) y(delta)": "where θ is 0 or π and ψ is −π/2 or π/2, up to whole",
+        UNDECIDED: "Where it vanishes was not decided",
+    }
+    for text, words in expected.items():
+        said = show(motion_of(text), width=100)
+        assert "Where the rates fail" in said
+        assert words in " ".join(said.split())
+
+
+@pytest.mark.parametrize("text", ["axis_angle", "y(phi) x(theta)"])
+def test_the_note_says_it_too(text):
+    motion = motion_of(text)
+    note = motion.note()
+    assert r"\section{Where the rates fail}" in note.latex()
+    assert "nowhere else" in note.latex() or "everywhere" in note.latex()
+
+
+def test_only_rates_are_determined_where_idle_rates_lead_away():
+    """Of four turns the point is one of several coordinates, which idle rates leave."""
+    said = " ".join(show(motion_of("z(phi) x(theta) z(psi) y(delta)"), width=100).split())
+    assert "At θ = 0 and ψ = π/2 only φ̇ + ψ̇ and θ̇ − δ̇ are determined" in said
+
+
+def test_the_record_says_where_the_rotation_vector_fails():
+    """At 2π, 4π, ..., but not at 0: a value modulo 2π with a least one."""
+    found = json.loads(json.dumps(record(motion_of("rotation_vector"), {})))["singularities"]
+    (point,) = found["points"]
+    assert point["at"] == [
+        {
+            "coordinate": "sqrt(v1**2 + v2**2 + v3**2)",
+            "value": "2*pi",
+            "modulo": "2*pi",
+            "least": "2*pi",
+        }
+    ]
+    assert point["rank"] == 1
+    assert found["measure"] == "det W"
+    halves = record(motion_of("z(phi) x(theta/2) z(psi)"), {})["singularities"]["points"]
+    assert [point["at"][0]["modulo"] for point in halves] == ["4*pi", "4*pi"]
+    assert [point["at"][0]["least"] for point in halves] == [None, None]
+
+
+# Kernels.
+
+
+def moving(text: str) -> bool:
+    found = motion_of(text).singularities
+    return any(point.places for point in found.points) or not found.is_solved
+
+
+@cache
+def kernels(text: str) -> Any:
+    return motion_of(text).kernels().load()
+
+
+def arguments(text: str, name: str, q: Array, dtype: Any) -> list[Array]:
+    """Coordinates, constants and a given angular velocity, as far as the function takes them."""
+    constants = [float(constants_of(text)[s]) for s in motion_of(text).model.constants]
+    inputs = {"q": q, "parameters": np.array(constants)}
+    wanted = kernels(text).__dict__[name].__code__.co_varnames
+    given = {"omega_space": np.array([0.7, -1.1, 0.4]), "omega_body": np.array([0.7, -1.1, 0.4])}
+    count = kernels(text).__dict__[name].__code__.co_argcount
+    return [np.asarray({**inputs, **given}[word], dtype) for word in wanted[:count]]
+
+
+@pytest.mark.parametrize("text", EVERY)
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_the_margin_is_zero_at_the_points_and_a_volume_elsewhere(text, dtype):
+    """|det W| up to a factor, or the product of the singular values of W; none for nothing."""
+    assert hasattr(kernels(text), "singularity_margin") == moving(text)
+    if not moving(text):
+        return
+    eps = float(np.finfo(dtype).eps)
+    margin = kernels(text).singularity_margin
+    for point in motion_of(text).singularities.points:
+        given = arguments(text, "singularity_margin", at(text, point), dtype)
+        assert 0 <= margin(*given) <= 40 * eps
+    ratios = []
+    for seed in range(4):
+        q = somewhere(text, seed)
+        found = float(margin(*arguments(text, "singularity_margin", q, dtype)))
+        ratios.append(found / np.prod(np.linalg.svd(rate_matrix(text, q))[1]))
+    np.testing.assert_allclose(ratios, ratios[0], rtol=300 * eps)
+
+
+INVERSES = [
+    f"{name}_{frame}"
+    for name in ("inverse_rate_matrix", "rates_from_angular_velocity")
+    for frame in ("space", "body")
+]
+
+
+@pytest.mark.parametrize("text", EVERY)
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_at_the_points_rates_are_nan_and_never_huge(text, dtype):
+    found = motion_of(text).singularities
+    for place, point in enumerate(found.points if found.rank == 3 else ()):
+        q = at(text, point, seed=place)
+        for name in INVERSES:
+            values = getattr(kernels(text), name)(*arguments(text, name, q, dtype))
+            assert np.isnan(values).any(), (q, values)
+            assert np.abs(values[~np.isnan(values)]).max(initial=0) < 100, (q, values)
+
+
+@pytest.mark.parametrize("text", ["z(phi) x(theta) z(psi) y(delta)", "y(phi) x(theta)"])
+def test_rates_of_more_or_fewer_turns_can_be_asked_for_alone(text):
+    alone = derive(rotation_from(text), only=("rate_matrix_body",))
+    assert alone.singularities == motion_of(text).singularities

@@ -1,0 +1,151 @@
+"""The catalogue of rotations, the turns they are made of, and the checks of a model."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+import sympy as sp
+from samples import ONE, TIME, chain, model, phi
+from sympy import pi
+from sympy.physics.vector import dynamicsymbols
+from witness import CONVENTIONS, agree, evaluate, mp, paths, rotation, turn
+
+from rigidsym.errors import ModelError
+from rigidsym.models.chain import axis_turn
+from rigidsym.models.chain import chain as chain_of
+from rigidsym.models.euler_angles import AXIS_SEQUENCES, EULER_SEQUENCES, EulerAngles
+from rigidsym.models.rotation import Turn
+from rigidsym.models.so3 import AXES, elementary, hat, time_function
+
+
+class TestCatalogue:
+    def test_all_conventions(self):
+        assert set(EULER_SEQUENCES) == set(CONVENTIONS)
+        assert len(EULER_SEQUENCES) == len(set(EULER_SEQUENCES)) == 24
+        assert len(AXIS_SEQUENCES) == 12
+
+    @pytest.mark.parametrize("convention", CONVENTIONS)
+    def test_matrix_is_the_product_of_its_turns_and_of_the_textbook(self, convention):
+        built = EulerAngles(convention)
+        assert built.matrix == chain(*((turn.axis, turn.angle) for turn in built.turns))
+        (path,) = paths(1)
+        values = dict(zip(built.coordinates, path.q, strict=True))
+        assert agree(evaluate(built.matrix, values), rotation(convention, path.q))
+
+    @pytest.mark.parametrize("convention", CONVENTIONS)
+    def test_names_are_their_own(self, convention):
+        names = {EulerAngles(c, passive=p).name for c in CONVENTIONS for p in (False, True)}
+        assert len(names) == 48
+        manner = "intrinsic" if convention.isupper() else "extrinsic"
+        assert EulerAngles(convention).name == f"euler_{convention.lower()}_{manner}"
+        assert manner in EulerAngles(convention).title
+        assert manner in EulerAngles(convention).convention[0].lower()
+
+    def test_digits_are_intrinsic(self):
+        assert EulerAngles("321") == EulerAngles("ZYX")
+        assert EulerAngles("313").matrix != EulerAngles("zxz").matrix
+
+    def test_angles_are_taken_in_the_order_of_the_turns(self):
+        for convention in ("ZYX", "zyx"):
+            built = EulerAngles(convention, angles=("yaw", "pitch", "roll"))
+            assert list(built.coordinates) == dynamicsymbols("yaw pitch roll")
+            by_axis = {turn.axis: turn.angle.func.__name__ for turn in built.turns}
+            assert by_axis == {"z": "yaw", "y": "pitch", "x": "roll"}
+
+    @pytest.mark.parametrize(
+        ("sequence", "part"),
+        [
+            ("ZZX", "neighbours must differ"),
+            ("zxx", "neighbours must differ"),
+            ("133", "neighbours must differ"),
+            ("ZxZ", "do not mix"),
+            ("3x3", "'3x3'"),
+            ("ZX", "expected three axes"),
+            ("ZXZX", "expected three axes"),
+            ("ABC", "expected three axes"),
+            ("414", "expected three axes"),
+            ("", "expected three axes"),
+        ],
+    )
+    def test_what_is_no_sequence_is_refused(self, sequence, part):
+        with pytest.raises(ModelError, match="is not an Euler sequence") as caught:
+            EulerAngles(sequence)
+        assert part in str(caught.value)
+
+    @pytest.mark.parametrize(
+        "angles", [("a", "b"), ("a", "b", "b"), ("a", "b", "c", "d"), ("a", "b", "1c"), ()]
+    )
+    def test_what_does_not_name_three_angles_is_refused(self, angles):
+        with pytest.raises(ModelError):
+            EulerAngles("ZXZ", angles=angles)
+
+
+class TestElementary:
+    @pytest.mark.parametrize("axis", AXES)
+    def test_turn_is_the_one_of_the_textbook(self, axis):
+        values = {phi: mp.mpf(7) / 9}
+        assert agree(evaluate(elementary(axis, phi), values), turn(axis, values[phi]))
+
+    @pytest.mark.parametrize(("axis", "others"), [("x", "yz"), ("y", "zx"), ("z", "xy")])
+    def test_a_quarter_turn_is_right_handed(self, axis, others):
+        """About x it takes y to z, and so on around."""
+        unit = {name: ONE[:, k] for k, name in enumerate(AXES)}
+        quarter = elementary(axis, pi / 2)
+        assert quarter * unit[axis] == unit[axis]
+        assert quarter * unit[others[0]] == unit[others[1]]
+        assert quarter * unit[others[1]] == -unit[others[0]]
+
+    def test_hat_is_the_cross_product(self):
+        first, second = sp.Matrix(sp.symbols("a1:4")), sp.Matrix(sp.symbols("b1:4"))
+        assert hat(first) * second == first.cross(second)
+
+    def test_coordinates_mix_with_sympys_own(self):
+        assert time_function("phi") == dynamicsymbols("phi")
+        assert time_function("phi").diff(TIME) == dynamicsymbols("phi", 1)
+
+
+class TestChecks:
+    @pytest.mark.parametrize(
+        ("change", "message"),
+        [
+            ({"name": "Upper"}, "'Upper' cannot name a model"),
+            ({"name": "1st"}, "'1st' cannot name a model"),
+            ({"matrix": sp.ImmutableMatrix(sp.eye(2))}, "a rotation matrix is 3x3, got (2, 2)"),
+            ({"coordinates": ()}, "needs at least one coordinate"),
+            ({"coordinates": (phi, phi)}, "phi(t) is named twice"),
+            ({"coordinates": (sp.Symbol("phi"),)}, "phi is not a function of t"),
+            ({"coordinates": (phi.diff(TIME),)}, "is not a function of t"),
+            ({"units": ("rad", "m")}, "1 coordinates, but 2 units"),
+            ({"turns": (Turn(axis="x", angle=phi),)}, "not the product of its turns, Rx(φ)"),
+            (
+                {"matrix": sp.ImmutableMatrix(sp.GoldenRatio * ONE)},
+                "the number GoldenRatio, of which",
+            ),
+        ],
+        ids=str,
+    )
+    def test_a_constructed_model_is_valid(self, change, message):
+        with pytest.raises(ModelError) as caught:
+            dataclasses.replace(model(chain(("z", phi)), phi), **change)
+        assert message in str(caught.value)
+
+    def test_a_matrix_may_be_the_product_of_its_turns_in_another_form(self):
+        given = chain(("z", phi)).subs(sp.sin(phi), 2 * sp.sin(phi / 2) * sp.cos(phi / 2))
+        turns = (Turn(axis="z", angle=phi),)
+        assert dataclasses.replace(model(given, phi), turns=turns).product == "Rz(φ)"
+
+    def test_roots_of_roots_are_a_unit_axis_where_they_are_one(self):
+        root = sp.sqrt(2 + sp.sqrt(2)) / 2  # cos π/8
+        other = sp.sqrt(2 - sp.sqrt(2)) / 2
+        nested = sp.sqrt(5 + 2 * sp.sqrt(6)) - sp.sqrt(2) - sp.sqrt(3)  # zero, not when expanded
+        turns = [axis_turn((root, other, nested), phi)]
+        assert chain_of(turns).constraints == ()
+        with pytest.raises(ModelError, match="expected a unit vector"):
+            axis_turn((root, root, 0), phi)
+        with pytest.raises(ModelError, match="expected a unit vector"):
+            axis_turn((root, other + sp.Rational(1, 10**40), 0), phi)
+
+    def test_a_model_does_not_change(self):
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            EulerAngles("ZXZ").name = "other"

@@ -1,0 +1,251 @@
+"""Rotations that are not in the catalogue.
+
+Whatever is a rotation is proved so without a change to the ring; whatever is not is refused; and
+what cannot be told is marked unproved.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+import sympy as sp
+from samples import (
+    NORM,
+    ROTATIONS,
+    TIME,
+    WRONG,
+    about_z,
+    alpha,
+    chain,
+    length,
+    m,
+    model,
+    phi,
+    psi,
+    theta,
+    u,
+    w,
+    x,
+    y,
+    z,
+)
+from sympy import cos, cosh, pi, sech, sin, sinh, sqrt, tanh
+from witness import agree, derivative, evaluate, mp, paths, unhat, values_along
+
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.errors import AlgebraError, DerivationError, ModelError, NotARotation
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.models.so3 import elementary, time_function
+
+DERIVED: dict[str, Derivation] = {}
+
+
+def derived(name: str) -> Derivation:
+    if name not in DERIVED:
+        DERIVED[name] = derive(ROTATIONS[name])
+    return DERIVED[name]
+
+
+@pytest.mark.parametrize("name", ROTATIONS)
+def test_other_rotations_are_data(name):
+    """Orthogonal, skew, Ω = R Ω′ and W q̇ = Ω, each proved exactly."""
+    motion = derived(name)
+    assert motion.is_proved
+    assert {"rotation_matrix", "spin_matrix", "rate_matrix_body"} <= {
+        step.quantity.name for step in motion.steps
+    }
+
+
+FREE = [name for name, sample in ROTATIONS.items() if not sample.constraints]
+
+
+@pytest.mark.parametrize("name", FREE)
+def test_other_rotations_turn_as_the_numbers_do(name):
+    """Small coordinates, so that roots and tangents stay where they are real."""
+    sample, motion = ROTATIONS[name], derived(name)
+    (path,) = paths(1, size=len(sample.coordinates), seed=6)
+    path = dataclasses.replace(path, q=tuple(value / 9 for value in path.q))
+    constants = {m: mp.mpf(3) / 7, length: mp.mpf(5) / 7, alpha: mp.mpf(2) / 3}
+
+    def R(t):
+        return evaluate(sample.matrix, {**values_along(sample.coordinates, path, t), **constants})
+
+    def printed(quantity):
+        values = {**values_along(sample.coordinates, path), **constants}
+        return evaluate(getattr(motion, quantity), values)
+
+    first, second = derivative(R), derivative(R, 2)
+    omega = unhat(first * R(0).T)
+    assert agree(printed("rotation_matrix"), R(0))
+    assert agree(printed("angular_velocity_space"), omega)
+    assert agree(printed("angular_velocity_body"), R(0).T * omega)
+    assert agree(printed("rate_matrix_space") * mp.matrix(path.q_dot), omega)
+    alpha_space = unhat(second * R(0).T + first * first.T)
+    assert agree(printed("angular_acceleration_space"), alpha_space)
+    assert agree(printed("angular_acceleration_body"), R(0).T * alpha_space)
+
+
+def test_a_chain_of_eight_turns_is_a_rotation():
+    angles = [time_function(f"q{k}") for k in range(1, 9)]
+    matrix = chain(*zip("zxyzxyzx", angles, strict=True))
+    codec = codec_for([*matrix, *(sp.diff(angle, TIME) for angle in angles)], order=1)
+    R = RingMatrix.of(codec.ring, [[codec.encode(e) for e in row] for row in matrix.tolist()])
+    spin = R.dt() @ R.T
+    assert (R @ R.T - RingMatrix.identity(codec.ring, 3)).is_zero()
+    assert R.det() == codec.ring.one
+    assert (spin + spin.T).is_zero()
+    omega = RingMatrix.column(codec.ring, [spin[2, 1], spin[0, 2], spin[1, 0]])
+    assert (R @ (R.T @ omega) - omega).is_zero()
+
+
+def test_a_rate_matrix_of_full_rank_has_a_right_inverse():
+    for name in ("rotation vector", "unit quaternion", "axis and angle", "five turns"):
+        assert hasattr(derived(name), "inverse_rate_matrix_space")
+    assert derived("rotation vector").singularities.rank == 3
+    assert derived("unit quaternion").singularities.rank == 3
+    assert derived("gear").singularities.rank == 2
+    assert not hasattr(derived("gear"), "inverse_rate_matrix_space")
+
+
+@pytest.mark.parametrize(
+    "sample",
+    [
+        model(about_z(sech(u), tanh(u)), u),
+        model(about_z(1 / cosh(u), sinh(u) / cosh(u)), u),
+    ],
+    ids=["sech and tanh", "sinh and cosh"],
+)
+def test_functions_of_unknown_relations_leave_the_claims_unproved(sample):
+    """It is a rotation, but the ring does not know sech² + tanh² = 1."""
+    motion = derive(sample)
+    unproved = [proof for proof in motion.proofs if not proof.is_exact]
+    assert not motion.is_proved
+    assert {proof.claim.text for proof in unproved} >= {"R Rᵀ = 1", "det R = 1"}
+    for proof in unproved:
+        assert proof.status == "unproved"
+        values = {**values_along([u], paths(1, size=1)[0]), TIME: mp.mpf(0)}
+        assert proof.residual is not None
+        assert not proof.residual.is_zero_matrix
+        assert agree(evaluate(proof.residual, values), mp.zeros(*proof.residual.shape))
+
+
+@pytest.mark.parametrize(("sample", "claim", "residual"), WRONG.values(), ids=WRONG)
+def test_what_is_no_rotation_is_refused_with_what_is_left_over(sample, claim, residual):
+    with pytest.raises(NotARotation) as caught:
+        derive(sample)
+    message = str(caught.value)
+    assert message.startswith(f"sample: not a rotation, since {claim} fails; left over: ")
+    assert residual in message.split("left over: ", 1)[1]
+
+
+def test_passive_is_refused_alike():
+    sample = dataclasses.replace(WRONG["reflection"][0], passive=True)
+    with pytest.raises(NotARotation, match=r"det A = 1 fails; left over: .*-2"):
+        derive(sample)
+
+
+def test_dependent_roots_do_not_refute_a_rotation():
+    """√(4v²) = 2√(v²), which the ring does not know: nothing is decided, and nothing refused."""
+    one = sqrt(4 * x**2 + 4 * y**2 + 4 * z**2) / (2 * NORM)
+    for constraints in ((), (w - phi,)):
+        motion = derive(model(one * elementary("z", phi), phi, x, y, z, w, constraints=constraints))
+        assert not motion.is_proved
+
+
+def test_a_double_constraint_does_not_refute_a_rotation():
+    """(u − 1)² = 0 says u = 1, which is not in the ideal that it spans."""
+    motion = derive(model(u * elementary("z", phi), phi, u, constraints=((u - 1) ** 2,)))
+    assert not motion.is_proved
+
+
+def test_dependent_angles_do_not_refute_a_rotation():
+    """cos(2 atan u) is (1 − u²)/(1 + u²), which the ring does not know."""
+    motion = derive(model(about_z(cos(2 * sp.atan(u)), 2 * u / (1 + u**2)), u))
+    assert not motion.is_proved
+
+
+@pytest.mark.parametrize(
+    "angle", [phi + TIME, phi + alpha * sin(TIME), phi + psi], ids=["time", "drive", "stranger"]
+)
+def test_motion_that_the_coordinates_do_not_hold_is_refused(angle):
+    with pytest.raises((DerivationError, AlgebraError, ModelError)):
+        derive(model(elementary("z", angle), phi))
+
+
+@pytest.mark.parametrize(
+    "matrix",
+    [
+        about_z(
+            2 / (sp.exp(u) + sp.exp(-u)),
+            (sp.exp(u) - sp.exp(-u)) / (sp.exp(u) + sp.exp(-u)),
+        ),
+        elementary("z", sp.exp(u)) * elementary("x", sp.exp(-u)),
+    ],
+    ids=["gudermannian", "angles"],
+)
+def test_exponentials_are_never_passed_in_silence(matrix):
+    """Proved, marked unproved, or refused; and what is proved is right."""
+    try:
+        motion = derive(model(matrix, u))
+    except AlgebraError:
+        return
+    values = values_along([u], paths(1, size=1)[0])
+    R = evaluate(motion.rotation_matrix, values)
+    assert agree(R * R.T, mp.eye(3))
+
+
+def test_an_inverse_is_not_claimed_where_the_determinant_may_vanish():
+    """The middle turn is none, in a disguise that the ring does not see through."""
+    hidden = theta * (sqrt(4 * m**2 + 4) - 2 * sqrt(m**2 + 1))
+    middle = sp.Matrix([[1, 0, 0], [0, 1, -hidden], [0, hidden, 1]])
+    matrix = elementary("z", phi) * middle * elementary("z", psi)
+    motion = derive(model(matrix, phi, theta, psi))
+    for step in motion.steps:
+        if step.quantity.name.startswith(("inverse", "rates_from")):
+            assert not all(proof.is_exact for proof in step.proofs)
+    assert not motion.singularities.is_solved
+
+
+class TestSingularAngles:
+    def singular(self, *turns):
+        return derive(model(chain(*turns), phi, theta, psi)).singularities
+
+    def places(self, found):
+        """Value, period and rank of each point, which are all of one coordinate."""
+        assert found.is_solved
+        return {(p.places[0].value, p.places[0].period, p.rank) for p in found.points}
+
+    def test_multiples_vanish_more_often(self):
+        found = self.singular(("z", phi), ("x", 2 * theta), ("z", psi))
+        values = (-pi / 2, 0, pi / 2, pi)
+        assert self.places(found) == {(value, 2 * pi, 2) for value in values}
+
+    def test_halves_have_twice_the_period(self):
+        """After a whole turn sin θ/2 vanishes again, where other rates turn nothing."""
+        found = self.singular(("z", phi), ("x", theta / 2), ("z", psi))
+        assert self.places(found) == {(0, 4 * pi, 2), (2 * pi, 4 * pi, 2)}
+        assert found.points[0].undetermined == sp.Matrix([1, 0, -1])
+        assert found.points[1].undetermined == sp.Matrix([1, 0, 1])
+
+    @pytest.mark.parametrize(("axes", "offset"), [("zxz", 0), ("xyz", 3 * pi / 2)])
+    def test_thirds_have_three_times_the_period(self, axes, offset):
+        found = self.singular((axes[0], phi), (axes[1], theta / 3), (axes[2], psi))
+        values = (0, 3 * pi) if axes == "zxz" else (-offset, offset)
+        assert self.places(found) == {(value, 6 * pi, 2) for value in values}
+
+    def test_an_offset_moves_the_points(self):
+        found = self.singular(("z", phi), ("x", theta + alpha), ("z", psi))
+        assert self.places(found) == {(-alpha, 2 * pi, 2), (pi - alpha, 2 * pi, 2)}
+
+    def test_a_double_zero_is_one_point(self):
+        found = self.singular(("z", phi), ("x", theta), ("z", psi * sin(theta)))
+        assert found.determinant == -(sin(theta) ** 2)
+        assert self.places(found) == {(0, 2 * pi, 2), (pi, 2 * pi, 2)}
+
+    def test_what_has_no_closed_form_is_reported_and_not_guessed(self):
+        found = self.singular(("z", phi), ("x", theta), ("z", theta * psi))
+        assert not found.is_solved
+        assert found.determinant.has(theta)

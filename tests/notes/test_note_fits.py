@@ -1,0 +1,287 @@
+"""Every note fits its page: no overfull box, no warning, whatever turns; and a summary a sheet."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import pytest
+import sympy as sp
+from test_typeset import _bound_together, tex  # noqa: F401
+
+import rigidsym as rs
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.so3 import hat
+from rigidsym.notes.document.document import Document, Equation, EquationRow
+from rigidsym.notes.formats.latex import print_latex
+from rigidsym.notes.formats.markdown import print_markdown
+from rigidsym.notes.formats.pdf import typeset
+from rigidsym.notes.formula.formula import text
+from rigidsym.notes.formula.lengths import length_of
+from rigidsym.notes.formula.notation import notation_of
+from rigidsym.notes.formula.vector_rates import rate_of_form
+from rigidsym.notes.layout.abbreviations import Namer
+from rigidsym.notes.layout.layout import PAGE, display
+
+TURNS = (
+    "z(phi)",
+    "[1,1,0](beta)",
+    "z(phi) y(pi/4) x(delta)",
+    "z(phi) x(theta) z(psi) y(delta)",
+    "z(a) x(b) z(c) y(d) x(e) z(f)",
+)
+PASSIVE = ("rotation_vector", "unit_quaternion")
+EVERYTHING = (*PARAMETRISATIONS, *PRESETS, *TURNS)
+VECTORS = ("rotation_vector", "gibbs_vector", "modified_rodrigues", "quaternion")
+_UNPACKED = r"\pdfcompresslevel=0 \pdfobjcompresslevel=0 "
+
+
+@pytest.fixture(scope="module")
+def documents() -> list[Document]:
+    """A note of each, and of the passive form of some; no two of one name."""
+    motions = [rs.derive(rotation_from(text)) for text in EVERYTHING]
+    motions += [rs.derive(rotation_from(text, passive=True)) for text in PASSIVE]
+    moments = rs.principal_moments(*sp.symbols("A B C"))
+    motions += [rs.derive("rotation_vector", body=moments)]
+    motions += [rs.derive("ZXZ", body=rs.general_inertia())]
+    return [
+        replace(motion.note().document, name=f"note_{place}")
+        for place, motion in enumerate(motions)
+    ]
+
+
+@pytest.mark.usefixtures("tex")
+def test_every_note_compiles_without_a_warning(documents):
+    assert typeset(_bound_together(list(map(print_latex, documents)))).warnings == ()
+
+
+@pytest.mark.usefixtures("tex")
+def test_every_summary_fits_on_one_sheet(documents):
+    sheets = [_sheet(document) for document in documents]
+    sheets[0] = sheets[0].replace("{article}", "{article}" + _UNPACKED)
+    made = typeset(_bound_together(sheets))
+    pages = re.findall(rb"/Type\s*/Page\b(?!s)", made.pdf)
+    assert len(pages) == len(sheets)
+
+
+def _sheet(document: Document) -> str:
+    """The summary of a note, with the numbers of equations but not the equations."""
+    whole = print_latex(document)
+    before, rest = whole.split(r"\begin{document}")
+    body = rest.split(r"\end{thebibliography}")[1]
+    return f"{before}\\begin{{document}}{re.sub(r'.eqref{[^}]*}', '(99)', body)}"
+
+
+def test_no_display_is_wider_than_a_page(documents):
+    for document in documents:
+        for section in document.sections:
+            for block in section.blocks:
+                if isinstance(block, Equation):
+                    shown = display(block, document.notation, PAGE)
+                    assert shown.width <= PAGE, (document.title, section.title, block.label)
+
+
+# --- the order: names, breaking, shorthand
+
+
+def _given(document: Document, label: str) -> tuple[Equation, Equation | None]:
+    """The equation with a label, and the names that are given before it."""
+    blocks = [block for section in document.sections for block in section.blocks]
+    place = next(k for k, b in enumerate(blocks) if isinstance(b, Equation) and b.label == label)
+    before = blocks[place - 1]
+    return blocks[place], before if isinstance(before, Equation) and not before.sides else None
+
+
+@pytest.mark.parametrize(
+    ("rotation", "label", "done", "names"),
+    [
+        ("ZXZ", "rotation_matrix", "", 0),  # as it stands
+        ("axis_angle", "rotation_matrix", "", 1),  # 1 − cos φ: a matrix with a name
+        ("z(yaw) y(pitch) x(roll)", "rotation_matrix", "abbreviated", 0),  # products: shorthand
+        ("z(yaw) y(pitch) x(roll)", "spin_matrix", "", 3),  # entries of Ω: a matrix, not a list
+        ("ZXZ", "rotation_rate", "listed", 0),  # an entry a line, and none broken
+    ],
+)
+def test_names_come_before_breaking_and_shorthand(rotation, label, done, names):
+    document = rs.derive(rotation).note().document
+    equation, given = _given(document, label)
+    assert display(equation, document.notation, PAGE).done == done
+    assert len(given.entries if given else ()) == names
+
+
+def test_what_has_a_name_keeps_it_and_is_explained_once(documents):
+    for document in documents:
+        explained = [
+            name.text
+            for section in document.sections
+            for block in section.blocks
+            if isinstance(block, Equation) and not block.sides
+            for name in block.entries
+        ]
+        assert len(explained) == len(set(explained)), document.title
+
+
+def test_an_energy_that_no_line_can_break_gets_names_first(documents):
+    document = documents[-2]
+    energy, given = _given(document, "rotational_energy")
+    assert given is not None
+    assert len(given.entries) == 3
+    total, again = _given(document, "kinetic_energy")
+    assert again is None  # it refers to them
+    assert energy.scalar.free_symbols < total.scalar.free_symbols
+    assert "are those of (23)" in print_markdown(document)
+
+
+# --- lengths
+
+
+def test_the_square_of_a_vector_is_that_of_its_length():
+    model = rs.RotationVector()
+    notation = notation_of(rs.derive(model).arguments, model=model)
+    a, b, c = model.coordinates
+    square, time = a**2 + b**2 + c**2, sp.Symbol("t")
+    half = sp.Rational(1, 2)
+    for expression, expected in (
+        (sp.sqrt(square), "n"),
+        (sp.sin(sp.sqrt(square)) / square, "sin n/n²"),
+        (1 + 2 * square, "1 + 2n²"),
+        (half * sp.diff(square, time).doit(), "n n\u0307"),
+        (a**2 + b**2, "v₁² + v₂²"),
+        (a**2 + b**2 + 2 * c**2, "v₁² + v₂² + 2v₃²"),
+    ):
+        assert text(expression, notation) == expected
+
+
+@pytest.mark.parametrize("name", VECTORS)
+def test_lengths_change_no_value(name):
+    motion = rs.derive(name, only=("rotation_rate", "angular_acceleration_space"))
+    length = length_of(motion.model)
+    assert length is not None
+    rate = sum(q * sp.diff(q, "t") for q in length.components) / length.symbol
+    square = sp.sqrt(sum(q**2 for q in length.components))
+    back = {length.rate: rate, length.symbol: square}
+    for step in motion.steps:
+        for entry in step.expression[:2]:
+            short = length.shortened(entry)
+            assert short.has(length.symbol)
+            restored = short.subs(length.rate, back[length.rate]).subs(length.symbol, square)
+            assert _agree(entry, restored)
+
+
+def _agree(one: sp.Expr, other: sp.Expr) -> bool:
+    """Whether two expressions have the same value at a point, to 40 digits."""
+    moving = sorted(one.atoms(sp.Derivative), key=lambda d: (-d.derivative_count, str(d)))
+    moving += sorted(one.atoms(sp.core.function.AppliedUndef), key=str)
+    point = {part: sp.Rational(k + 2, 7) for k, part in enumerate(moving)}
+    left, right = (e.xreplace(point).evalf(60) for e in (one, other))
+    return bool(abs(left - right) < sp.Float(10) ** -40)
+
+
+# --- names of parts
+
+
+@pytest.mark.parametrize("name", ["axis_angle", "z(a) x(b) z(c) y(d)"])
+def test_named_parts_stand_for_what_they_replace(name):
+    motion = rs.derive(name, only=("rotation_rate",))
+    notation = notation_of(motion.arguments)
+    matrix = motion.rotation_rate
+    named = Namer(notation).named(matrix, 20.0)
+    assert named.parts
+    entries = named.matrix
+    for symbol, value in reversed(named.parts):
+        entries = entries.subs(symbol, value)
+    for entry, restored in zip(matrix, entries, strict=True):
+        assert _agree(entry, restored)
+
+
+def test_a_name_is_none_of_those_of_the_model():
+    motion = rs.derive("z(k) x(h) z(c) y(d)", only=("rotation_rate",))
+    named = Namer(notation_of(motion.arguments)).named(motion.rotation_rate, 20.0)
+    assert {symbol.name[0] for symbol, _ in named.parts} == {"m"}
+
+
+def test_what_cannot_break_gets_a_name():
+    a, b = sp.symbols("alpha beta")
+    long = sum((a**k * b for k in range(1, 30)), sp.S.Zero)
+    named = Namer(notation_of(())).named(sp.ImmutableMatrix([a / (b + long)]), 30.0)
+    ((symbol, value),) = named.parts
+    assert (value, named.matrix[0]) == (b + long, a / symbol)
+
+
+# --- vectors
+
+
+@pytest.mark.parametrize("name", VECTORS[:3])
+def test_rates_of_vector_forms_are_the_derivatives(name):
+    motion = rs.derive(name)
+    model, length = motion.model, length_of(motion.model)
+    assert length is not None
+    v = sp.Matrix(model.vector)
+    first, second = v.diff("t"), v.diff("t", 2)
+    named = {
+        "v": v,
+        "v̇": first,
+        "v̈": second,
+        "v × v̇": v.cross(first),
+        "v × v̈": v.cross(second),
+        "v × (v × v̈)": v.cross(v.cross(second)),
+        "v̇ × (v × v̇)": first.cross(v.cross(first)),
+        "v × (v × v̇)": v.cross(v.cross(first)),
+        "(v·v̈) v": v.dot(second) * v,
+        "(v̇·v̇) v": first.dot(first) * v,
+        "(v·v̇) v̇": v.dot(first) * first,
+        "(v·v̇) v": v.dot(first) * v,
+    }
+    size = sp.sqrt(v.dot(v))
+    for frame in ("space", "body"):
+        form = motion.step(f"angular_velocity_{frame}").vector_form
+        total = sp.zeros(3, 1)
+        for term in rate_of_form(form, length.rate).terms:
+            coefficient = term.coefficient.subs(length.rate, v.dot(first) / size)
+            total += coefficient.subs(length.symbol, size) * named[term.vector.text]
+        expected = getattr(motion, f"angular_acceleration_{frame}")
+        assert all(_agree(e, t) for e, t in zip(expected, total, strict=True))
+
+
+@pytest.mark.parametrize("name", VECTORS[:3])
+def test_matrices_of_a_vector_are_shown_as_such(name):
+    motion = rs.derive(name)
+    v = sp.Matrix(motion.model.vector)
+    skew = hat(v)
+    named = {"1": sp.eye(3), "C(v)": skew, "C(v)²": skew * skew, "v vᵀ": v * v.T}
+    for step in motion.steps:
+        if step.expression.shape == (3, 3) and step.vector_form is not None:
+            total = sp.zeros(3, 3)
+            for term in step.vector_form.terms:
+                size = sp.sqrt(v.dot(v))
+                total += (
+                    term.coefficient.subs(step.vector_form.length, size) * named[term.vector.text]
+                )
+            assert all(_agree(e, t) for e, t in zip(step.expression, total, strict=True))
+    shown = {step.quantity.name for step in motion.steps if step.vector_form is not None}
+    assert {"rotation_matrix", "rate_matrix_space", "inverse_rate_matrix_body"} <= shown
+
+
+def test_the_rotation_vector_is_written_as_rodrigues_did():
+    latex = rs.derive("rotation_vector").note().latex()
+    assert (
+        r"\mathbf{R} = \mathbf{1} + \frac{\sin n}{n}\,\mathbf{C}(\mathbf{v}) + "
+        r"\frac{1 - \cos n}{n^{2}}\,\mathbf{C}(\mathbf{v})^{2}"
+    ) in latex
+
+
+@pytest.mark.parametrize("rotation", VECTORS[:3])
+def test_a_summary_says_by_vectors_what_they_can_say(rotation):
+    motion = rs.derive(rotation)
+    sheet = motion.note().document.sections[-1]
+    rows = [block.equations for block in sheet.blocks if isinstance(block, EquationRow)]
+    shown = {str(e.sides[0]): e for row in rows for e in row}
+    found = [
+        step for step in motion.steps if step.vector_form and str(step.quantity.symbol) in shown
+    ]
+    assert found
+    for step in found:
+        equation = shown[str(step.quantity.symbol)]
+        assert equation.matrix is None
+        assert len(equation.sides) == 2

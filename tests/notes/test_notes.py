@@ -1,0 +1,398 @@
+"""The note and the terminal text: what they must say, what they must not lose, what they escape."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import pytest
+import sympy as sp
+from conftest import derived
+
+import rigidsym as rs
+from rigidsym.mechanics.derivation import Derivation, Markup, Place, Proof, Singularity
+from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.models.rotation import LECTURE, Citation, RotationModel
+from rigidsym.models.so3 import elementary, time_function
+from rigidsym.notes.document.boxed import RESULTS
+from rigidsym.notes.document.document import Document, Equation, Paragraph, Table
+from rigidsym.notes.formats.escape import escape
+from rigidsym.notes.formats.terminal import show
+from rigidsym.notes.layout.entries import entry_names, indexed
+from rigidsym.notes.layout.text_width import columns
+from rigidsym.notes.note import Note, note
+from rigidsym.notes.prose.singular_words import determined
+from rigidsym.notes.prose.words import listed, plain, unit_in_words, with_symbols
+
+ZXZ = "euler_zxz_intrinsic"
+
+
+def _note(motion: Derivation) -> Note:
+    return note(motion, module=f"{motion.name}.py")
+
+
+def _words(document: Document) -> str:
+    """All running text of a note."""
+    blocks = [block for section in document.sections for block in section.blocks]
+    return "\n".join(plain(block.text) for block in blocks if isinstance(block, Paragraph))
+
+
+def _two_turns(**changes: object) -> RotationModel:
+    a, b = time_function("a"), time_function("b")
+    data = {
+        "name": "two_turns",
+        "title": "Two turns",
+        "convention": ("Turns about two axes.",),
+        "coordinates": (a, b),
+        "matrix": elementary("z", a) * elementary("x", b),
+        "source": Citation(text="A book"),
+    }
+    return RotationModel(**(data | changes))
+
+
+def _with_an_unproved_step(motion: Derivation) -> Derivation:
+    phi = motion.argument("q").symbols[0]
+    left = sp.ImmutableMatrix([sp.sin(phi), 0, 1 - sp.cos(phi)])
+    proof = Proof(claim=Markup("a = b", "a = b"), status="unproved", residual=left)
+    steps = list(motion.steps)
+    steps[4] = replace(steps[4], proofs=(proof,))
+    return replace(motion, steps=tuple(steps))
+
+
+# --- the form, pinned ---
+
+
+def test_the_note_of_the_lectures_rotation(golden):
+    golden(f"notes/{ZXZ}.tex", _note(derived("ZXZ")).latex())
+
+
+@pytest.mark.parametrize("width", [80, 88, 120])
+def test_the_lectures_rotation_in_a_terminal(golden, width):
+    golden(f"terminal/{ZXZ}_{width}.txt", show(derived("ZXZ"), width=width) + "\n")
+
+
+def test_a_passive_rotation_in_a_terminal(golden):
+    motion = derive(EulerAngles("ZYX", ("heading", "elevation", "bank"), passive=True))
+    golden(f"terminal/{motion.name}_80.txt", show(motion, width=80) + "\n")
+
+
+def test_two_runs_give_the_same_bytes():
+    first, second = (_note(derive(EulerAngles("yxz"))).latex() for _ in range(2))
+    assert first == second
+
+
+# --- what the note holds ---
+
+
+def test_every_quantity_is_one_equation_with_its_number(motion):
+    equations = list(_note(motion).document.equations)
+    expected = [(step.number, step.quantity.name, step.expression) for step in motion.steps]
+    assert [(e.number, e.label, e.matrix) for e in equations] == expected
+
+
+def test_every_equation_names_the_function_that_evaluates_it(motion):
+    calls = [e.function for e in _note(motion).document.equations]
+    assert calls[4] == "angular_velocity_body(q, q_dot)"
+    assert all(
+        call == f"{step.quantity.name}({', '.join(step.quantity.inputs)})"
+        for call, step in zip(calls, motion.steps, strict=True)
+    )
+
+
+def test_results_stand_in_boxes_and_steps_do_not(motion):
+    made = _note(motion)
+    boxed = [e.label for e in made.document.equations if e.is_result]
+    assert set(boxed) == RESULTS & {step.quantity.name for step in motion.steps}
+    assert 0 < len(boxed) < len(motion.steps)
+    for text in (made.latex(), made.markdown()):
+        assert text.count(r"\boxed{") == len(boxed)
+    displays = made.html().split('<div class="equation"')[1:]
+    shown = [re.match(r' id="(\w+)"', text) for text in displays if 'class="boxed"' in text]
+    assert [found and found[1] for found in shown] == boxed
+
+
+def test_every_result_is_an_equation_of_some_note():
+    motion = rs.derive("ZXZ", body=rs.solid("cone", density=sp.Symbol("rho")), theory=True)
+    names = {step.quantity.name for step in motion.steps} | {s.name for s in motion.theory}
+    assert names >= RESULTS
+
+
+def test_a_source_is_listed_once_and_its_places_stand_beside_it():
+    motion = rs.derive("ZXZ", ["inertia_tensor_space"], body=rs.general_inertia())
+    made = motion.note()
+    assert [s for s in made.document.sources if "Lecture notes" in s] == [LECTURE]
+    assert r"\cite[eq.~9]{" in made.latex()
+
+
+def test_without_a_module_no_functions_are_named():
+    document = note(derived("ZXZ")).document
+    assert not any(equation.function for equation in document.equations)
+    assert "Functions" not in [section.title for section in document.sections]
+
+
+def test_only_the_functions_of_the_module_are_named():
+    document = note(derived("ZXZ"), module="m.py", functions=["rotation_matrix"]).document
+    named = [equation.function for equation in document.equations if equation.function]
+    assert named == ["rotation_matrix(q)"]
+
+
+def test_every_claim_stands_in_the_table_of_proofs(motion):
+    (section,) = (s for s in _note(motion).document.sections if s.title == "What was proved")
+    (table,) = (block for block in section.blocks if isinstance(block, Table))
+    shown = [row[1][0] for row in table.rows]
+    assert shown == [proof.claim for proof in motion.proofs]
+
+
+def test_every_source_of_a_step_is_listed(motion):
+    cited = {step.quantity.source.text for step in motion.steps if step.quantity.source}
+    assert cited | {motion.model.source.text} == set(_note(motion).document.sources)
+
+
+def test_only_the_axes_that_occur_are_shown():
+    latex = _note(derived("ZXZ")).latex()
+    assert r"\mathbf{R}_z(\beta) =" in latex
+    assert r"\mathbf{R}_y(\beta) =" not in latex
+
+
+def test_the_angle_of_the_elementary_turns_is_no_coordinate():
+    latex = _note(derive(EulerAngles("ZXZ", ("alpha", "beta", "gamma")))).latex()
+    assert r"\mathbf{R}_z(\chi) =" in latex
+
+
+def test_singular_angles_in_words():
+    said = _words(_note(derived("ZXZ")).document)
+    assert "At θ = 0 only φ + ψ is determined" in said
+    assert "At θ = π only φ − ψ is determined" in said
+    assert "vanishes at θ = 0 and θ = π, up to whole turns, and nowhere else" in said
+
+
+def test_the_passive_form_says_that_it_is():
+    said = _words(_note(derived("ZYX", passive=True)).document)
+    assert "direction cosine matrix A = Rᵀ, the passive form: x′ = A x" in said
+    assert "The rotation is active" not in said
+
+
+def test_a_rotation_of_two_coordinates_has_no_inverse_rates():
+    document = note(derive(_two_turns())).document
+    assert "The rate matrices have no inverse" in _words(document)
+    assert "the rank is 2 everywhere, which is how many directions" in _words(document)
+
+
+def test_a_rotation_that_is_given_cites_its_source():
+    said = _words(note(derive(_two_turns())).document)
+    assert "The rotation is given\u00a0A book." in said
+
+
+# --- what could not be proved ---
+
+
+def test_an_unproved_step_shows_in_the_note():
+    document = _note(_with_an_unproved_step(derived("ZXZ"))).document
+    (equation,) = (e for e in document.equations if e.unproved)
+    assert (equation.label, equation.proved) == ("angular_velocity_body", ())
+    latex = _note(_with_an_unproved_step(derived("ZXZ"))).latex()
+    assert r"\textbf{Unproved}: $a = b$." in latex
+    assert r"\textbf{unproved}" in latex
+    assert r"\boldsymbol{\Delta} = \begin{pmatrix}" in latex
+    assert r"1 - \cos\phi" in latex
+
+
+def test_an_unproved_step_shows_in_the_terminal():
+    lines = show(_with_an_unproved_step(derived("ZXZ"))).splitlines()
+    assert "  ✗ unproved: a = b" in lines
+    assert "  ✗ (5)  unproved  a = b" in lines
+    assert "  Δ = ⎢ 0         ⎥" in lines
+    assert "✗" not in show(derived("ZXZ"))
+
+
+# --- the terminal ---
+
+
+@pytest.mark.parametrize("width", [80, 88, 100, 120])
+def test_no_line_is_wider_than_the_terminal(motion, width):
+    assert max(map(columns, show(motion, width=width).splitlines())) <= width
+
+
+def test_styles_change_no_column():
+    bare = show(derived("ZXZ"))
+    styled = show(derived("ZXZ"), style=lambda words, kind: f"<{kind}>{words}</{kind}>")
+    assert "<heading>Euler angles ZXZ, intrinsic</heading>" in styled
+    for kind in ("heading", "dim"):
+        styled = styled.replace(f"<{kind}>", "").replace(f"</{kind}>", "")
+    assert styled == bare
+
+
+# --- words ---
+
+
+@pytest.mark.parametrize(
+    ("items", "expected"), [([], ""), (["a"], "a"), (["a", "b"], "a and b"), ("abc", "a, b and c")]
+)
+def test_lists_in_words(items, expected):
+    assert plain(listed([(item,) for item in items])) == expected
+
+
+def test_symbols_in_a_sentence_become_formulas():
+    phi, rate = Markup(r"\phi", "φ"), Markup(r"\dot{\phi}", "φ\u0307")
+    symbols = {"φ": phi, "φ\u0307": rate, "bank": Markup("b", "bank")}
+    sentence = "First φ, then φ\u0307 along the banks."
+    assert with_symbols(sentence, symbols) == (
+        "First ",
+        phi,
+        ", then ",
+        rate,
+        " along the banks.",
+    )
+
+
+@pytest.mark.parametrize(
+    ("unit", "expected"), [("rad/s^2", "rad/s²"), ("", "1"), ("kg m^2 s^-1", "kg m² s⁻¹")]
+)
+def test_units_in_words(unit, expected):
+    assert unit_in_words(unit) == expected
+
+
+def test_what_idle_rates_leave_determined():
+    q, rates = sp.symbols("a b c"), sp.symbols("u v w")
+    a, b, c = q
+
+    def kept(*idle, at=b):
+        place = Place(coordinate=at, value=sp.S.Zero, period=2 * sp.pi)
+        columns = sp.ImmutableMatrix(sp.Matrix([idle]).T)
+        found = Singularity(
+            places=(place,), rank=2, lost_space=None, lost_body=None, undetermined=columns
+        )
+        return determined(found, q, rates)
+
+    assert kept(1, 0, -1) == [a + c]
+    assert kept(-1, 0, -1) == [a - c]
+    assert kept(2, 0, 3) == [3 * a - 2 * c]
+    assert kept(0, 0, 1) == [a]
+    assert kept(1, 1, 0) == [rates[0] - rates[1], rates[2]]  # they leave the place b = 0
+    assert kept(sp.sqrt(2), 0, 1) == []
+
+
+def test_the_entries_of_a_listed_symbol_are_what_it_lists():
+    names = indexed(Markup(r"\left(k_x, k_y, k_z\right)", "(k_x, k_y, k_z)"), (3,))
+    assert [(name.latex, name.text) for name in names] == [("k_x",) * 2, ("k_y",) * 2, ("k_z",) * 2]
+
+
+def test_names_of_entries():
+    motion = derived("ZXZ")
+    names = {step.quantity.name: entry_names(step, motion.arguments) for step in motion.steps}
+    assert names["rotation_matrix"][1] == Markup("R_{12}", "R₁₂")
+    assert names["rotation_rate"][8] == Markup(r"\dot{R}_{33}", "R\u0307₃₃")
+    assert names["rate_matrix_body"][0] == Markup("W'_{11}", "W′₁₁")
+    assert names["inverse_rate_matrix_space"][1] == Markup(r"\bigl(W^{-1}\bigr)_{12}", "(W⁻¹)₁₂")
+    assert names["angular_velocity_body"][2] == Markup(r"\Omega'_3", "Ω′₃")
+    assert names["rates_from_angular_velocity_body"][1].text == "θ\u0307"
+    assert names["angular_acceleration_body"][0].latex == r"\dot{\Omega}'_{1}"
+
+
+# --- escaping ---
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("50 % of A_1 & {B} #1 $x$", r"50 \% of A\_1 \& \{B\} \#1 \$x\$"),
+        (r"\input{x}", r"\textbackslash{}input\{x\}"),
+        ("a^b ~c", r"a\textasciicircum{}b \textasciitilde{}c"),
+        ('<b>|"`', r"\textless{}b\textgreater{}\textbar{}\textquotedbl{}\textasciigrave{}"),
+        ("a -- b --- c", "a -{}- b -{}-{}- c"),
+        ("''", "'{}'"),
+        ("φ Ω λ", r"\ensuremath{\phi} \ensuremath{\Omega} \ensuremath{\lambda}"),
+        ("φ\u0307 x\u0308", r"\ensuremath{\dot{\phi}} \"{x}"),
+        ("Rᵀ s⁻²", r"R\ensuremath{^{\mathsf T}} s\ensuremath{^{-}}\ensuremath{^{2}}"),
+        ("café – déjà", "café – déjà"),
+        ("中 Ħ", "[U+4E2D] [U+0126]"),
+        ("a\tb\nc\u0000", "a b c "),
+        ("a\u00a0b", "a~b"),
+    ],
+)
+def test_any_text_becomes_latex_text(text, expected):
+    assert escape(text) == expected
+
+
+def test_markup_in_a_title_and_a_source_comes_out_as_text():
+    odd = r"50% \input{x} & $\alpha$"
+    model = _two_turns(title=odd, source=Citation(text=odd, equation="#1"))
+    latex = note(derive(model)).latex()
+    assert odd not in latex
+    assert latex.count(escape(odd)) == 2
+    assert r"\cite[eq.~\#1]{two_turns:source-1}" in latex
+
+
+def test_numbers_and_labels_of_a_document():
+    document = _note(derived("ZXZ")).document
+    assert document.number("angular_velocity_body") == 5
+    unnumbered = [
+        block
+        for section in document.sections
+        for block in section.blocks
+        if isinstance(block, Equation) and not block.number
+    ]
+    assert unnumbered
+    assert not any(equation.label for equation in unnumbered)
+
+
+# --- prose and symbols follow the model
+
+
+def _said(motion: rs.Motion) -> str:
+    return " ".join(motion.note().markdown().split())
+
+
+def _symbols(motion: rs.Motion) -> dict[str, tuple[str, str]]:
+    """Meaning and unit by symbol, in plain text."""
+    (section,) = (s for s in motion.note().document.sections if s.title == "Symbols")
+    (table,) = section.blocks
+    assert isinstance(table, Table)
+    return {plain(row[0]): (plain(row[1]), plain(row[2])) for row in table.rows}
+
+
+def test_one_turn_is_not_called_a_product():
+    said = _said(rs.derive("z(phi)"))
+    assert "The rotation is one turn" in said
+    assert "The right-handed turn by an angle" in said
+    assert "The angular velocity is the rate times the axis" in said
+    for wrong in ("product of turns", "from left to right", "The coordinates are"):
+        assert wrong not in said
+
+
+def test_what_is_transposed_is_said_to_be():
+    assert "from left to right and transposed" in _said(derived("ZYX", passive=True))
+    assert "The rotation is given and transposed" in _said(
+        rs.derive(rs.rotation_from("rotation_vector", passive=True))
+    )
+    assert "transposed" not in _said(derived("ZYX")).replace("the transposed rotation", "")
+
+
+@pytest.mark.parametrize(
+    ("rotation", "choice"),
+    [
+        ("unit_quaternion", "those that keep to the conditions are taken"),
+        ("quaternion", "the smallest are taken"),
+    ],
+)
+def test_which_of_all_rates_are_taken_depends_on_the_conditions(rotation, choice):
+    assert choice in _said(rs.derive(rotation))
+
+
+def test_the_table_of_symbols_says_what_each_constant_is():
+    known = _symbols(rs.derive("z(phi) [a,b,c](beta) y(alpha0)"))
+    assert known["a, b, c"] == ("components of an axis at rest", "1")
+    assert known["α₀"] == ("constant angle", "rad")
+    a, h = sp.symbols("a h", positive=True)
+    body = _symbols(rs.derive("ZXZ", body=rs.solid("cone", radius=a, height=h)))
+    assert body["X, Y, Z"] == ("space components of the position of the centre of mass", "m")
+    assert body["M, h, a"] == ("constant of the body", "—")
+    assert body["pₓ, p_y, p_z"] == ("a point, in the axes of the body", "m")
+    assert body["(a₁, a₂, a₃)"][1] == "1/√(kg m²)"
+    assert _symbols(rs.derive("unit_quaternion"))["J"][1] == "1"
+
+
+def test_a_point_is_at_rest_in_space_where_the_matrix_takes_to_the_body():
+    assert _symbols(derived("ZYX", passive=True))["x"][0].startswith("position of a point at rest")
+    assert _symbols(derived("ZYX"))["x"][0].startswith("position of a point of the body")

@@ -1,0 +1,241 @@
+"""Notes through TeX: no warning of any kind, for every convention; and TeX kept in its place."""
+
+from __future__ import annotations
+
+import os
+from itertools import chain
+from pathlib import Path
+
+import pytest
+from sympy import Rational, pi, symbols
+
+import rigidsym as rs
+from rigidsym.errors import MissingTool, ToolFailed
+from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.models.chain import axis_turn
+from rigidsym.models.chain import chain as chain_of
+from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.models.rotation import Citation, RotationModel, Turn
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.so3 import elementary, time_function
+from rigidsym.notes.formats import pdf as typesetting
+from rigidsym.notes.formats.pdf import missing_programs, typeset
+from rigidsym.notes.formula.formula import latex
+from rigidsym.notes.formula.notation import notation_of
+from rigidsym.notes.layout.text_width import ems, matrix_ems
+from rigidsym.notes.note import note
+
+GREEK = ("phi", "theta", "psi")
+OTHER_GREEK = ("alpha", "beta", "gamma")
+WORDS = ("heading", "elevation", "bank")
+INDEXED = ("phi_1", "q2", "phi_body")
+BEGIN, END = r"\begin{document}", r"\end{document}"
+
+
+@pytest.fixture
+def tex() -> None:
+    """TeX is here; without it the test is skipped, or fails where TeX is required."""
+    if missing_programs():
+        required = os.environ.get("RIGIDSYM_REQUIRE_TEX") == "1"
+        (pytest.fail if required else pytest.skip)(f"not installed: {missing_programs()}")
+
+
+def _note(sequence: str, angles: tuple[str, ...] = GREEK, *, passive: bool = False) -> str:
+    motion = derive(EulerAngles(sequence, angles, passive=passive))
+    return note(motion, module=f"{motion.name}.py").latex()
+
+
+def _bound_together(notes: list[str]) -> str:
+    """Several notes as one document, which is faster than one run of TeX each."""
+    preamble = notes[0].split(BEGIN)[0]
+    bodies = (text.split(BEGIN)[1].split(END)[0] for text in notes)
+    return preamble + BEGIN + "\n\\newpage\\setcounter{section}{0}\n".join(bodies) + END
+
+
+def _page(body: str) -> str:
+    return rf"\documentclass[11pt]{{article}}\usepackage{{lmodern,amsmath}}{BEGIN}{body}{END}"
+
+
+@pytest.mark.usefixtures("tex")
+@pytest.mark.parametrize(
+    ("angles", "passive", "sequences"),
+    [
+        (GREEK, False, EULER_SEQUENCES),
+        (WORDS, True, EULER_SEQUENCES),  # the widest
+        (OTHER_GREEK, True, EULER_SEQUENCES[::5]),
+        (INDEXED, False, EULER_SEQUENCES[::5]),
+    ],
+)
+def test_all_24_notes_compile_without_a_warning(angles, passive, sequences):
+    notes = [_note(sequence, angles, passive=passive) for sequence in sequences]
+    assert typeset(_bound_together(notes)).warnings == ()
+
+
+@pytest.mark.usefixtures("tex")
+@pytest.mark.parametrize(
+    "axis", [(Rational(3, 5), 0, Rational(4, 5)), symbols("e_1 e_2 e_3"), ()], ids=str
+)
+def test_chains_compile_without_a_warning(axis):
+    a, b = time_function("a"), time_function("b")
+    oblique = axis_turn(axis, b) if axis else Turn(axis="y", angle=pi / 6)
+    model = chain_of([oblique, Turn(axis="z", angle=a)])
+    assert typeset(note(derive(model)).latex()).warnings == ()
+
+
+@pytest.mark.usefixtures("tex")
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[3,1,-1](psi) [0,-2,3](roll_rate) [2,1,-2](theta)", "Its entries, written out"),
+        ("[3,-1,-3](phi + pi/6) [-3,3,-3](theta)", r"{\freely\begin{align*}"),
+        ("davenport", r"from\_\allowbreak quaternion(\allowbreak p, parameters)"),
+    ],
+)
+def test_what_a_page_has_no_room_for_goes_on_on_the_next(text, says):
+    """Displays higher than a page, names in the text, words of which no part is in the fonts."""
+    motion = rs.derive(rotation_from(text, passive=True))
+    written = motion.note(conversions=True).latex()
+    assert says in written
+    assert "[U+" not in written
+    assert typeset(written).warnings == ()
+
+
+@pytest.mark.usefixtures("tex")
+def test_the_same_note_gives_the_same_pdf():
+    text = _note("ZXZ")
+    first, second = typeset(text), typeset(text)
+    assert first.warnings == ()
+    assert first.pdf.startswith(b"%PDF-")
+    assert first.pdf == second.pdf
+
+
+@pytest.mark.usefixtures("tex")
+def test_odd_text_compiles():
+    letters = "".join(map(chr, chain(range(0x21, 0x7F), range(0xA0, 0x180), range(0x391, 0x3CA))))
+    a, b = time_function("a"), time_function("b")
+    model = RotationModel(
+        name="odd",
+        title=" ".join(letters),
+        convention=("Turns of a\u0307 and φ\u0308, Rᵀ ≠ R⁻¹, − × · ± ∂ √ ∞ ≤ ≥ ≈ → x₁ “x” 中 ẋ.",),
+        coordinates=(a, b),
+        matrix=elementary("z", a) * elementary("x", b),
+        source=Citation(text=" ".join(letters), equation="#1"),
+    )
+    assert typeset(note(derive(model)).latex()).warnings == ()
+
+
+@pytest.mark.usefixtures("tex")
+@pytest.mark.parametrize("angles", [GREEK, WORDS, INDEXED])
+def test_no_formula_is_wider_than_it_was_measured(angles):
+    """Each formula in a box of its measured width: TeX reports those that stick out."""
+    boxes = list(_formulas_with_widths(angles))
+    assert len(boxes) > 100
+    assert typeset(_boxes(boxes, 1.0)).warnings == ()
+
+
+@pytest.mark.usefixtures("tex")
+def test_most_formulas_are_nearly_as_wide_as_measured():
+    boxes = [(formula, width) for formula, width in _formulas_with_widths(GREEK) if width > 5]
+    narrower = typeset(_boxes(boxes, 0.85)).warnings
+    assert len(narrower) > 0.9 * len(boxes)
+
+
+def _formulas_with_widths(angles: tuple[str, ...]) -> list[tuple[str, float]]:
+    widths: dict[str, float] = {}
+    for sequence in ("ZXZ", "ZYX", "yxz"):
+        motion = derive(EulerAngles(sequence, angles))
+        notation = notation_of(motion.arguments)
+        for step in motion.steps:
+            widths |= {s.latex: ems(s.latex) for s in (step.quantity.symbol, *_claims(step))}
+            for shorthand in (False, True):
+                rows = [
+                    [latex(entry, notation, shorthand=shorthand) for entry in row]
+                    for row in step.expression.tolist()
+                ]
+                widths |= {entry: ems(entry) for entry in chain(*rows)}
+                inside = r" \\ ".join(" & ".join(row) for row in rows)
+                widths[rf"\begin{{pmatrix}}{inside}\end{{pmatrix}}"] = matrix_ems(rows)
+    return list(widths.items())
+
+
+def _claims(step):
+    return (proof.claim for proof in step.proofs)
+
+
+def _boxes(boxes: list[tuple[str, float]], scale: float) -> str:
+    lines = (
+        rf"\hbox to {scale * width:.4f}em{{$\displaystyle {formula}$}}" for formula, width in boxes
+    )
+    return _page("\\hbadness=10000 \\hfuzz=0.5pt\n" + "\n\n".join(lines))
+
+
+# --- TeX kept in its place ---
+
+
+@pytest.mark.usefixtures("tex")
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        (r"\hbox to 1em{much too long for this}", "Overfull"),
+        (r"\hbox to 30em{short}", "Underfull"),
+        (r"\ref{nowhere}", "undefined"),
+    ],
+)
+def test_what_tex_complains_of_is_reported(body, said):
+    warnings = typeset(_page(body)).warnings
+    assert any(said in warning for warning in warnings), warnings
+
+
+@pytest.mark.usefixtures("tex")
+def test_an_error_of_tex_shows_the_end_of_its_log():
+    with pytest.raises(ToolFailed, match=r"(?s)end of its log.*Undefined control sequence"):
+        typeset(_page(r"\nosuchmacro"))
+
+
+@pytest.mark.usefixtures("tex")
+def test_tex_that_does_not_stop_is_stopped():
+    with pytest.raises(ToolFailed, match="stopped after 2 seconds"):
+        typeset(_page(r"\def\x{\x}\x"), timeout=2)
+
+
+@pytest.mark.usefixtures("tex")
+def test_tex_runs_no_program(tmp_path: Path):
+    target = tmp_path / "made"
+    typeset(_page(rf"\immediate\write18{{touch {target}}}x"))
+    assert not target.exists()
+
+
+@pytest.mark.usefixtures("tex")
+def test_tex_reads_no_file_of_the_user(tmp_path: Path):
+    secret = tmp_path / "secret.tex"
+    secret.write_text("secret")
+    with pytest.raises(ToolFailed):
+        typeset(_page(rf"\input{{{secret}}}"))
+
+
+@pytest.mark.usefixtures("tex")
+def test_an_interrupt_ends_tex(monkeypatch: pytest.MonkeyPatch):
+    started = []
+
+    class Interrupted(typesetting.subprocess.Popen):
+        def communicate(self, *args, **kwargs):
+            if not started:
+                started.append(self)
+                raise KeyboardInterrupt
+            return super().communicate(*args, **kwargs)
+
+    monkeypatch.setattr(typesetting.subprocess, "Popen", Interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        typeset(_page(r"\def\x{\x}\x"))
+    assert started[0].returncode is not None
+
+
+def test_without_tex_the_debian_packages_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(MissingTool) as caught:
+        typeset(_page("x"))
+    assert str(caught.value) == (
+        "a PDF needs latexmk and pdflatex, not found here; on Debian: apt install "
+        "texlive-latex-recommended texlive-pictures latexmk lmodern"
+    )
+    assert caught.value.exit_code == 4

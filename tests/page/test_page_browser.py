@@ -1,0 +1,396 @@
+"""The page in a real browser: alive, by mouse, by keyboard, aloud, wide and narrow."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from browser import axe_source, require_chromium
+from devtools import Page, chromium
+from pages import LONG, OTHERS, copied, main_of, motion_of, note_in, odd_page, page_of
+from test_html import ODD, WORDS
+
+import rigidsym as rs
+from rigidsym.kernels.lowering.lower import MARGIN
+from rigidsym.motion import derive
+from rigidsym.page.functions import SHOWN
+from rigidsym.page.page import MOST_BYTES
+from rigidsym.pipeline import product
+from rigidsym.spec.derivation_file import read_spec
+
+DRAWN = ("ZXZ", "YZY", "xyz", "z(phi) x(theta) z(psi) y(delta)", "axis_angle")
+LIVE = ("ZXZ", "zyx", *OTHERS)
+
+# --- a real browser ---
+
+
+@pytest.fixture(scope="module")
+def tab(tmp_path_factory: pytest.TempPathFactory) -> Page:
+    require_chromium()
+    with chromium(tmp_path_factory.mktemp("chromium")) as page:
+        yield page
+
+
+def opened(tab: Page, text: str, folder: Path, width: int = 1280, **features: str) -> Page:
+    file = folder / "page.html"
+    file.write_text(text, encoding="utf-8")
+    tab.open(file, width, **features)
+    return tab
+
+
+@pytest.fixture(autouse=True)
+def quiet(request: pytest.FixtureRequest):
+    """No test may leave a message in the console, or a request beside the page itself."""
+    yield
+    if "tab" in request.fixturenames:
+        tab = request.getfixturevalue("tab")
+        assert tab.complaints == []
+        assert tab.requests == []
+
+
+SET_ALL = """
+(values) => {
+  for (const [key, value] of Object.entries(values)) {
+    const field = document.getElementById(`${key}-number`);
+    field.value = String(value);
+    field.dispatchEvent(new Event("input"));
+  }
+}
+"""
+STATE = """
+Object.fromEntries([...document.querySelectorAll("[data-value]")].map((e) =>
+  [e.id, Number(e.dataset.value)]))
+"""
+NUMBERS = """
+Object.fromEntries([...document.querySelectorAll(".value, .pole")].map((e) =>
+  [e.id || "margin", [...e.querySelectorAll("data")].map((d) => Number(d.value))]))
+"""
+
+
+def compare_with_numpy(tab: Page, motion: rs.Motion) -> None:
+    """Everything that the page shows, at what its sliders stand at, with the NumPy kernels."""
+    state, shown = tab.run(STATE), tab.run(NUMBERS)
+    given: dict[str, list[float]] = {"q": [], "q_dot": [], "parameters": []}
+    for key, value in state.items():
+        given[key.split("-")[0]].append(value)
+    if "parameters" in {argument.name for argument in motion.arguments}:
+        whole = len(motion.argument("parameters").symbols)
+        # moments turn nothing, and have no sliders
+        given["parameters"] += [1.0] * (whole - len(given["parameters"]))
+    kernels = motion.kernels().load()
+    for name in SHOWN:
+        vectors = [given[argument] for argument in motion.step(name).quantity.inputs]
+        expected = getattr(kernels, name)(*vectors)
+        assert np.abs(np.ravel(expected) - shown[f"{name}-value"]).max() <= 1e-12, name
+    if hasattr(kernels, MARGIN):
+        vectors = [given["q"], *([given["parameters"]] if given["parameters"] else [])]
+        count = kernels.singularity_margin.__code__.co_argcount
+        assert abs(kernels.singularity_margin(*vectors[:count]) - shown["margin"][0]) <= 1e-12
+
+
+@pytest.mark.parametrize("rotation", OTHERS)
+def test_a_page_of_any_rotation_is_of_bounded_size_and_holds_the_whole_note(rotation):
+    page, note = page_of(rotation), motion_of(rotation).note()
+    assert len(page.encode()) <= MOST_BYTES
+    assert note_in(page) == main_of(note.html())
+
+
+@pytest.mark.parametrize("rotation", ["davenport", LONG])
+def test_what_is_packed_is_there_once_the_page_is_open(tab, rotation, tmp_path):
+    opened(tab, page_of(rotation), tmp_path)
+    assert tab.run("document.querySelectorAll('.packed').length") == 0
+    shown = tab.run("document.querySelectorAll('main .formula math').length")
+    assert shown == note_in(page_of(rotation)).count('<div class="formula"')
+
+
+@pytest.mark.parametrize("rotation", LIVE)
+def test_numbers_agree_with_numpy_and_nothing_is_scrolled_sideways(tab, rotation, tmp_path):
+    motion = motion_of(rotation)
+    opened(tab, page_of(rotation), tmp_path)
+    compare_with_numpy(tab, motion)
+    keys = list(tab.run(STATE))
+    rng = np.random.default_rng(3)
+    for _ in range(3):
+        values = {key: float(rng.uniform(-1, 1)) for key in keys}
+        if rotation in ("ZXZ", "zyx"):
+            values |= {f"q-{k}": float(rng.uniform(-180, 180)) for k in range(3)}
+        tab.run(f"({SET_ALL})({json.dumps(values)})")
+        compare_with_numpy(tab, motion)
+    for width in (320, 360, 768):
+        tab.resize(width)
+        assert tab.run("document.documentElement.scrollWidth") <= width
+
+
+FILES = {
+    "passive": '[rotation]\nsequence = "z(heading) y(elevation) x(bank)"\npassive = true',
+    "own": """
+        [rotation]
+        matrix = [["cos(a)", "-sin(a)", "0"], ["sin(a)", "cos(a)", "0"], ["0", "0", "1"]]
+        coordinates = ["a"]
+        """,
+    "top": """
+        [rotation]
+        sequence = "z(phi) x(theta) z(psi) y(alpha0)"
+        [parameters]
+        A = { positive = true, about = "a moment", unit = "kg m^2" }
+        [body]
+        principal_moments = ["A", "A", "2*A"]
+        """,
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_pages_of_files_agree_with_numpy_on_a_phone(tab, name, tmp_path):
+    spec = read_spec(FILES[name], source=f"{name}.toml", name=name)
+    made = product(replace(spec, note=("page",)))
+    opened(tab, made.files[f"{name}_page.html"], tmp_path, 360)
+    rng = np.random.default_rng(7)
+    values = {key: float(rng.uniform(-1, 1)) for key in tab.run(STATE)}
+    tab.run(f"({SET_ALL})({json.dumps(values)})")
+    compare_with_numpy(tab, made.motion)
+    assert tab.run("document.documentElement.scrollWidth") <= 360
+
+
+@pytest.mark.parametrize(
+    "rotation", ["unit_quaternion", "axis_angle", "cayley_klein", "direction_cosines"]
+)
+def test_bound_coordinates_stay_a_rotation(tab, rotation, tmp_path):
+    opened(tab, page_of(rotation), tmp_path)
+    rng = np.random.default_rng(5)
+    for _ in range(5):
+        key = f"q-{rng.integers(3)}"
+        tab.run(f"({SET_ALL})({json.dumps({key: float(rng.uniform(-0.9, 0.9))})})")
+        matrix = np.reshape(tab.run(NUMBERS)["rotation_matrix-value"], (3, 3))
+        assert np.abs(matrix @ matrix.T - np.eye(3)).max() < 1e-12
+        assert abs(np.linalg.det(matrix) - 1) < 1e-12
+
+
+CUT_OFF = """
+[...document.querySelectorAll("input[type=number]")].filter((field) => {
+  const style = getComputedStyle(field), pen = document.createElement("canvas").getContext("2d");
+  pen.font = style.font;
+  const room = field.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+  return pen.measureText(field.value).width > room;
+}).map((field) => field.value)
+"""
+
+
+def test_numbers_are_not_cut_off_on_a_phone(tab, tmp_path):
+    text = page_of("unit_quaternion")
+    opened(tab, text, tmp_path, 360)
+    assert tab.run("document.querySelectorAll('input[type=number]').length") > 7
+    assert tab.run(CUT_OFF) == []
+    # Arrows would cover the digits, and no script can see how much room they take.
+    assert "::-webkit-inner-spin-button { display: none; }" in text
+
+
+def test_a_slider_that_is_moved_keeps_its_value_where_others_can_give_way(tab, tmp_path):
+    opened(tab, page_of("unit_quaternion"), tmp_path)
+    tab.run(f"({SET_ALL})({json.dumps({'q-1': 0.5})})")
+    assert abs(tab.run(STATE)["q-1"] - 0.5) < 1e-4
+
+
+def test_arrow_keys_move_a_slider_and_the_figure_with_it(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    before = tab.run("document.querySelector('#figure g').innerHTML")
+    start = tab.run("document.getElementById('q-0').valueAsNumber")
+    tab.run("document.getElementById('q-0').focus()")
+    for _ in range(3):
+        tab.press("ArrowRight", 39)
+    assert tab.run("document.getElementById('q-0').valueAsNumber") == start + 3
+    assert tab.run("document.getElementById('q-0-number').valueAsNumber") == start + 3
+    assert tab.run("document.querySelector('#figure g').innerHTML") != before
+    compare_with_numpy(tab, motion_of("ZXZ"))
+
+
+def test_everything_is_reached_by_the_tab_key_and_seen(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    reached = []
+    for _ in range(17):
+        tab.press("Tab", 9)
+        focus = tab.run(
+            "(() => { const e = document.activeElement;"
+            "return [e.id || e.tagName, getComputedStyle(e).outlineStyle]; })()"
+        )
+        reached.append(focus[0])
+        assert focus[1] != "none", focus
+    for key in ("q-0", "q-0-number", "q_dot-2", "q_dot-2-number", "play", "reset", "SUMMARY"):
+        assert key in reached
+
+
+LINES = """
+(root) => [...document.querySelectorAll(`${root} polyline`)].map((line) =>
+  [line.getAttribute("class"),
+   line.getAttribute("points").split(/[ ,]/).map(Number)])
+"""
+
+
+@pytest.mark.parametrize("rotation", DRAWN)
+def test_the_figure_begins_as_that_of_the_note(tab, rotation, tmp_path):
+    opened(tab, page_of(rotation), tmp_path)
+    live = [(kind, points) for kind, points in tab.run(f"({LINES})('#figure')") if points]
+    shown = tab.run(f"({LINES})('figure svg')")
+    kept = [line for line in shown if line[0] not in ("turn", "guide thin")]
+    assert len(kept) >= 9
+    for kind, points in kept:
+        assert any(
+            kind == other and len(points) == len(found) and np.allclose(points, found, atol=0.25)
+            for other, found in live
+        ), (kind, points)
+
+
+LABELS = """
+(root) => [...document.querySelectorAll(`${root} text`)].map((label) => label.textContent)
+"""
+
+
+@pytest.mark.parametrize("rotation", [*DRAWN, "rotation_vector", "unit_quaternion", "gibbs_vector"])
+def test_lines_have_the_names_that_they_have_in_the_note(tab, rotation, tmp_path):
+    opened(tab, page_of(rotation), tmp_path)
+    live = {tidy(label) for label in tab.run(f"({LABELS})('#figure')")}
+    assert live - {"Ω"} == {tidy(label) for label in tab.run(f"({LABELS})('figure svg')")}
+
+
+def tidy(label: str) -> str:
+    return "".join(label.split())
+
+
+def test_a_turn_of_more_than_half_is_drawn_about_its_vector(tab, tmp_path):
+    opened(tab, page_of("rotation_vector"), tmp_path)
+    tab.run(f"({SET_ALL})({json.dumps({'q-0': 0.0, 'q-1': 0.0, 'q-2': -4.5})})")
+    lines = tab.run(f"({LINES})('#figure')")
+    (arc,) = [points for kind, points in lines if kind == "turn"]
+    assert len(arc) == 2 * (45 + 1)  # a point for each tenth of a radian
+    (vector,) = [points for kind, points in lines if kind == "vector"]
+    assert vector[3] > 100  # downwards
+
+
+SIGHT = """
+(() => {
+  const [outer, inner] = ["#figure", "#figure g"].map((e) =>
+    document.querySelector(e).getBoundingClientRect());
+  return ["left", "top", "right", "bottom"].map((side) => Math.round(inner[side] - outer[side]));
+})()
+"""
+
+
+def test_the_figure_fills_its_place_and_stays_in_it(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    size = "document.getElementById('figure').getBoundingClientRect().height"
+    height = tab.run(size)
+    left, top, right, bottom = tab.run(SIGHT)
+    assert 0 <= top < 15
+    assert -15 < bottom <= 0
+    for angles in ((0, 150, 0), (90, 120, 45), (10, 179, 60)):
+        tab.run(f"({SET_ALL})({json.dumps({f'q-{k}': a for k, a in enumerate(angles)})})")
+        left, top, right, bottom = tab.run(SIGHT)
+        assert left >= 0
+        assert top >= 0
+        assert right <= 0
+        assert bottom <= 0
+        assert tab.run(size) == height
+    tab.click("#reset")
+    assert tab.run(SIGHT)[3] > -15
+
+
+def test_a_pole_is_shown_when_it_is_near(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    assert tab.run("document.getElementById('warning').innerHTML") == ""
+    tab.run(f"({SET_ALL})({json.dumps({'q-1': 2.0})})")
+    assert "θ = 0" in tab.run("document.getElementById('warning').innerHTML")
+    assert tab.run("document.getElementById('margin-label').textContent") == "Near the pole"
+    tab.run(f"({SET_ALL})({json.dumps({'q-1': -179.0})})")
+    assert "θ = π" in tab.run("document.getElementById('warning').innerHTML")
+    tab.run(f"({SET_ALL})({json.dumps({'q-1': 60.0})})")
+    assert tab.run("document.getElementById('warning').innerHTML") == ""
+
+
+def test_the_pole_of_a_vector_is_told_by_its_length(tab, tmp_path):
+    opened(tab, page_of("rotation_vector"), tmp_path)
+    tab.run(f"({SET_ALL})({json.dumps({'q-0': 2.1, 'q-1': 4.2, 'q-2': 4.2})})")
+    assert "n = 2π" in tab.run("document.getElementById('warning').innerHTML")
+
+
+def test_buttons_copy(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    tab.call("Browser.grantPermissions", permissions=["clipboardReadWrite"])
+    for language in ("latex", "python", "c"):
+        expected = copied(page_of("ZXZ"), language)["angular_velocity_body"]
+        tab.click(f'[data-of="angular_velocity_body"] [data-copy="{language}"]')
+        tab.wait_for("document.getElementById('said').textContent.includes('is copied')")
+        assert tab.run("navigator.clipboard.readText()") == expected
+        tab.run("document.getElementById('said').textContent = ''")
+
+
+def test_buttons_copy_without_a_clipboard_to_write_to(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    tab.call("Browser.grantPermissions", permissions=["clipboardReadWrite"])
+    expected = copied(page_of("ZXZ"), "latex")["rotation_matrix"]
+    tab.run("navigator.clipboard.writeText = () => Promise.reject(new Error())")
+    tab.click('[data-of="rotation_matrix"] [data-copy="latex"]')
+    tab.wait_for("document.getElementById('said').textContent.includes('is copied')")
+    assert tab.run("navigator.clipboard.readText()") == expected
+
+
+def test_play_integrates_the_rates_and_pauses(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    before = tab.run(STATE)
+    tab.click("#play")
+    tab.wait_for(f"({STATE})['q-0'] !== {before['q-0']!r}")
+    assert tab.run("document.getElementById('play').textContent") == "Pause"
+    tab.click("#play")
+    after = tab.run(STATE)
+    moved = np.array([after[f"q-{k}"] - before[f"q-{k}"] for k in range(3)])
+    rates = np.array([before[f"q_dot-{k}"] for k in range(3)])
+    assert moved[0] > 0
+    np.testing.assert_allclose(moved / rates, moved[0] / rates[0], rtol=1e-9)
+    assert tab.run("document.getElementById('play').textContent") == "Play"
+    tab.click("#reset")
+    assert tab.run(STATE) == before
+
+
+def test_with_reduced_motion_a_press_is_a_step(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path, prefers_reduced_motion="reduce")
+    before = tab.run(STATE)
+    assert tab.run("document.getElementById('play').textContent") == "Step"
+    tab.click("#play")
+    after = tab.run(STATE)
+    assert abs(after["q-0"] - before["q-0"] - 0.1 * before["q_dot-0"]) < 1e-12
+    assert tab.run(STATE) == after
+
+
+def test_what_is_said_aloud_waits_until_all_is_at_rest(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    tab.run(f"({SET_ALL})({json.dumps({'q-1': 30.0})})")
+    assert tab.run("document.getElementById('said').textContent") == ""
+    tab.wait_for("document.getElementById('said').textContent.startsWith('angular velocity')")
+
+
+def test_no_request_can_leave_a_page(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    blocked = "fetch('https://example.org').then(() => 'sent', () => 'blocked')"
+    assert tab.run(blocked) == "blocked"
+    assert all("Content Security Policy" in text for text in tab.complaints)
+    tab.events.clear()
+
+
+def test_words_for_angles_fit_too(tab, tmp_path):
+    opened(tab, derive(rs.EulerAngles("XZY", WORDS)).page(), tmp_path, 360)
+    assert tab.run("document.documentElement.scrollWidth") <= 360
+
+
+def test_a_hostile_title_runs_nothing(tab, tmp_path):
+    opened(tab, odd_page(), tmp_path)
+    assert tab.run("document.title") == ODD
+    assert tab.run("document.documentElement.className") == "scripted"
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_axe_finds_nothing_in_either_theme(tab, theme, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path, 360, prefers_color_scheme=theme)
+    tab.run(axe_source() + "; undefined")
+    faults = tab.run("axe.run().then((found) => found.violations.map((fault) => fault.help))")
+    assert faults == []

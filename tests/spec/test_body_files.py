@@ -1,0 +1,387 @@
+"""The [body] and [parameters] of a derivation file."""
+
+from __future__ import annotations
+
+import json
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from textwrap import dedent
+from types import ModuleType
+
+import numpy as np
+import pytest
+import sympy as sp
+import trimesh
+from click.testing import CliRunner
+
+import rigidsym as rs
+from rigidsym.commands.cli import commands
+from rigidsym.errors import BodyError, KernelError, SpecError
+from rigidsym.models.body import RigidBody, general_inertia, principal_moments
+from rigidsym.pipeline import motion_of, product
+from rigidsym.spec.derivation_file import DerivationSpec, read_file, read_spec
+
+A, B, C, M = sp.symbols("A B C M")
+
+
+def read(text: str) -> DerivationSpec:
+    return read_spec(dedent(text), source="top.toml", name="top")
+
+
+def faults_of(text: str) -> list[str]:
+    with pytest.raises(SpecError) as caught:
+        read(text)
+    return [str(fault) for fault in caught.value.faults]
+
+
+def test_a_symmetric_body_in_symbols():
+    body = read('[body]\nprincipal_moments = ["A", "A", "C"]').body
+    assert body is not None
+    assert (body.mass, body.inertia) == (M, sp.ImmutableMatrix(sp.diag(A, A, C)))
+    assert body.title == "Symmetric body"
+    assert [(str(p.symbol), p.unit) for p in body.parameters] == [
+        ("M", "kg"),
+        ("A", "kg m^2"),
+        ("C", "kg m^2"),
+    ]
+
+
+def test_numbers_with_a_point_are_values_of_parameters():
+    body = read("[body]\nprincipal_moments = [1.5, 1.5, 2]\nmass = 3.25").body
+    assert body is not None
+    assert body.inertia == sp.ImmutableMatrix(sp.diag(A, A, 2))
+    assert {str(p.symbol): p.value for p in body.parameters} == {"M": 3.25, "A": 1.5}
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('[body]\nprincipal_moments = [1.5, "A", 2.5]', sp.diag(1.5, A, 2.5)),
+        ('[body]\nprincipal_moments = ["C", "C", 2.5]', sp.diag(C, C, 2.5)),
+        (
+            '[body]\nshape = "cylinder"\nradius = "h"\nheight = 1.5\nmass = 12',
+            sp.diag(3 * sp.Symbol("h") ** 2 + 2.25, 3 * sp.Symbol("h") ** 2 + 2.25, 0)
+            + sp.diag(0, 0, 6 * sp.Symbol("h") ** 2),
+        ),
+        (
+            "[body]\nprincipal_moments = [1.5, 1.5, 2.5]\n[parameters]\nA = { value = 9.0 }",
+            sp.diag(1.5, 1.5, 2.5),
+        ),
+    ],
+)
+def test_a_number_takes_no_name_that_means_something_else(text, expected):
+    body = read(text).body
+    assert body is not None
+    rest = (body.in_numbers(body.inertia) - expected).applyfunc(sp.expand)
+    assert rest.is_zero_matrix
+
+
+def test_numbers_of_a_tensor_that_differ_across_the_diagonal_are_refused():
+    (fault,) = faults_of(
+        "[body]\nmass = 2.0\ninertia = [[1.5, 0.1, 0], [0.2, 2.5, 0], [0, 0, 2.6]]"
+    )
+    assert "not symmetric: I_xy − I_yx = -0.1" in fault
+
+
+def test_parameters_are_described_by_the_file():
+    body = read(
+        """
+        [parameters]
+        A = { about = "transverse moment about the fixed point", unit = "kg m^2" }
+        [body]
+        principal_moments = ["A", "A", "C"]
+        """
+    ).body
+    assert body is not None
+    assert body.parameters[1].about == "transverse moment about the fixed point"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '[body]\nprincipal_moments = ["A", "A", "C"]\nmass = "rho*V"',
+        "[body]\ninertia = [[1.5, 0.1, 0], [0.1, 2.0, 0], [0, 0, 2.5]]\ncentre = [0.1, 0, 0]",
+        '[body]\ninertia = "general"',
+        "[parameters]\nA = { positive = true, value = 2.0 }\n[body]\n"
+        'principal_moments = ["A", "A", "A"]',
+    ],
+)
+def test_a_body_comes_back_from_its_data(text):
+    spec = read(text)
+    assert DerivationSpec.from_data(spec.to_data()) == spec
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("[body]", "body: expected one of principal_moments, inertia"),
+        ("[body]\nprincipal_moments = [1, 2]", "expected three moments of inertia, got a list"),
+        ("[body]\nprincipal_moments = [1, 1, 2.5]", "exceeds the sum of the others by 0.5 kg m²"),
+        ("[body]\nprincipal_moments = [1, 1, nan]", "expected a finite number, got nan"),
+        ("[body]\nprincipal_moments = [1, 1, 1]\nmass = -2.0", "expected a positive number"),
+        ("[body]\nprincipal_moments = [1, 1, 1]\nmass = 0", "expected a positive number, got 0"),
+        ("[body]\nprincipal_moments = [-1, 1, 1]", "smallest principal moment is -1 kg m²"),
+        ('[body]\ninertia = [[1, "b", 0], [0, 1, 0], [0, 0, 1]]', "I_xy − I_yx = b"),
+        ("[body]\ninertia = [[1, 0, 0], [0, 1, 0]]", "three rows of three expressions"),
+        ('[body]\nprincipal_moments = ["phi", 1, 1]', "is in the rotation too"),
+        ('[rotation]\nsequence = "ZXZ"\n[parameters]\nA = {}', "parameters go with a [body]"),
+        ('[body]\nprincipal_moments = ["A*", 1, 1]', "column 3: expected a number"),
+    ],
+)
+def test_what_is_wrong_is_said(text, fault):
+    assert fault in "\n".join(faults_of(text))
+
+
+def test_an_engineer_may_insist():
+    text = "[body]\nprincipal_moments = [1, 1, 2.5]\nallow = true"
+    assert read(text).body is not None
+
+
+def test_bodies_made_in_python():
+    assert principal_moments(A, B, C).title == "Body in its principal axes"
+    assert principal_moments(A, A, A).title == "Spherical body"
+    assert len(general_inertia().parameters) == 7
+    with pytest.raises(BodyError, match=r"exceeds the sum of the others by 1 kg m²"):
+        principal_moments(sp.Integer(1), sp.Integer(2), sp.Integer(4))
+
+
+# shapes, particles, parts, files
+
+BOX = trimesh.creation.box(extents=(1.0, 2.0, 3.0))
+BRACKET = """
+[[body.parts]]
+shape = "box"
+sides = [0.2, 0.1, 0.05]
+mass = 3.0
+[[body.parts]]
+shape = "cylinder"
+radius = 0.02
+height = 0.05
+mass = 0.4
+at = [0.05, 0.0, 0]
+turned = "z(pi/4)"
+hole = true
+"""
+
+
+def body_in(text: str) -> RigidBody:
+    found = read(text).body
+    assert found is not None
+    return found
+
+
+def test_a_shape_with_its_default_symbols():
+    body = body_in('[body]\nshape = "cylinder"')
+    a, h = sp.symbols("a h")
+    assert body.inertia[2, 2] == M * a**2 / 2
+    assert {str(p.symbol): p.about for p in body.parameters} == {
+        "M": "mass",
+        "a": "radius",
+        "h": "height",
+    }
+    assert body.inertia.free_symbols == {M, a, h}
+
+
+def test_lengths_in_numbers_are_parameters_with_a_value():
+    body = body_in('[body]\nshape = "sphere"\nradius = 0.5\ndensity = "rho"')
+    assert {str(p.symbol): p.value for p in body.parameters} == {"a": 0.5, "rho": None}
+
+
+def test_a_solid_by_its_bounds():
+    text = """
+        [body]
+        shape = "given"
+        coordinates = ["u", "v", "w"]
+        place = ["u*cos(v)", "u*sin(v)", "w"]
+        bounds = [["0", "a"], ["0", "2*pi"], ["0", "h"]]
+        density = "rho*(1 + w/h)"
+        """
+    a, h, rho = sp.symbols("a h rho")
+    assert sp.expand(body_in(text).mass - sp.Rational(3, 2) * sp.pi * a**2 * h * rho) == 0
+
+
+def test_a_polyhedron_and_a_tetrahedron():
+    corners = "[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]"
+    solid = body_in(f'[body]\nshape = "tetrahedron"\ncorners = {corners}')
+    faces = "[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]"
+    faced = body_in(f'[body]\nshape = "polyhedron"\nvertices = {corners}\nfaces = {faces}')
+    assert solid.inertia == faced.inertia
+    assert solid.centre == faced.centre == sp.ImmutableMatrix([sp.Rational(1, 4)] * 3)
+
+
+def test_particles_in_symbols():
+    body = body_in(
+        '[body]\nparticles = [{ mass = "m", at = ["a", 0, 0] }, { mass = "m", at = ["-a", 0, 0] }]'
+    )
+    assert body.inertia == sp.diag(0, *[2 * sp.Symbol("m") * sp.Symbol("a") ** 2] * 2)
+
+
+def test_parts_in_numbers_become_numbers():
+    body = body_in(BRACKET)
+    assert body.title == "Composite body"
+    assert {str(symbol) for symbol in body.inertia.free_symbols} == {"I_11", "I_22", "I_33"}
+    values = {str(p.symbol): p.value for p in body.parameters}
+    assert values["M"] == 2.6
+    assert values["x_C"] == pytest.approx(-0.4 * 0.05 / 2.6, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "turned",
+    ['"z(pi/2)"', '{ rotation = "ZXZ", values = ["pi/2", 0, 0] }', '"[0,0,1](pi/2)"'],
+)
+def test_a_part_is_turned_by_any_rotation(turned):
+    part = f'{{ shape = "box", sides = [1, 2, 3], mass = 12, turned = {turned} }}'
+    assert body_in(f"[body]\nparts = [{part}]").inertia == sp.diag(10, 13, 5)
+
+
+def test_a_condition_of_a_turn_is_kept():
+    turned = '{ rotation = "unit_quaternion", values = ["3/5", 0, 0, "4/5"] }'
+    part = f'{{ shape = "box", sides = [1, 2, 3], mass = 12, turned = {turned} }}'
+    body = body_in(f"[body]\nparts = [{part}]")
+    assert body.inertia.trace() == 28
+    assert "breaks" not in "".join(map(str, body.inertia))
+    wrong = part.replace("4/5", "3/5")
+    assert "the values break its condition" in "".join(faults_of(f"[body]\nparts = [{wrong}]"))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a mesh and a cloud of particles."""
+    BOX.export(tmp_path / "box.stl")
+    random = np.random.default_rng(3)
+    np.save(tmp_path / "cloud.npy", random.uniform(0.5, 2, size=(50, 4)))
+    (tmp_path / "mesh.toml").write_text('[body]\nmesh = "box.stl"\ndensity = 2.0\n')
+    (tmp_path / "particles.toml").write_text('[body]\nparticles = "cloud.npy"\n')
+    parts = '[body]\nparts = [{ mesh = "box.stl", mass = 6.0 }, { particles = "cloud.npy" }]\n'
+    (tmp_path / "both.toml").write_text(parts)
+    (tmp_path / "composite.toml").write_text(BRACKET)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["mesh", "particles", "both", "composite"])
+def test_one_command_from_a_file_to_energies_kernels_and_note(folder, name):
+    """I, principal axes, energies, kernels and note; and the record asks for the same again."""
+    run = ["run", str(folder / f"{name}.toml"), "--out", str(folder / "out")]
+    result = CliRunner().invoke(commands, run)
+    assert result.exit_code == 0, result.output
+    assert "I₁ = " in result.output
+    assert "unproved" not in result.output
+    made = folder / "out" / name
+    record = json.loads((made / f"{name}.json").read_text(encoding="utf-8"))
+    assert record["is_proved"]
+    assert str(folder) not in json.dumps(record)
+    names = {quantity["name"] for quantity in record["quantities"]}
+    assert {"inertia_tensor", "kinetic_energy", "angular_momentum"} <= names
+    assert "Principal moments" in (made / f"{name}.html").read_text(encoding="utf-8")
+    values = [p["value"] for p in record["body"]["parameters"]]
+    module = load(made / f"{name}.py")
+    tensor = module.inertia_tensor(values)
+    assert np.allclose(tensor, record["body"]["in_numbers"]["inertia_tensor"], rtol=1e-13)
+    again = DerivationSpec.from_data(record["request"]).body
+    assert again is not None
+    assert [p.value for p in again.parameters] == pytest.approx(values, rel=1e-15)
+
+
+def load(path: Path) -> ModuleType:
+    spec = spec_from_file_location(path.stem, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_a_mesh_from_a_file_is_that_of_trimesh(folder):
+    body = read_file(str(folder / "mesh.toml")).body
+    assert body is not None
+    inertia = np.array(body.in_numbers(body.inertia).tolist(), dtype=float)
+    assert np.allclose(inertia, 2 * BOX.moment_inertia, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ('shape = "spere"', "body.shape: no shape 'spere'; did you mean sphere"),
+        ('shape = "sphere"\nradius = -1.0', "expected a positive number"),
+        ('shape = "sphere"\nradius = 0', "body.radius: expected a positive number, got 0"),
+        ('shape = "sphere"\nheight = 1', "body.height: unknown key"),
+        ('shape = "box"\nsides = [1, 2]', "body.sides: expected 3 lengths, got a list"),
+        (
+            'shape = "hollow_cylinder"\ninner_radius = 2.0\nouter_radius = 1.0',
+            "outer_radius is 1 m, less than inner_radius with 2 m",
+        ),
+        ('shape = "sphere"\nmass = 1\ndensity = 1', "expected either the mass or the density"),
+        ("particles = [{ at = [0, 0, 0] }]", "expected the mass of the particle"),
+        ("particles = [{ mass = 1, at = [0, 0] }]", "three coordinates"),
+        ("particles = [{ mass = 1, at = [0, 0, nan] }]", "expected a finite number, got nan"),
+        ("parts = [{ at = [0, 0, 0] }]", "body.parts[0]: expected one of shape, particles"),
+        ('parts = [{ shape = "sphere", turned = "z(" }]', "body.parts[0].turned"),
+        ('parts = [{ shape = "sphere", hole = true, mass = 2.0 }]', "the mass is -2 kg"),
+        ('mesh = "none.stl"\ndensity = 1.0', "no such mesh"),
+        ('particles = "none.npy"', "no such file of particles"),
+    ],
+)
+def test_a_wrong_body_is_refused_with_its_place(text, fault):
+    assert fault in "\n".join(faults_of(f"[body]\n{text}"))
+
+
+@pytest.mark.parametrize(("name", "also"), [("solid_cone", ()), ("composite_body", ("mass",))])
+def test_the_shipped_bodies_are_proved(name, also):
+    spec = read_file(name)
+    steps = (*also, "centre_of_mass", "inertia_tensor", "principal_moments", "rotational_energy")
+    assert rs.derive(spec.models[0], steps, body=spec.body).is_proved
+    assert DerivationSpec.from_data(spec.to_data()) == spec
+
+
+CONSTANT = """
+[body]
+shape = "sphere"
+radius = 1
+mass = 2
+[output]
+note = ["tex"]
+quantities = ["inertia_tensor"]
+{}
+"""
+
+
+def test_what_depends_on_nothing_has_no_function():
+    spec = read_spec(CONSTANT.format(""), source="a.toml", name="a")
+    with pytest.raises(KernelError, match=r"a: no function to write.*: inertia_tensor; expected"):
+        product(spec)
+    spec = read_spec(CONSTANT.format("kernels = []"), source="a.toml", name="a")
+    assert list(product(spec).files) == ["a.tex", "a.json"]
+
+
+ROOTS = """
+[rotation]
+sequence = "{}"
+[[body.parts]]
+shape = "hemisphere"
+[[body.parts]]
+shape = "box"
+turned = "x(pi/3)"
+[output]
+quantities = ["rotation_matrix", "inertia_tensor", "inertia_tensor_space", "radii_of_gyration"]
+"""
+
+
+@pytest.mark.parametrize("rotation", ["rotation_vector", "zyx", "z(phi) [1,1,1](theta)"])
+def test_roots_of_numbers_in_a_body_stand_beside_any_rotation(rotation):
+    """√415 of the radii of gyration, √3 of a part that is turned."""
+    spec = read_spec(ROOTS.format(rotation), source="a.toml", name="a")
+    motion = motion_of(spec)
+    assert motion.is_proved
+    module = motion.kernels().load()
+    rng = np.random.default_rng(3)
+    symbols = motion.argument("parameters").symbols
+    values = rng.uniform(1, 2, len(symbols))
+    q = rng.uniform(-1, 1, len(motion.model.coordinates))
+    numbers = dict(zip(symbols, values, strict=True))
+    tensor = np.array(spec.body.inertia.xreplace(numbers).evalf(), float)
+    turning = module.rotation_matrix(q)
+    found = module.inertia_tensor_space(q, values)
+    assert np.allclose(found, turning @ tensor @ turning.T)
+    radii = module.radii_of_gyration(values)
+    mass = float(spec.body.mass.xreplace(numbers))
+    assert np.allclose(radii**2 * mass, np.diag(tensor))

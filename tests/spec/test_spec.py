@@ -1,0 +1,258 @@
+"""Derivation files: what they say, the shipped ones, and their form as plain data."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+
+from rigidsym.errors import ModelError, RigidsymError, SpecError
+from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.spec.derivation_file import QUANTITIES, DerivationSpec, read_file, read_spec, spec_for
+from rigidsym.system import resources
+
+SHIPPED = Path(__file__).resolve().parents[2] / "derivations"
+
+
+def read(text: str, name: str = "top") -> DerivationSpec:
+    return read_spec(dedent(text), source="top.toml", name=name)
+
+
+# what a file says
+
+
+def test_a_small_file_asks_for_everything():
+    spec = read('[rotation]\nsequence = "ZXZ"')
+    assert spec == DerivationSpec(
+        name="top",
+        title=None,
+        models=(EulerAngles("ZXZ"),),
+        quantities=(),
+        kernels=("numpy",),
+        note=("tex", "html"),
+    )
+
+
+def test_a_full_file():
+    spec = read(
+        """
+        title = "Ω of a ship"
+        [rotation]
+        sequence = "zyx"
+        angles = ["ψ", "theta", "λ"]
+        passive = true
+        [output]
+        quantities = ["angular_velocity_body", "rotation_matrix"]
+        kernels = ["numpy"]
+        note = ["tex", "pdf"]
+        """
+    )
+    assert spec == DerivationSpec(
+        name="top",
+        title="Ω of a ship",
+        models=(EulerAngles("zyx", ("psi", "theta", "lambda"), passive=True),),
+        quantities=("angular_velocity_body", "rotation_matrix"),
+        kernels=("numpy",),
+        note=("tex", "pdf"),
+    )
+
+
+@pytest.mark.parametrize("sequence", ["ZXZ", "313", "z(phi) x(theta) z(psi)", "z(φ)*x(θ)*z(ψ)"])
+def test_spellings_of_one_rotation(sequence):
+    assert read(f'[rotation]\nsequence = "{sequence}"').models == (EulerAngles("ZXZ"),)
+
+
+def test_turns_name_their_angles():
+    (model,) = read('[rotation]\nsequence = "x(a) y(b) z(c)"').models
+    assert model == EulerAngles("XYZ", ("a", "b", "c"))
+
+
+def test_a_list_names_its_derivations_itself():
+    spec = read('title = "Two"\n[rotation]\nsequence = ["ZXZ", "x(a) y(b) x(c)"]', name="My file")
+    assert [single.name for single in spec.singles()] == [
+        "euler_zxz_intrinsic",
+        "euler_xyx_intrinsic",
+    ]
+    assert [single.title for single in spec.singles()] == [None, None]
+    assert [len(single.models) for single in spec.singles()] == [1, 1]
+
+
+def test_a_list_of_one_names_its_derivation_too():
+    spec = read('[rotation]\nsequence = ["zxz"]', name="My file")
+    assert spec.name == "euler_zxz_extrinsic"
+    assert spec.singles() == (spec,)
+
+
+def test_a_byte_order_mark_and_other_line_ends_do_no_harm():
+    plain = '[rotation]\nsequence = "ZXZ"\n'
+    assert read("\ufeff" + plain.replace("\n", "\r\n")) == read(plain)
+
+
+# files
+
+
+def test_files_are_read_by_path_or_shipped_name():
+    assert read_file("euler_zxz") == read_file(str(SHIPPED / "euler_zxz.toml"))
+
+
+def test_a_file_comes_before_a_shipped_one_of_its_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("euler_zxz").write_text('[rotation]\nsequence = "xyz"', encoding="utf-8")
+    assert read_file("euler_zxz").models == (EulerAngles("xyz"),)
+
+
+@pytest.mark.parametrize(
+    ("content", "fault"),
+    [
+        (b"\n\xff", "line 2: not UTF-8 text"),
+        (b"#" * 200_001, "cannot be read: it has more than 200000 bytes"),
+    ],
+)
+def test_files_that_are_no_text(tmp_path, content, fault):
+    file = tmp_path / "top.toml"
+    file.write_bytes(content)
+    with pytest.raises(SpecError) as caught:
+        read_file(str(file))
+    assert str(caught.value) == f"{file}: 1 fault, nothing written\n  {fault}"
+
+
+def test_files_that_cannot_be_opened(tmp_path):
+    with pytest.raises(SpecError, match=r"cannot be read: Is a directory$"):
+        read_file(str(tmp_path))
+    with pytest.raises(SpecError) as caught:
+        read_file("euler_xzx")
+    assert str(caught.value) == (
+        "euler_xzx: 1 fault, nothing written\n  no such file, and no shipped derivation of this "
+        "name; did you mean euler_zxz or euler_all?"
+    )
+
+
+# the shipped files
+
+
+@pytest.mark.parametrize("name", resources.names("derivations", ".toml"))
+def test_shipped_files_are_good_and_explained(name):
+    spec = read_file(name)
+    assert spec.title
+    assert (SHIPPED / f"{name}.toml").read_text(encoding="utf-8").startswith("# ")
+    assert DerivationSpec.from_data(spec.to_data()) == spec
+
+
+def test_the_shipped_lecture_is_the_lecture():
+    assert read_file("euler_zxz").models == (EulerAngles("ZXZ", ("phi", "theta", "psi")),)
+
+
+def test_the_shipped_aircraft_has_the_matrix_that_its_comment_says():
+    (model,) = read_file("yaw_pitch_roll").models
+    assert model == EulerAngles("ZYX", ("psi", "theta", "phi"), passive=True)
+    first_row = [str(entry).replace("(t)", "") for entry in model.matrix.T[0, :]]
+    assert first_row == ["cos(psi)*cos(theta)", "sin(psi)*cos(theta)", "-sin(theta)"]
+
+
+def test_the_shipped_list_has_all_sequences():
+    names = {EulerAngles(sequence).name for sequence in EULER_SEQUENCES}
+    assert {single.name for single in read_file("euler_all").singles()} == names
+
+
+# specifications in Python
+
+
+def test_the_specification_of_one_rotation():
+    model = EulerAngles("zyx", ("a", "b", "c"), passive=True)
+    assert spec_for("zyx", angles=["a", "b", "c"], passive=True) == DerivationSpec(
+        name=model.name, models=(model,)
+    )
+    assert spec_for("z(a) x(b) z(c)").models == (EulerAngles("ZXZ", ("a", "b", "c")),)
+
+
+@pytest.mark.parametrize(
+    ("sequence", "angles", "message"),
+    [
+        ("ZZX", None, "two turns in a row"),
+        ("ZXZ", [], "three different names"),
+        ("ZXZ", ["a", "b", "b"], "three different names"),
+        ("ZXZ", ["a", "b", "t"], "t is the time"),
+        ("z(a) x(b) z(c)", ["a", "b", "c"], "names its angles itself; leave the other names out"),
+        ("z(a) x(b", None, "column 7: this \\( is never closed"),
+    ],
+)
+def test_a_wrong_rotation_is_a_wrong_use(sequence, angles, message):
+    with pytest.raises(RigidsymError, match=message) as caught:
+        spec_for(sequence, angles=angles)
+    assert caught.value.exit_code == 2
+
+
+def test_a_specification_checks_itself():
+    model = EulerAngles("ZXZ")
+    with pytest.raises(SpecError) as caught:
+        DerivationSpec(
+            name="top",
+            title="\n",
+            models=(model, replace(model, passive=True)),
+            quantities=("weight",),
+            note=(),
+        )
+    assert [str(fault) for fault in caught.value.faults] == [
+        "models: writes the folder euler_zxz_intrinsic, as entry 0 does",
+        'note: the list is empty; expected a list of names such as ["tex"]',
+        f'quantities[0]: unknown name "weight"; known: {", ".join(QUANTITIES)}',
+        "title: an empty text; expected a title, or no such key",
+    ]
+    with pytest.raises(SpecError, match=r"name: numpy\.py would hide the Python module"):
+        DerivationSpec(name="numpy", models=(model,))
+    with pytest.raises(SpecError, match="models: expected at least one rotation"):
+        DerivationSpec(name="top", models=())
+
+
+# as plain data
+
+
+@pytest.mark.parametrize("passive", [False, True])
+def test_the_data_of_every_rotation_goes_through_json_and_back(sequence, passive):
+    spec = spec_for(sequence, angles=["alpha", "lambda", "gamma"], passive=passive)
+    data = json.loads(json.dumps(spec.to_data()))
+    assert DerivationSpec.from_data(data) == spec
+
+
+def test_the_form_of_the_data():
+    spec = read('title = "T"\n[rotation]\nsequence = "313"\n[output]\nquantities = ["spin_matrix"]')
+    assert spec.to_data() == {
+        "name": "top",
+        "title": "T",
+        "rotations": [
+            {"sequence": "ZXZ", "angles": ["phi", "theta", "psi"], "passive": False},
+        ],
+        "quantities": ["spin_matrix"],
+        "kernels": ["numpy"],
+        "note": ["tex", "html"],
+    }
+
+
+def test_wrong_data_has_every_fault_at_once():
+    rotations = [{"sequence": "ZZX"}, {"angles": None, "seqence": 1}]
+    with pytest.raises(SpecError) as caught:
+        DerivationSpec.from_data({"rotations": rotations, "note": 1, "nam": ""}, source="top.json")
+    assert [str(fault) for fault in caught.value.faults] == [
+        "nam: unknown key; did you mean name?",
+        "name: missing; expected the name of the derivation",
+        'note: expected a list of names such as ["tex"], got the number 1',
+        "rotations[0].sequence: 'ZZX' is not an Euler sequence: two turns in a row are about one "
+        "axis; neighbours must differ",
+        "rotations[1].seqence: unknown key; did you mean sequence?",
+        'rotations[1].sequence: missing; expected a sequence such as "ZXZ", or a list of sequences',
+    ]
+
+
+@pytest.mark.parametrize("data", [None, [], "top"])
+def test_data_that_is_no_object(data):
+    with pytest.raises(SpecError, match="expected an object"):
+        DerivationSpec.from_data(data)
+
+
+def test_a_rotation_that_no_file_can_name_has_no_data():
+    model = replace(EulerAngles("ZXZ"), name="mine", request={})
+    with pytest.raises(ModelError, match="mine was made in Python; no derivation file"):
+        DerivationSpec(name="mine", models=(model,)).to_data()

@@ -1,0 +1,244 @@
+"""`rigidsym eval`: the columns that are read, the numbers that are written, and what is refused."""
+
+from __future__ import annotations
+
+import gzip
+
+import numpy as np
+import pytest
+from log_files import COUNT, NAMES, VELOCITY, WRITERS, logged, read, run
+from numpy.testing import assert_array_equal
+from scipy.spatial.transform import Rotation
+
+import rigidsym as rs
+from rigidsym.data.readers import rows_of
+from rigidsym.errors import DataError
+from rigidsym.tools.evaluate.evaluate import evaluation
+
+
+@pytest.fixture(scope="module")
+def motion() -> rs.Motion:
+    return rs.derive("ZXZ")
+
+
+@pytest.fixture(scope="module")
+def table() -> np.ndarray:
+    return logged()
+
+
+@pytest.fixture(scope="module")
+def expected(motion, table):
+    return motion.kernels().load().angular_velocity_body(table[:, :3], table[:, 3:])
+
+
+@pytest.mark.parametrize("target", WRITERS)
+@pytest.mark.parametrize("source", WRITERS)
+def test_each_kind_of_file_to_each(motion, table, expected, tmp_path, source, target):
+    given, result = tmp_path / f"given{source}", tmp_path / f"result{target}"
+    WRITERS[source](given, table)
+    made = evaluation(motion, VELOCITY, given, result, piece=137).run()
+    assert made.rows == COUNT
+    assert_array_equal(read(result), expected)
+    assert sorted(tmp_path.iterdir()) == sorted([given, result])  # no draft, no marks
+
+
+@pytest.mark.parametrize("target", WRITERS)
+def test_single_precision_is_kept(motion, table, tmp_path, target):
+    single = table.astype(np.float32)
+    np.save(tmp_path / "given.npy", single)
+    result = tmp_path / f"result{target}"
+    evaluation(motion, VELOCITY, tmp_path / "given.npy", result).run()
+    kernel = motion.kernels().load().angular_velocity_body
+    values = kernel(single[:, :3], single[:, 3:])
+    assert values.dtype == np.float32
+    assert_array_equal(read(result).astype(np.float32), values)
+
+
+def test_columns_are_found_by_names_with_units_in_any_order(tmp_path):
+    text = "t;Yaw [deg];pitch[deg];ROLL (deg);yaw rate;d_pitch;roll_dot\n5;90;0;0;0;0;10\n"
+    (tmp_path / "log.csv").write_text(text, encoding="utf-8")
+    result = tmp_path / "rates.csv"
+    done = run("z(yaw) y(pitch) x(roll)", tmp_path / "log.csv", "--out", result, "--degrees")
+    assert done.returncode == 0, done.stderr
+    head, line = result.read_text(encoding="utf-8").splitlines()
+    assert head.startswith("angular_velocity_body_1 [deg/s],")
+    assert np.allclose([float(x) for x in line.split(",")], [10, 0, 0])
+
+
+def test_matrices_agree_with_scipy(motion, table, tmp_path):
+    np.save(tmp_path / "angles.npy", table[:, :3])
+    result = tmp_path / "matrices.npy"
+    evaluation(motion, ("rotation_matrix",), tmp_path / "angles.npy", result).run()
+    theirs = Rotation.from_euler("ZXZ", table[:, :3]).as_matrix().reshape(-1, 9)
+    assert np.abs(np.load(result) - theirs).max() < 1e-14
+
+
+def test_rates_are_named_after_the_coordinates(motion, table, tmp_path):
+    np.save(tmp_path / "given.npy", table)
+    name = "rates_from_angular_velocity_body"
+    work = evaluation(motion, (name,), tmp_path / "given.npy", tmp_path / "r.csv", degrees=True)
+    assert work.run().columns == ("phi_dot [deg/s]", "theta_dot [deg/s]", "psi_dot [deg/s]")
+
+
+def test_constants_are_given_as_numbers(table, tmp_path):
+    motion = rs.derive("z(phi) x(alpha0)", only=VELOCITY)
+    np.save(tmp_path / "given.npy", table[:, :2])
+    result = tmp_path / "result.npy"
+    evaluation(motion, VELOCITY, tmp_path / "given.npy", result, given={"alpha0": 0.3}).run()
+    kernel = motion.kernels().load().angular_velocity_body
+    assert_array_equal(np.load(result), kernel(table[:, :1], table[:, 1:2], [0.3]))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("phi,theta,psi,phi_dot,theta_dot,psi_dot\n1,2,3,4,5,6\n1,2,x,4,5,6\n", "line 3: field 3"),
+        ("phi,theta,psi,phi_dot,theta_dot,psi_dot\n1,2,3\n", "line 2: 3 fields, expected 6"),
+        ("phi,theta,psi\n1,2,3\n", "no column phi_dot, theta_dot, psi_dot among phi, theta, psi"),
+        ("1,2,3\n", "3 columns without names: expected 6"),
+        ("\n\n", "no rows"),
+    ],
+)
+def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
+    (tmp_path / "log.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(DataError, match=message):
+        evaluation(motion, VELOCITY, tmp_path / "log.csv", tmp_path / "result.npy").run()
+    assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
+
+
+@pytest.mark.parametrize(
+    ("unit", "degrees", "message"),
+    [("deg", False, "--degrees is missing"), ("rad", True, "--degrees is given")],
+)
+def test_the_unit_in_a_name_is_the_oneread(motion, tmp_path, unit, degrees, message):
+    names = f"phi [{unit}],theta,psi,phi_dot,theta_dot,psi_dot"
+    (tmp_path / "log.csv").write_text(f"{names}\n1,2,3,4,5,6\n", encoding="utf-8")
+    place = tmp_path / "log.csv", tmp_path / "result.npy"
+    with pytest.raises(DataError, match=rf"column phi \[{unit}\]: {message}"):
+        evaluation(motion, VELOCITY, *place, degrees=degrees)
+    evaluation(motion, VELOCITY, *place, degrees=not degrees).run()
+
+
+def test_a_given_that_is_no_number_is_exit_code_2(tmp_path):
+    (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
+    files = tmp_path / "log.csv", "--out", tmp_path / "result.npy"
+    done = run("ZXZ", *files, "--given", "phi=x")
+    assert done.returncode == 2
+    assert "--given phi=x: expected NAME=NUMBER" in done.stderr
+
+
+def test_a_fault_of_the_file_is_exit_code_3_and_leaves_nothing(tmp_path):
+    (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
+    done = run("ZXZ", tmp_path / "log.csv", "--out", tmp_path / "result.npy")
+    assert done.returncode == 3
+    assert done.stderr.startswith(f"rigidsym: {tmp_path / 'log.csv'}: 3 columns without names")
+    assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
+
+
+def test_what_is_no_table_of_numbers_is_refused(tmp_path):
+    np.save(tmp_path / "words.npy", np.array(["a", "b"]))
+    np.save(tmp_path / "flat.npy", np.zeros(3))
+    (tmp_path / "broken.npy").write_bytes(b"nothing")
+    (tmp_path / "broken.parquet").write_bytes(b"nothing")
+    for path in sorted(tmp_path.iterdir()):
+        with pytest.raises(DataError, match=path.name):
+            rows_of(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "found"),
+    [
+        (gzip.compress(b"1,2,3"), r"compressed by gzip \(gunzip unpacks them\)"),
+        (b"PK\3\4", "a ZIP archive or a spreadsheet"),
+        ("phi,theta".encode("utf-16"), "text in UTF-16"),
+        (b"\x93NUMPY", "NPY, but its name does not end in .npy"),
+        (b"\7\0\7", "no text"),
+    ],
+)
+def test_a_file_that_is_no_text_is_named_for_what_it_is(tmp_path, content, found):
+    (tmp_path / "log.csv").write_bytes(content)
+    with pytest.raises(DataError, match=rf"log\.csv holds .*{found}; expected text in UTF-8"):
+        rows_of(tmp_path / "log.csv")
+
+
+@pytest.mark.parametrize(("content", "found"), [(b"x", "another kind of file"), (b"", "an empty")])
+def test_a_file_that_is_no_npy_is_named_without_advice_on_pickles(tmp_path, content, found):
+    (tmp_path / "log.npy").write_bytes(content)
+    with pytest.raises(DataError, match=rf"log\.npy: not an NPY file of numbers, but {found}"):
+        rows_of(tmp_path / "log.npy")
+
+
+def test_the_result_does_not_replace_what_isread(motion, table, tmp_path):
+    np.save(tmp_path / "given.npy", table)
+    with pytest.raises(DataError, match="what is read"):
+        evaluation(motion, VELOCITY, tmp_path / "given.npy", tmp_path / "given.npy")
+
+
+def test_what_no_row_changes_stands_in_every_row(motion, table, tmp_path):
+    """Nine rows are as many as a matrix has entries; each still holds the whole matrix."""
+    np.save(tmp_path / "rates.npy", table[:9, 3:])
+    given = dict(zip(NAMES[:3], (0.1, 0.2, 0.3), strict=True))
+    both = ("angular_velocity_body", "rotation_matrix")
+    work = evaluation(motion, both, tmp_path / "rates.npy", tmp_path / "r.npy", given=given)
+    assert work.run().rows == 9
+    found, module = np.load(tmp_path / "r.npy"), motion.kernels().load()
+    same = module.rotation_matrix((0.1, 0.2, 0.3)).ravel()
+    assert_array_equal(found[:, 3:], np.broadcast_to(same, (9, 9)))
+    velocity = module.angular_velocity_body((0.1, 0.2, 0.3), table[:9, 3:])
+    assert_array_equal(found[:, :3], velocity)
+
+
+def test_the_body_of_a_derivation_file_is_known(table, tmp_path):
+    text = '[rotation]\nsequence = "ZXZ"\n[body]\nmass = 3\nprincipal_moments = [1.5, "B", 2.5]\n'
+    (tmp_path / "top.toml").write_text(text, encoding="utf-8")
+    np.save(tmp_path / "log.npy", table)
+    options = ("--quantity", "rotational_energy", "--given", "B=2.0")
+    paths = (tmp_path / "top.toml", tmp_path / "log.npy")
+    done = run(*paths, "--out", tmp_path / "r.npy", *options)
+    assert done.returncode == 0, done.stderr
+    turned = rs.derive("ZXZ").kernels().load().angular_velocity_body(table[:, :3], table[:, 3:])
+    energy = 0.5 * turned**2 @ (1.5, 2.0, 2.5)
+    np.testing.assert_allclose(np.load(tmp_path / "r.npy")[:, 0], energy, rtol=1e-13)
+
+
+def test_what_needs_no_rows_is_refused(motion, table, tmp_path):
+    np.save(tmp_path / "given.npy", table)
+    paths = tmp_path / "given.npy", tmp_path / "r.npy"
+    given = dict.fromkeys(NAMES[:3], 0.1)
+    with pytest.raises(DataError, match="the same for every row"):
+        evaluation(motion, ("rotation_matrix",), *paths, columns=NAMES, given=given)
+    ball = rs.derive("ZXZ", body=rs.principal_moments(1, 1, 1, mass=1))
+    with pytest.raises(DataError, match="inertia_tensor takes no input"):
+        evaluation(ball, ("rotational_energy", "inertia_tensor"), *paths)
+
+
+@pytest.mark.parametrize(("name", "found"), [("r.xlsx", "the ending .xlsx"), ("r", "no ending")])
+def test_an_ending_that_nobody_writes_is_exit_code_2(tmp_path, name, found):
+    (tmp_path / "log.csv").write_text("1,2,3,4,5,6\n", encoding="utf-8")
+    done = run("ZXZ", tmp_path / "log.csv", "--out", tmp_path / name)
+    assert done.returncode == 2
+    assert f"{name} has {found}; a result ends in .npy, .csv, .txt, .parquet, .pq" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
+
+
+def test_unknown_numbers_are_refused(motion, table, tmp_path):
+    np.save(tmp_path / "given.npy", table)
+    with pytest.raises(DataError, match="alpha is no input here"):
+        evaluation(
+            motion, VELOCITY, tmp_path / "given.npy", tmp_path / "r.npy", given={"alpha": 1.0}
+        )
+
+
+def test_a_cluster_gives_the_same(motion, table, expected, tmp_path):
+    from distributed import LocalCluster
+
+    np.save(tmp_path / "given.npy", table)
+    result = tmp_path / "result.npy"
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        evaluation(
+            motion, VELOCITY, tmp_path / "given.npy", result, piece=50, scheduler=address
+        ).run()
+    assert_array_equal(np.load(result), expected)

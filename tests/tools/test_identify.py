@@ -1,0 +1,396 @@
+"""The detective names the convention of data from SciPy, SymPy and the lecture's formulas."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import permutations
+
+import numpy as np
+import pytest
+from conventions import (
+    EVERY,
+    GENERIC,
+    RATES,
+    attitude,
+    holds,
+    omega,
+    rotation,
+    sample,
+    some,
+    together,
+)
+from numpy import cos, sin
+from scipy.spatial.transform import Rotation
+from sympy import symbols
+from sympy.physics.vector import ReferenceFrame
+
+import rigidsym as rs
+from rigidsym.tools.identify.readings import SEQUENCES, VELOCITIES, Reading, Velocity, distinct
+from rigidsym.tools.identify.turns import Table, angle_between, quaternion_of
+from rigidsym.tools.identify.velocity import angular_velocities
+
+BOTH = pytest.mark.parametrize("passive", [False, True], ids=["active", "passive"])
+UNITS = pytest.mark.parametrize("degrees", [False, True], ids=["radians", "degrees"])
+
+
+def found_alone(reading: Reading, **given) -> rs.Identification:
+    """The data leave one answer, and it is this reading."""
+    found = rs.identify(**given)
+    assert len(found.answers) == 1, found.text()
+    assert holds(found.answers[0], reading), found.text()
+    assert found.further is None
+    return found
+
+
+# --- the data of others ---------------------------------------------------------------------
+
+
+@UNITS
+@BOTH
+def test_scipy_in_all_24_conventions(sequence, passive, degrees):
+    reading = Reading(sequence=sequence, passive=passive, degrees=degrees)
+    found = found_alone(reading, **sample(reading, GENERIC[degrees]))
+    assert found.answers[0].residual < 1e-14
+
+
+@UNITS
+@BOTH
+@pytest.mark.parametrize("scalar_last", [False, True], ids=["scalar_first", "scalar_last"])
+def test_quaternions_of_scipy(sequence, passive, scalar_last, degrees):
+    reading = Reading(sequence=sequence, passive=passive, degrees=degrees, scalar_last=scalar_last)
+    given = sample(reading, GENERIC[degrees])
+    found_alone(reading, **given)
+    found_alone(reading, **{**given, "quaternion": -given["quaternion"]})
+
+
+@UNITS
+@BOTH
+@pytest.mark.parametrize("manner", ["Body", "Space"])
+@pytest.mark.parametrize("axes", SEQUENCES)
+def test_frames_of_sympy(axes, manner, passive, degrees):
+    turns = symbols("a b c")
+    space = ReferenceFrame("N")
+    body = space.orientnew("B", manner, turns, axes)
+    cosines = body.dcm(space) if passive else space.dcm(body)
+    angles = np.array(GENERIC[degrees])
+    radians = np.radians(angles) if degrees else angles
+    matrix = cosines.subs(dict(zip(turns, radians.tolist(), strict=True)))
+    sequence = axes if manner == "Body" else axes.lower()
+    reading = Reading(sequence=sequence, passive=passive, degrees=degrees)
+    found_alone(reading, angles=angles, matrix=np.array(matrix, float))
+
+
+def lecture_turn(axis, angle):
+    """R_z(β) and R_x(β) as the lecture prints them, and the same about y."""
+    c, s = cos(angle), sin(angle)
+    return {
+        "x": np.array([[1, 0, 0], [0, c, -s], [0, s, c]]),
+        "y": np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]),
+        "z": np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]),
+    }[axis]
+
+
+@UNITS
+@BOTH
+def test_products_of_the_lectures_turns_in_all_24_conventions(sequence, passive, degrees):
+    """R is the product of the turns in their order, or in the opposite one about fixed axes."""
+    angles = np.array(GENERIC[degrees])
+    radians = np.radians(angles) if degrees else angles
+    turns = [lecture_turn(a, b) for a, b in zip(sequence.lower(), radians, strict=True)]
+    matrix = np.linalg.multi_dot(turns if sequence.isupper() else turns[::-1])
+    reading = Reading(sequence=sequence, passive=passive, degrees=degrees)
+    found = found_alone(reading, angles=angles, matrix=matrix.T if passive else matrix)
+    assert found.answers[0].residual < 1e-14
+
+
+def lecture_matrix(phi, theta, psi):
+    """The matrix printed after eq. 17."""
+    cf, sf, ct, st, cp, sp = cos(phi), sin(phi), cos(theta), sin(theta), cos(psi), sin(psi)
+    return [
+        [cf * cp - sf * sp * ct, -cf * sp - sf * cp * ct, sf * st],
+        [sf * cp + cf * sp * ct, cf * cp * ct - sf * sp, -cf * st],
+        [sp * st, cp * st, ct],
+    ]
+
+
+def lecture_omega(phi, theta, psi, phi_dot, theta_dot, psi_dot):
+    """Ω before eq. 18, and Ω′ in it."""
+    space = (
+        psi_dot * sin(phi) * sin(theta) + cos(phi) * theta_dot,
+        sin(phi) * theta_dot - psi_dot * cos(phi) * sin(theta),
+        phi_dot + psi_dot * cos(theta),
+    )
+    body = (
+        phi_dot * sin(psi) * sin(theta) + theta_dot * cos(psi),
+        phi_dot * sin(theta) * cos(psi) - theta_dot * sin(psi),
+        phi_dot * cos(theta) + psi_dot,
+    )
+    return {"space": space, "body": body}
+
+
+@pytest.mark.parametrize("frame", ["space", "body"])
+def test_the_lecture_with_its_angular_velocity(frame):
+    theta, phi, psi = angles = (0.7, 0.3, -1.1)  # in the order of its R(θ, φ, ψ)
+    theta_dot, phi_dot, psi_dot = rates = (0.2, 0.5, 0.4)
+    found = found_alone(
+        Reading(sequence="ZXZ", columns=(1, 0, 2), velocity=Velocity(frame=frame)),
+        angles=angles,
+        matrix=lecture_matrix(phi, theta, psi),
+        rates=rates,
+        omega=lecture_omega(phi, theta, psi, phi_dot, theta_dot, psi_dot)[frame],
+        names=("theta", "phi", "psi"),
+    )
+    said = f"ZXZ intrinsic, active, radians, columns (phi, theta, psi), Ω in {frame} components"
+    assert " ".join(found.text().split()).startswith(said)
+
+
+@pytest.mark.parametrize("reading", some(60, seed=1, layouts=(None, False, True)), ids=str)
+def test_any_order_signs_units_and_velocity(reading):
+    found = found_alone(reading, **sample(reading, GENERIC[reading.degrees]))
+    assert found.answers[0].residual < 1e-14
+
+
+@BOTH
+def test_angular_velocities_of_all_24_in_either_frame(sequence, passive):
+    for velocity in VELOCITIES[:2]:
+        reading = Reading(sequence=sequence, passive=passive, velocity=velocity)
+        found_alone(reading, **sample(reading, GENERIC[False]))
+
+
+# --- what a reading is ----------------------------------------------------------------------
+
+
+def test_each_of_the_4608_readings_stands_once_among_the_answers_and_their_aliases():
+    words = [r for canonical in distinct((None,)) for r in (canonical, *canonical.aliases())]
+    assert len(words) == len(set(words)) == len(EVERY) == 4608
+    assert set(words) == set(EVERY)
+
+
+def test_an_answer_is_the_plainest_of_its_aliases():
+    for reading in distinct((None,)):
+        assert all(reading.plainness() < alias.plainness() for alias in reading.aliases())
+
+
+@pytest.mark.parametrize("reading", some(40, seed=2, velocities=VELOCITIES), ids=str)
+def test_aliases_give_the_same_data(reading):
+    angles = GENERIC[reading.degrees]
+    given = sample(reading, angles)
+    for alias in reading.aliases():
+        other = sample(alias, angles)
+        np.testing.assert_allclose(other["matrix"], given["matrix"], atol=1e-14)
+        np.testing.assert_allclose(other["omega"], given["omega"], rtol=1e-6)
+
+
+def test_all_answers_are_different_functions():
+    table = Table(list(distinct((False, True))))
+    (given,) = table.as_given(np.array([[35.0, 65.0, 80.0]]))
+    closeness = np.abs(given @ given.T)
+    np.fill_diagonal(closeness, 0)
+    assert closeness.max() < 1 - 1e-6
+
+
+def test_the_sequences_are_those_of_the_package():
+    assert {*SEQUENCES, *(s.lower() for s in SEQUENCES)} == set(rs.EULER_SEQUENCES)
+
+
+def test_the_table_gives_the_rotations_of_scipy():
+    angles = np.random.default_rng(3).uniform(-170, 170, (5, 3))
+    table = Table(EVERY)
+    given = table.as_given(angles)
+    for k in range(0, len(EVERY), 37):
+        expected = rotation(EVERY[k], angles)
+        expected = expected.inv() if EVERY[k].passive else expected
+        off = angle_between(given[:, k], expected.as_quat(scalar_first=True))
+        assert off.max() < 1e-14
+
+
+def test_quaternions_are_given_in_the_order_of_the_data():
+    readings = some(20, seed=12, layouts=(False, True), velocities=(None,))
+    for reading in readings:
+        (given,) = Table([reading]).as_given(np.array([GENERIC[reading.degrees]]))[0]
+        expected = attitude(reading, GENERIC[reading.degrees])["quaternion"]
+        np.testing.assert_allclose(given * np.sign(given @ expected), expected, atol=1e-14)
+
+
+def test_velocities_are_those_of_the_motion():
+    readings = some(30, seed=4, velocities=VELOCITIES)
+    for reading in readings:
+        angles = GENERIC[reading.degrees]
+        given = angular_velocities([reading], np.array([angles]), np.array([RATES]))[0, 0]
+        for k, frame in enumerate(("space", "body")):
+            expected = omega(replace(reading, velocity=Velocity(frame=frame)), angles, RATES)
+            np.testing.assert_allclose(given[k], expected, atol=1e-7)
+
+
+def test_quaternions_of_matrices_are_those_of_scipy():
+    matrices = Rotation.random(500, rng=5).as_matrix()
+    half_turns = Rotation.from_rotvec(np.pi * np.eye(3)).as_matrix()
+    for given in (matrices, half_turns, np.eye(3)[None]):
+        expected = Rotation.from_matrix(given).as_quat(scalar_first=True)
+        assert angle_between(quaternion_of(given), expected).max() < 1e-14
+
+
+def test_the_rotation_nearest_to_a_noisy_matrix_is_that_of_the_singular_values():
+    rng = np.random.default_rng(6)
+    noisy = Rotation.random(200, rng=7).as_matrix() + rng.normal(0, 0.01, (200, 3, 3))
+    left, _, right = np.linalg.svd(noisy)
+    expected = Rotation.from_matrix(left @ right).as_quat(scalar_first=True)
+    assert angle_between(quaternion_of(noisy), expected).max() < 1e-5
+
+
+@pytest.mark.parametrize("turn", [1e-12, 1e-7, 0.5, np.pi])
+def test_the_angle_between_rotations_is_right_down_to_the_smallest(turn):
+    a = Rotation.random(rng=8)
+    b = Rotation.from_rotvec([0, turn, 0]) * a
+    found = angle_between(a.as_quat(scalar_first=True), -b.as_quat(scalar_first=True))
+    assert found == pytest.approx(turn, rel=1e-3, abs=1e-15)
+
+
+# --- special samples ------------------------------------------------------------------------
+
+SPECIAL = [
+    (Reading(sequence="ZXZ"), (0.4, 0.0, 0.9)),
+    (Reading(sequence="ZYX", degrees=True), (30.0, 0.0, 0.0)),
+    (Reading(sequence="XYZ", degrees=True, passive=True), (25.0, 25.0, 25.0)),
+    (Reading(sequence="zyz", scalar_last=True), (0.0, 0.0, 0.0)),
+    (Reading(sequence="YXZ", degrees=True), (0.0, 0.0, 0.0)),
+    (Reading(sequence="ZYX", degrees=True, scalar_last=False), (10.0, 90.0, 40.0)),
+    (Reading(sequence="ZYX", velocity=VELOCITIES[1]), (0.0, 0.0, 0.5)),
+]
+
+
+@pytest.mark.parametrize(("truth", "angles"), SPECIAL, ids=str)
+def test_the_further_samples_separate_all_that_a_special_sample_leaves(truth, angles):
+    first = sample(truth, angles)
+    found = rs.identify(**first)
+    assert len(found.answers) > 1
+    assert any(holds(answer, truth) for answer in found.answers)
+    rng = np.random.default_rng(9)
+    left = [found.answers[k].reading for k in rng.integers(len(found.answers), size=8)]
+    for reading in [truth, *left]:
+        more = [sample(reading, s.angles, s.rates) for s in found.further.samples]
+        (answer,) = rs.identify(**together(first, *more)).answers
+        assert holds(answer, reading)
+
+
+def test_without_motion_the_frame_of_omega_is_asked_for_with_rates():
+    reading = Reading(sequence="ZXZ", velocity=VELOCITIES[0])
+    found = rs.identify(**sample(reading, GENERIC[False], (0.0, 0.0, 0.0)))
+    assert len(found.answers) == len(VELOCITIES)
+    assert {answer.reading.orientation for answer in found.answers} == {reading.orientation}
+    (further,) = found.further.samples
+    given = [omega(a.reading, further.angles, further.rates) for a in found.answers]
+    apart = [
+        np.linalg.norm(one - other) / max(1.0, np.linalg.norm(one))
+        for one, other in permutations(given, 2)
+    ]
+    assert found.further.velocity_difference == pytest.approx(min(apart), rel=1e-5)
+    assert min(apart) > 0.01
+    (answer,) = rs.identify(
+        **together(
+            sample(reading, GENERIC[False], (0.0, 0.0, 0.0)),
+            sample(reading, further.angles, further.rates),
+        )
+    ).answers
+    assert holds(answer, reading)
+
+
+def test_further_rates_are_about_as_fast_as_those_in_the_data():
+    reading = Reading(sequence="ZXZ", velocity=VELOCITIES[1])
+    first = sample(reading, (0.0, 0.0, 0.0), (1000.0, 2000.0, 3000.0))
+    found = rs.identify(**first, tolerance=1e-3)
+    (further,) = found.further.samples
+    more = sample(reading, further.angles, further.rates)
+    (answer,) = rs.identify(**together(first, more), tolerance=1e-3).answers
+    assert holds(answer, reading)
+
+
+@pytest.mark.parametrize("tolerance", [0.02, 0.1])
+def test_several_further_samples_where_the_tolerance_is_wide(tolerance):
+    truth = Reading(sequence="ZYX", degrees=True)
+    first = sample(truth, (0.0, 0.0, 0.0))
+    found = rs.identify(**first, tolerance=tolerance)
+    assert len(found.answers) == 1152
+    more = [sample(truth, s.angles) for s in found.further.samples]
+    (answer,) = rs.identify(**together(first, *more), tolerance=tolerance).answers
+    assert holds(answer, truth)
+
+
+def test_a_tolerance_too_wide_for_any_sample_says_so():
+    found = rs.identify((0, 0, 0), matrix=np.eye(3), tolerance=2.0)
+    assert found.further is None
+    assert "too wide" in found.text()
+
+
+# --- noise, rounding, no fit ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("digits", [2, 3, 4, 6])
+@pytest.mark.parametrize("given", ["matrix", "quaternion"])
+def test_printed_numbers_are_given_their_rounding(digits, given):
+    rng = np.random.default_rng(digits)
+    reading = Reading(sequence="ZYX", passive=True, degrees=True)
+    reading = reading if given == "matrix" else replace(reading, scalar_last=False)
+    for _ in range(20):
+        angles = rng.uniform(20, 75, 3)
+        printed = np.round(attitude(reading, angles)[given], digits)
+        found = rs.identify(angles, **{given: printed})
+        assert any(holds(answer, reading) for answer in found.answers)
+        assert found.answers[0].residual <= found.tolerance.orientation <= 30 * 10.0**-digits
+
+
+def test_angles_are_taken_to_be_rounded_where_nothing_fits_otherwise():
+    reading = Reading(sequence="ZYX", degrees=True)
+    angles = np.array([17.234, 38.441, -63.078])
+    found = rs.identify(angles.round(1), **attitude(reading, angles))
+    assert holds(found.answers[0], reading)
+    assert "those of the angles too" in found.tolerance.because
+
+
+def test_round_angles_in_radians_stay_exact():
+    found_alone(Reading(sequence="xyz"), **sample(Reading(sequence="xyz"), (0.1, 0.2, 0.3)))
+
+
+def test_noise_needs_a_tolerance_and_is_named_without():
+    rng = np.random.default_rng(10)
+    reading = Reading(sequence="ZXZ", passive=True, degrees=True)
+    angles = rng.uniform(-80, 80, (50, 3))
+    turned = Rotation.from_rotvec(rng.normal(0, 0.003, (50, 3)))
+    matrix = (turned * rotation(reading, angles).inv()).as_matrix()
+    found = rs.identify(angles, matrix=matrix)
+    assert not found.fits
+    assert found.answers == ()
+    assert holds(found.nearest, reading)
+    assert 0.003 < found.nearest.residual < 0.03
+    found = rs.identify(angles, matrix=matrix, tolerance=0.03)
+    (answer,) = found.answers
+    assert holds(answer, reading)
+
+
+def test_one_outlier_is_named_with_its_place():
+    reading = Reading(sequence="ZYX", degrees=True)
+    angles = np.random.default_rng(11).uniform(-80, 80, (1000, 3))
+    matrix = rotation(reading, angles).as_matrix()
+    angles[700] += 5
+    found = rs.identify(angles, matrix=matrix)
+    assert holds(found.nearest, reading)
+    assert (found.nearest.fitting, found.nearest.worst) == (999, "sample 701")
+    assert "999 of 1000 samples fit" in found.text()
+
+
+def test_a_wrong_angular_velocity_is_no_fit_though_the_orientation_fits():
+    reading = Reading(sequence="ZYX", velocity=VELOCITIES[0])
+    given = sample(reading, GENERIC[False])
+    found = rs.identify(**{**given, "omega": given["omega"] * 1.1})
+    assert holds(found.nearest, reading)
+    assert found.nearest.residual < 1e-14
+    assert found.nearest.velocity_residual == pytest.approx(0.1 / 1.1, rel=1e-3)
+
+
+@pytest.mark.parametrize("precision", [np.float32, np.float16])
+def test_lower_precision_is_taken_for_what_it_is(precision):
+    reading = Reading(sequence="ZYX", degrees=True)
+    given = sample(reading, (17.123, 38.456, -63.789))
+    lower = {name: np.asarray(part, precision) for name, part in given.items()}
+    found_alone(reading, **lower)
+    found_alone(reading, **{**given, "angles": lower["angles"]})

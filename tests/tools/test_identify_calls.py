@@ -1,0 +1,61 @@
+"""The calls that the detective prints are run, and give the data back."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from conventions import GENERIC, RATES, sample, some
+
+from rigidsym.tools.identify.calls import calls
+from rigidsym.tools.identify.readings import VELOCITIES, Reading
+
+
+def results_of(statements: str, reading: Reading) -> dict[str, np.ndarray]:
+    """What the statements leave behind."""
+    names = {"np": np, "angles": np.array(GENERIC[reading.degrees]), "rates": np.array(RATES)}
+    exec(compile(statements, "<printed>", "exec"), names)
+    wanted = ("matrix", "quaternion", "omega")
+    return {name: np.array(names[name], float) for name in wanted if name in names}
+
+
+def check(library: str, reading: Reading) -> None:
+    expected = sample(reading, GENERIC[reading.degrees])
+    found = results_of(calls(reading)[library], reading)
+    if reading.scalar_last is None:
+        np.testing.assert_allclose(found["matrix"], expected["matrix"], atol=1e-14)
+    else:
+        sign = np.sign(found["quaternion"] @ expected["quaternion"])
+        np.testing.assert_allclose(sign * found["quaternion"], expected["quaternion"], atol=1e-14)
+    if reading.velocity and library != "SciPy":
+        np.testing.assert_allclose(found["omega"].ravel(), expected["omega"], atol=1e-6, rtol=1e-6)
+
+
+READINGS = some(24, seed=20, layouts=(None, None, False, True), velocities=(None,))
+MOVING = some(10, seed=21, layouts=(None, False, True), velocities=VELOCITIES)
+
+
+@pytest.mark.parametrize("library", ["SciPy", "SymPy", "rigidsym"])
+def test_matrices_of_all_24(sequence, library):
+    for passive in (False, True):
+        check(library, Reading(sequence=sequence, passive=passive, degrees=passive))
+
+
+@pytest.mark.parametrize("library", ["SciPy", "SymPy", "rigidsym"])
+@pytest.mark.parametrize("reading", READINGS, ids=str)
+def test_any_order_signs_units_and_layout(reading, library):
+    check(library, reading)
+
+
+@pytest.mark.parametrize("library", ["SciPy", "SymPy", "rigidsym"])
+@pytest.mark.parametrize("reading", MOVING, ids=str)
+def test_angular_velocities(reading, library):
+    check(library, reading)
+
+
+@pytest.mark.parametrize("library", ["SciPy", "rigidsym"])
+def test_arrays_of_samples(library):
+    reading = Reading(sequence="ZYX", columns=(2, 1, 0), signs=(1, -1, 1), degrees=True)
+    names = {"np": np, "angles": np.array([GENERIC[True]] * 4)}
+    exec(compile(calls(reading)[library], "<printed>", "exec"), names)
+    expected = sample(reading, GENERIC[True])["matrix"]
+    np.testing.assert_allclose(names["matrix"], [expected] * 4, atol=1e-14)
