@@ -34,9 +34,16 @@ class NotARotation(RigidsymError):
 
 
 class BodyError(RigidsymError):
-    """A body that cannot be: no positive mass, an unphysical inertia tensor, an open mesh."""
+    """An impossible body: a mass that is not positive, an unphysical inertia tensor, an open mesh.
+
+    `place` leads to the fault within the body, in the keys of a derivation file: ("parts", 2).
+    """
 
     exit_code: ClassVar[int] = 3
+
+    def __init__(self, message: str, *, place: tuple[str | int, ...] = ()) -> None:
+        super().__init__(message)
+        self.place = place
 
 
 class DerivationError(RigidsymError):
