@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from difflib import unified_diff
-from functools import cache
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 
 import rigidsym as rs
-from rigidsym.motion import derive
+from helpers.motions import derived
 
 # The same examples in every run: a suite that is red today was red yesterday.
 settings.register_profile("same", derandomize=True, deadline=None)
@@ -42,11 +41,6 @@ def golden(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
         assert text == known, "\n".join(["differs; --update-golden takes it over", *diff])
 
     return compare
-
-
-@cache
-def derived(sequence: str, *, passive: bool = False) -> rs.Motion:
-    return derive(rs.EulerAngles(sequence, passive=passive))
 
 
 @pytest.fixture(params=rs.EULER_SEQUENCES)

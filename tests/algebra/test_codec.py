@@ -7,8 +7,8 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import Rational, cos, cot, csc, pi, sec, sin, sqrt, tan
-from witness import TOLERANCE, derivative, mp, number, paths, values_along
 
+from helpers.witness import TOLERANCE, derivative, mp, number, paths, values_along
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.errors import AlgebraError
 from rigidsym.models.so3 import time_function

@@ -7,8 +7,8 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from sympy import Rational, cos, cot, pi, sin, sqrt, tan
-from witness import TOLERANCE, mp, number, paths, values_along
 
+from helpers.witness import TOLERANCE, mp, number, paths, values_along
 from rigidsym.algebra import present
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix

@@ -8,9 +8,9 @@ from functools import cache
 import numpy as np
 import pytest
 import sympy as sp
-from samples import ROTATIONS
-from witness import mp
 
+from helpers.samples import ROTATIONS
+from helpers.witness import mp
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.halves import halved
 from rigidsym.algebra.series import FIRST_SERIES, closed_form, series_of, taylor

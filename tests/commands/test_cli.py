@@ -9,32 +9,17 @@ import signal
 import subprocess
 import sys
 from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
 
 import pytest
 import sympy as sp
 
 import rigidsym as rs
+from helpers.command import RIGIDSYM, ROOT, call
 from rigidsym.motion import derive
 from rigidsym.notes.formats.record import SCHEMA_VERSION
 from rigidsym.text.expression import parse_expression
 
-ROOT = Path(__file__).resolve().parents[2]
-RIGIDSYM = (sys.executable, "-c", "from rigidsym.commands.cli import main; main()")
 NAME = "euler_zxz_intrinsic"
-
-
-def call(*arguments: str, cwd: Path, status: int = 0, **environment: str):
-    done = subprocess.run(
-        [*RIGIDSYM, *arguments],
-        cwd=cwd,
-        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == status, done.stdout + done.stderr
-    return done
 
 
 def test_derive_shows_the_lecture_and_writes_its_files(tmp_path):

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from test_cli import call
 
 import rigidsym as rs
+from helpers.command import call
 from rigidsym.commands.cli import commands
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from

@@ -12,10 +12,10 @@ import sys
 
 import numpy as np
 import pytest
-from conventions import GENERIC, attitude, sample, some
-from test_cli import RIGIDSYM, ROOT, call
 
 import rigidsym as rs
+from helpers.command import RIGIDSYM, ROOT, call
+from helpers.conventions import GENERIC, attitude, sample, some
 from rigidsym.tools.identify.readings import VELOCITIES, Reading
 
 AEROSPACE = Reading(sequence="ZYX", columns=(2, 1, 0), passive=True, degrees=True)

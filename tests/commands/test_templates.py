@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from conftest import derived
 
+from helpers.motions import derived
 from rigidsym.commands.cli import commands
 from rigidsym.errors import TemplateFault
 from rigidsym.system import resources

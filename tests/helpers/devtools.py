@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from browser import CHROMIUM
+from helpers.browser import CHROMIUM
 
 _EXEC = """
 import fcntl, os, sys

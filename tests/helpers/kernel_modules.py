@@ -8,9 +8,9 @@ from types import ModuleType
 
 import numpy as np
 import sympy as sp
-from conftest import derived
 
 import rigidsym as rs
+from helpers.motions import derived
 from rigidsym.kernels.module import generate
 from rigidsym.models.rotation import RotationModel, lecture
 from rigidsym.models.so3 import elementary, time_function

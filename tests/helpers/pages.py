@@ -8,9 +8,8 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-from test_html import odd_model
-
 import rigidsym as rs
+from helpers.elements import odd_model
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN

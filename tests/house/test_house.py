@@ -215,3 +215,19 @@ def test_names_of_the_package_are_found_on_first_use():
 
 def test_the_order_has_no_entry_twice():
     assert len(set(ORDER)) == len(ORDER)
+
+
+# tests
+
+
+TESTS = Path(__file__).resolve().parents[1]
+
+
+@pytest.mark.parametrize("path", sorted(TESTS.rglob("*.py")), ids=lambda p: p.stem)
+def test_tests_share_only_what_helpers_hold(path):
+    own = {p.stem for p in TESTS.rglob("*.py")} | {p.name for p in TESTS.iterdir() if p.is_dir()}
+    nodes = [*ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+    names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+    names |= {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
+    roots = {name.split(".")[0] for name in names}
+    assert roots & own <= {"helpers"}

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 import sympy as sp
 from click.testing import CliRunner
-from conftest import derived
-from witness import evaluate, mp
 
 import rigidsym as rs
+from helpers.motions import derived
+from helpers.target_modules import EVERY, plain
+from helpers.witness import evaluate, mp
 from rigidsym.commands.cli import commands
 from rigidsym.errors import CheckError, MissingTool
 from rigidsym.kernels.accuracy import measure as measuring
@@ -32,13 +33,6 @@ from rigidsym.models.euler_angles import EULER_SEQUENCES
 from rigidsym.system import resources
 
 EPS = 2.0**-52
-EVERY = [
-    pytest.param(
-        name,
-        marks=pytest.mark.skipif(bool(TARGETS[name].missing), reason=TARGETS[name].missing),
-    )
-    for name in TARGETS
-]
 FEW = ("rotation_matrix", "angular_velocity_body", "rates_from_angular_velocity_space")
 
 
@@ -134,11 +128,6 @@ def test_every_file_says_so(target):
     assert "Angles of any size are right." in angles
     assert "Angles of any size are right as they are given; where they are added" in plain(sums)
     assert "Angles of any size" not in none
-
-
-def plain(text: str) -> str:
-    """Without line ends and the stars of comments."""
-    return re.sub(r"\s+(\* )?", " ", text)
 
 
 # the digest

@@ -10,12 +10,12 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from test_accuracy import EVERY, plain
-from test_conversions import module as numpy_module
-from witness import distance, hat, mp
-from witness import rotation as exact_rotation
 
 import rigidsym as rs
+from helpers.conversion_modules import module as numpy_module
+from helpers.target_modules import EVERY, plain
+from helpers.witness import distance, hat, mp
+from helpers.witness import rotation as exact_rotation
 from rigidsym.errors import CheckError
 from rigidsym.kernels.accuracy import measure as measuring
 from rigidsym.kernels.accuracy import measure_ways

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from functools import cache
-from types import ModuleType
-
 import numpy as np
 import pytest
 import sympy as sp
-from conftest import derived
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
-from witness import mp
-from witness import rotation as exact_rotation
 
 import rigidsym as rs
+from helpers.conversion_modules import CHAINS, module
+from helpers.motions import derived
+from helpers.witness import mp
+from helpers.witness import rotation as exact_rotation
 from rigidsym.mechanics.conversions.conversions import conversions_of
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.models.matrices import given
@@ -23,14 +21,6 @@ from rigidsym.models.vectors import RotationVector
 
 EPS = np.finfo(np.float64).eps
 CLOSED = tuple(PARAMETRISATIONS)
-CHAINS = (  # three turns about axes of any kind, the second across the others
-    "[1,1,0](a) [1,-1,1](b) [1,1,0](c)",
-    "z(phi) x(b) [0,3,4](c)",
-    "z(phi) x(b) [0,-3,4](c)",
-    "z(phi) x(b) [0,3,-4](c)",
-    "z(phi) x(b) [0,0,-1](c)",
-    "z(phi) x(b) [0,-1,0](c)",
-)
 ALL = (*rs.EULER_SEQUENCES, *CLOSED, *CHAINS)
 ANY = Rotation.random(300, rng=np.random.default_rng(5))
 SPECIAL = Rotation.concatenate(  # no turn, half turns, nearly none, nearly half a turn
@@ -42,15 +32,6 @@ SPECIAL = Rotation.concatenate(  # no turn, half turns, nearly none, nearly half
         Rotation.from_rotvec(np.array([0.6, 0.0, 0.8]) * (np.pi - 1e-9)),
     ]
 )
-
-
-@cache
-def module(text: str, *, passive: bool = False) -> ModuleType:
-    if text in rs.EULER_SEQUENCES:
-        motion = derived(text, passive=passive)
-    else:
-        motion = rs.derive(rotation_from(text, passive=passive), ["rotation_matrix"])
-    return motion.select(["rotation_matrix"]).kernels(conversions=True).load()
 
 
 def matrices(rotations: Rotation, *, passive: bool) -> np.ndarray:

@@ -12,13 +12,14 @@ from types import ModuleType
 import jax
 import numpy as np
 import pytest
-from test_kernel_jax import double  # noqa: F401  (a fixture)
-from test_target_c import STRICT
 
 import rigidsym as rs
+from helpers.target_modules import STRICT
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
+
+pytestmark = pytest.mark.usefixtures("double")
 
 CHAIN = "z(phi) x(alpha) [0,3,4](beta)"
 CONSTANTS = "z(gamma) x(phi) y(alpha0) z(beta)"

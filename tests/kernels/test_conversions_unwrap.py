@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
-from test_conversions import CHAINS, module
 
 import rigidsym as rs
+from helpers.conversion_modules import CHAINS, module
 
 TIMES = np.linspace(0.01, 12.0, 2401)
 TURNS = (*rs.EULER_SEQUENCES, *CHAINS)

@@ -11,11 +11,11 @@ from functools import cache
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from conftest import derived
 from numpy.testing import assert_allclose, assert_array_equal
-from witness import evaluate, mp
 
 import rigidsym as rs
+from helpers.motions import derived
+from helpers.witness import evaluate, mp
 from rigidsym.commands.cli import commands
 from rigidsym.errors import KernelError, QuantityError, SpecError
 from rigidsym.kernels.lowering.derivatives import read_request, read_requests

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import derived
-from kernel_modules import EPS, turned_by
-from test_targets import FOUR, KINEMATICS, error
-from test_targets import given as given_at
-from witness import evaluate, mp
 
 import rigidsym as rs
+from helpers.kernel_modules import EPS, turned_by
+from helpers.motions import derived
+from helpers.target_modules import FOUR, KINEMATICS, error
+from helpers.target_modules import given as given_at
+from helpers.witness import evaluate, mp
 from rigidsym.errors import MissingTool
 from rigidsym.kernels.ir import Argument, Kernel, Name, Negative
 from rigidsym.kernels.targets.javascript import printer as javascript

@@ -15,10 +15,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import mutually_broadcastable_shapes
-from kernel_modules import QUANTITIES, inputs, module, one_by_one
 from numpy.testing import assert_allclose, assert_array_equal
 
 import rigidsym as rs
+from helpers.kernel_modules import QUANTITIES, inputs, module, one_by_one
 
 
 @pytest.mark.parametrize("name", QUANTITIES)

@@ -9,11 +9,11 @@ import sys
 
 import numpy as np
 import pytest
-from conftest import derived
-from kernel_modules import QUANTITIES, inputs, module, turned_by
 from numpy.testing import assert_array_equal
 
 import rigidsym as rs
+from helpers.kernel_modules import QUANTITIES, inputs, module, turned_by
+from helpers.motions import derived
 from rigidsym import __version__
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.lower import MARGIN

@@ -10,12 +10,12 @@ from functools import cache
 import jax
 import numpy as np
 import pytest
-from conftest import derived
-from kernel_modules import EPS, QUANTITIES, inputs, module
 from numpy.testing import assert_allclose, assert_array_equal
-from test_kernels import angles_of_all_sizes, exactly, worst_error
 
 import rigidsym as rs
+from helpers.errors_of_kernels import angles_of_all_sizes, exactly, worst_error
+from helpers.kernel_modules import EPS, QUANTITIES, inputs, module
+from helpers.motions import derived
 from rigidsym.errors import MissingExtra
 
 
@@ -24,13 +24,7 @@ def functions(name: str = "ZXZ"):
     return rs.derive(name).kernels("jax").load()
 
 
-@pytest.fixture(autouse=True)
-def double():
-    """JAX as most users of float64 configure it."""
-    before = jax.config.jax_enable_x64
-    jax.config.update("jax_enable_x64", True)
-    yield
-    jax.config.update("jax_enable_x64", before)
+pytestmark = pytest.mark.usefixtures("double")
 
 
 @pytest.mark.parametrize("sequence", ["ZXZ", "zyx"])

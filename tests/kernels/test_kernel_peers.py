@@ -10,11 +10,11 @@ import dask.array as da
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import derived
 from distributed import Client, LocalCluster
-from kernel_modules import inputs
 from numpy.testing import assert_allclose, assert_array_equal
 
+from helpers.kernel_modules import inputs
+from helpers.motions import derived
 from rigidsym.kernels.targets import TARGETS
 
 ARRAYS = [

@@ -6,11 +6,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from conftest import derived
-from test_kernels import SPECIAL
-from witness import evaluate, mp
 
 import rigidsym as rs
+from helpers.errors_of_kernels import SPECIAL
+from helpers.motions import derived
+from helpers.witness import evaluate, mp
 from rigidsym.kernels.ir import Argument, Assignment, Call, Kernel, Name, Number, Product, Sum
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.lowering.rounding import rounding

@@ -10,12 +10,12 @@ from itertools import chain
 import numpy as np
 import pytest
 import sympy as sp
-from conftest import derived
-from kernel_modules import module
 from numpy.testing import assert_array_equal
-from witness import evaluate, hat, mp
 
 import rigidsym as rs
+from helpers.kernel_modules import module
+from helpers.motions import derived
+from helpers.witness import evaluate, hat, mp
 from rigidsym.algebra.series import series_of
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.models.library import PARAMETRISATIONS

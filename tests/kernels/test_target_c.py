@@ -13,10 +13,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_cli import call
-from witness import mp
 
 import rigidsym as rs
+from helpers.command import call
+from helpers.target_modules import STRICT
+from helpers.witness import mp
 from rigidsym.errors import CheckError, MissingTool
 from rigidsym.kernels.lowering.sincos import reduction, two_over_pi
 from rigidsym.kernels.targets.c import build as c_build
@@ -31,7 +32,6 @@ COMPILERS = [
     for name in ("gcc", "clang")
 ]
 CPU = Path("/proc/cpuinfo").read_text("utf-8") if Path("/proc/cpuinfo").is_file() else ""
-STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wshadow", "-Wconversion")
 ROTATIONS = ("ZXZ", "rotation_vector", "quaternion")
 NAME = "euler_zxz_intrinsic"
 

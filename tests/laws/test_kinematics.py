@@ -12,7 +12,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import sympy as sp
-from witness import (
+
+from helpers.witness import (
     CONVENTIONS,
     Path,
     Values,
@@ -24,7 +25,6 @@ from witness import (
     paths,
     values_along,
 )
-
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.kinematics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles

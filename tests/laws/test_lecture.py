@@ -9,8 +9,8 @@ import pytest
 import sympy as sp
 from sympy import cos, sin
 from sympy.physics.vector import dynamicsymbols
-from witness import agree, evaluate, paths, values_along
 
+from helpers.witness import agree, evaluate, paths, values_along
 from rigidsym.mechanics.kinematics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.so3 import elementary, hat

@@ -12,7 +12,8 @@ import pytest
 import sympy as sp
 from scipy.spatial.transform import Rotation
 from sympy.physics.vector import ReferenceFrame, dynamicsymbols, kinematic_equations
-from witness import (
+
+from helpers.witness import (
     CONVENTIONS,
     Path,
     agree,
@@ -24,7 +25,6 @@ from witness import (
     unhat,
     values_along,
 )
-
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.kinematics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles

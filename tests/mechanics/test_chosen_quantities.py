@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from test_cli import call
 
+from helpers.command import call
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics.conversions.conversions import conversions_of
 from rigidsym.mechanics.derivation import Proof

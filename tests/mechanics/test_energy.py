@@ -13,11 +13,21 @@ import sympy as sp
 from sympy import Rational, cos, sin
 from sympy.physics.mechanics import Point, ReferenceFrame, RigidBody, inertia
 from sympy.physics.vector import dynamicsymbols
-from witness import Path, agree, derivative, evaluate, mp, paths, rotation, unhat, values_along
 
 import rigidsym as rs
 from benchmarks import energy as energy_benchmark
 from benchmarks import sympy_energy
+from helpers.witness import (
+    Path,
+    agree,
+    derivative,
+    evaluate,
+    mp,
+    paths,
+    rotation,
+    unhat,
+    values_along,
+)
 from rigidsym.errors import ModelError, QuantityError
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.models.body import general_inertia, principal_moments

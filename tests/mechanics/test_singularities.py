@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 import sympy as sp
 from scipy.spatial.transform import Rotation
-from test_library import CHAINS, CONSTANTS, IN_A_PLANE, WITNESSES, motion_of
-from witness import evaluate, mp, number
 
+from helpers.parametrisations import CHAINS, CONSTANTS, IN_A_PLANE, WITNESSES, motion_of
+from helpers.witness import evaluate, mp, number
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.motion import derive

@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 import sympy as sp
 from sympy.physics.vector import dynamicsymbols
-from witness import derivative, evaluate, hat, mp, paths, rotation, unhat, values_along
 
 import rigidsym as rs
+from helpers.witness import derivative, evaluate, hat, mp, paths, rotation, unhat, values_along
 from rigidsym.errors import DerivationError, ModelError, SpecError
 from rigidsym.mechanics.derivation import Statement
 from rigidsym.mechanics.lecture import theory as theory_of

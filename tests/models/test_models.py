@@ -6,11 +6,11 @@ import dataclasses
 
 import pytest
 import sympy as sp
-from samples import ONE, TIME, chain, model, phi
 from sympy import pi
 from sympy.physics.vector import dynamicsymbols
-from witness import CONVENTIONS, agree, evaluate, mp, paths, rotation, turn
 
+from helpers.samples import ONE, TIME, chain, model, phi
+from helpers.witness import CONVENTIONS, agree, evaluate, mp, paths, rotation, turn
 from rigidsym.errors import ModelError
 from rigidsym.models.chain import axis_turn
 from rigidsym.models.chain import chain as chain_of

@@ -10,7 +10,9 @@ import dataclasses
 
 import pytest
 import sympy as sp
-from samples import (
+from sympy import cos, cosh, pi, sech, sin, sinh, sqrt, tanh
+
+from helpers.samples import (
     NORM,
     ROTATIONS,
     TIME,
@@ -30,9 +32,7 @@ from samples import (
     y,
     z,
 )
-from sympy import cos, cosh, pi, sech, sin, sinh, sqrt, tanh
-from witness import agree, derivative, evaluate, mp, paths, unhat, values_along
-
+from helpers.witness import agree, derivative, evaluate, mp, paths, unhat, values_along
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import AlgebraError, DerivationError, ModelError, NotARotation

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 import pytest
 import sympy as sp
-from conftest import derived
 from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
+from helpers.motions import derived
 from rigidsym.errors import AlgebraError
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.models.euler_angles import EulerAngles

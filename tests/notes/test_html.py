@@ -8,20 +8,18 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from browser import look_at, open_page, require_chromium
-from conftest import derived
 
 import rigidsym as rs
+from helpers.browser import look_at, open_page, require_chromium
+from helpers.elements import ODD, Elements, odd_model
+from helpers.motions import derived
 from rigidsym.errors import AlgebraError
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.mechanics.kinematics.derive import derive
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
-from rigidsym.models.rotation import Citation
-from rigidsym.models.so3 import elementary, time_function
 from rigidsym.notes.formats.html import _parts, escape
 from rigidsym.notes.formats.mathml import mathml
 from rigidsym.notes.formats.sanitize import cleaned
@@ -30,7 +28,6 @@ from rigidsym.pipeline import product
 from rigidsym.spec.derivation_file import DerivationSpec, read_file
 
 NAME = "euler_zxz_intrinsic"
-ODD = "</title></script><script>document.title='owned'</script><img src=x onerror=alert(1)> & \"'"
 WORDS = ("heading", "elevation", "bank")
 KINDS = ("axis_angle", "gibbs_vector", "unit_quaternion", "davenport", "z(phi)")
 SHIPPED = ("lecture", "solid_cone", "yaw_pitch_roll")
@@ -42,40 +39,12 @@ def html(motion: rs.Motion) -> str:
     return note(motion, module=f"{motion.name}.py").html()
 
 
-def odd_model() -> rs.RotationModel:
-    """A rotation whose words hold markup."""
-    a, b = time_function("a"), time_function("b")
-    return rs.RotationModel(
-        name="odd",
-        title=ODD,
-        convention=(ODD,),
-        coordinates=(a, b),
-        matrix=elementary("z", a) * elementary("x", b),
-        source=Citation(text=ODD, equation=ODD),
-    )
-
-
 def odd_note() -> str:
     return html(derive(odd_model()))
 
 
 def printed_page(single: DerivationSpec) -> str:
     return product(replace(single, note=("html",))).files[f"{single.name}.html"]
-
-
-class Elements(HTMLParser):
-    """Tags with their attributes, in order, and the text of each heading."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.feed(text)
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append((tag, dict(attrs)))
-
-    def named(self, *names: str) -> list[dict[str, str | None]]:
-        return [attributes for tag, attributes in self.tags if tag in names]
 
 
 def test_the_page_of_the_lectures_rotation(golden):

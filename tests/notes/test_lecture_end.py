@@ -10,10 +10,9 @@ from dataclasses import replace
 from functools import cache
 
 import pytest
-from test_note_fits import _UNPACKED, _sheet
-from test_typeset import _bound_together, tex  # noqa: F401
 
 import rigidsym as rs
+from helpers.typesetting import UNPACKED, bound_together, sheet_of
 from rigidsym.notes.document.boxed import RESULTS
 from rigidsym.notes.document.document import Document, EquationReference, EquationRow, Table
 from rigidsym.notes.formats.pdf import typeset
@@ -79,9 +78,9 @@ def test_the_sheet_holds_the_boxed_results_of_the_theory():
 
 @pytest.mark.usefixtures("tex")
 def test_the_sheet_is_one_page():
-    sheets = [_sheet(document) for document in documents()]
-    sheets[0] = sheets[0].replace("{article}", "{article}" + _UNPACKED)
-    made = typeset(_bound_together(sheets))
+    sheets = [sheet_of(document) for document in documents()]
+    sheets[0] = sheets[0].replace("{article}", "{article}" + UNPACKED)
+    made = typeset(bound_together(sheets))
     assert len(re.findall(rb"/Type\s*/Page\b(?!s)", made.pdf)) == len(sheets)
 
 

@@ -11,10 +11,10 @@ import nbformat
 import numpy as np
 import pytest
 import sympy as sp
-from conftest import derived
 from markdown_it import MarkdownIt
 
 import rigidsym as rs
+from helpers.motions import derived
 from rigidsym.errors import MissingExtra
 from rigidsym.mechanics.kinematics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles

@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
-from conftest import derived
-from test_typeset import tex  # noqa: F401
 
 import rigidsym as rs
+from helpers.motions import derived
 from rigidsym import pipeline
 from rigidsym.commands import cli, options
 from rigidsym.errors import ModelError, SpecError

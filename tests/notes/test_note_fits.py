@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 import sympy as sp
-from test_typeset import _bound_together, tex  # noqa: F401
 
 import rigidsym as rs
+from helpers.typesetting import UNPACKED, bound_together, sheet_of
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import hat
@@ -34,7 +34,6 @@ TURNS = (
 PASSIVE = ("rotation_vector", "unit_quaternion")
 EVERYTHING = (*PARAMETRISATIONS, *PRESETS, *TURNS)
 VECTORS = ("rotation_vector", "gibbs_vector", "modified_rodrigues", "quaternion")
-_UNPACKED = r"\pdfcompresslevel=0 \pdfobjcompresslevel=0 "
 
 
 @pytest.fixture(scope="module")
@@ -53,24 +52,16 @@ def documents() -> list[Document]:
 
 @pytest.mark.usefixtures("tex")
 def test_every_note_compiles_without_a_warning(documents):
-    assert typeset(_bound_together(list(map(print_latex, documents)))).warnings == ()
+    assert typeset(bound_together(list(map(print_latex, documents)))).warnings == ()
 
 
 @pytest.mark.usefixtures("tex")
 def test_every_summary_fits_on_one_sheet(documents):
-    sheets = [_sheet(document) for document in documents]
-    sheets[0] = sheets[0].replace("{article}", "{article}" + _UNPACKED)
-    made = typeset(_bound_together(sheets))
+    sheets = [sheet_of(document) for document in documents]
+    sheets[0] = sheets[0].replace("{article}", "{article}" + UNPACKED)
+    made = typeset(bound_together(sheets))
     pages = re.findall(rb"/Type\s*/Page\b(?!s)", made.pdf)
     assert len(pages) == len(sheets)
-
-
-def _sheet(document: Document) -> str:
-    """The summary of a note, with the numbers of equations but not the equations."""
-    whole = print_latex(document)
-    before, rest = whole.split(r"\begin{document}")
-    body = rest.split(r"\end{thebibliography}")[1]
-    return f"{before}\\begin{{document}}{re.sub(r'.eqref{[^}]*}', '(99)', body)}"
 
 
 def test_no_display_is_wider_than_a_page(documents):

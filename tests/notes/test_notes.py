@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 import sympy as sp
-from conftest import derived
 
 import rigidsym as rs
+from helpers.motions import derived
 from rigidsym.mechanics.derivation import Derivation, Markup, Place, Proof, Singularity
 from rigidsym.mechanics.kinematics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles

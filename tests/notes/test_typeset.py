@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from itertools import chain
 from pathlib import Path
 
@@ -10,6 +9,7 @@ import pytest
 from sympy import Rational, pi, symbols
 
 import rigidsym as rs
+from helpers.typesetting import BEGIN, END, bound_together
 from rigidsym.errors import MissingTool, ToolFailed
 from rigidsym.mechanics.kinematics.derive import derive
 from rigidsym.models.chain import axis_turn
@@ -19,7 +19,7 @@ from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import elementary, time_function
 from rigidsym.notes.formats import pdf as typesetting
-from rigidsym.notes.formats.pdf import missing_programs, typeset
+from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formula.formula import latex
 from rigidsym.notes.formula.notation import notation_of
 from rigidsym.notes.layout.text_width import ems, matrix_ems
@@ -29,27 +29,11 @@ GREEK = ("phi", "theta", "psi")
 OTHER_GREEK = ("alpha", "beta", "gamma")
 WORDS = ("heading", "elevation", "bank")
 INDEXED = ("phi_1", "q2", "phi_body")
-BEGIN, END = r"\begin{document}", r"\end{document}"
-
-
-@pytest.fixture
-def tex() -> None:
-    """TeX is here; without it the test is skipped, or fails where TeX is required."""
-    if missing_programs():
-        required = os.environ.get("RIGIDSYM_REQUIRE_TEX") == "1"
-        (pytest.fail if required else pytest.skip)(f"not installed: {missing_programs()}")
 
 
 def _note(sequence: str, angles: tuple[str, ...] = GREEK, *, passive: bool = False) -> str:
     motion = derive(EulerAngles(sequence, angles, passive=passive))
     return note(motion, module=f"{motion.name}.py").latex()
-
-
-def _bound_together(notes: list[str]) -> str:
-    """Several notes as one document, which is faster than one run of TeX each."""
-    preamble = notes[0].split(BEGIN)[0]
-    bodies = (text.split(BEGIN)[1].split(END)[0] for text in notes)
-    return preamble + BEGIN + "\n\\newpage\\setcounter{section}{0}\n".join(bodies) + END
 
 
 def _page(body: str) -> str:
@@ -68,7 +52,7 @@ def _page(body: str) -> str:
 )
 def test_all_24_notes_compile_without_a_warning(angles, passive, sequences):
     notes = [_note(sequence, angles, passive=passive) for sequence in sequences]
-    assert typeset(_bound_together(notes)).warnings == ()
+    assert typeset(bound_together(notes)).warnings == ()
 
 
 @pytest.mark.usefixtures("tex")

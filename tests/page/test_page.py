@@ -16,10 +16,10 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
-from pages import NAME, carried, main_of, note_in, odd_page, page_of, shipped, spelt
-from test_html import Elements
 
 import rigidsym as rs
+from helpers.elements import Elements
+from helpers.pages import NAME, carried, main_of, note_in, odd_page, page_of, shipped, spelt
 from rigidsym.commands.cli import commands
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import axe_source, require_chromium
-from devtools import Page, chromium
-from pages import LONG, OTHERS, copied, main_of, motion_of, note_in, odd_page, page_of
-from test_html import ODD, WORDS
 
 import rigidsym as rs
+from helpers.browser import axe_source, require_chromium
+from helpers.devtools import Page, chromium
+from helpers.elements import ODD
+from helpers.pages import LONG, OTHERS, copied, main_of, motion_of, note_in, odd_page, page_of
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN
@@ -378,7 +378,9 @@ def test_no_request_can_leave_a_page(tab, tmp_path):
 
 
 def test_words_for_angles_fit_too(tab, tmp_path):
-    opened(tab, derive(rs.EulerAngles("XZY", WORDS)).page(), tmp_path, 360)
+    opened(
+        tab, derive(rs.EulerAngles("XZY", ("heading", "elevation", "bank"))).page(), tmp_path, 360
+    )
     assert tab.run("document.documentElement.scrollWidth") <= 360
 
 

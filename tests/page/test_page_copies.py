@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pages import copied, motion_of, page_of
+
+from helpers.pages import copied, motion_of, page_of
 
 
 def test_what_is_copied_as_python_runs_and_agrees_with_the_kernels():

@@ -6,11 +6,11 @@ import gzip
 
 import numpy as np
 import pytest
-from log_files import COUNT, NAMES, VELOCITY, WRITERS, logged, read, run
 from numpy.testing import assert_array_equal
 from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
+from helpers.log_files import COUNT, NAMES, VELOCITY, WRITERS, logged, read, run
 from rigidsym.data.readers import rows_of
 from rigidsym.errors import DataError
 from rigidsym.tools.evaluate.evaluate import evaluation

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from log_files import COUNT, VELOCITY, WRITERS, command, logged, read, run
 from numpy.testing import assert_array_equal
 
 import rigidsym as rs
+from helpers.log_files import COUNT, VELOCITY, WRITERS, command, logged, read, run
 from rigidsym.data import writers as sinks
 from rigidsym.errors import DraftInUse
 from rigidsym.tools.evaluate.evaluate import Evaluation, evaluation

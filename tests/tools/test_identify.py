@@ -7,7 +7,13 @@ from itertools import permutations
 
 import numpy as np
 import pytest
-from conventions import (
+from numpy import cos, sin
+from scipy.spatial.transform import Rotation
+from sympy import symbols
+from sympy.physics.vector import ReferenceFrame
+
+import rigidsym as rs
+from helpers.conventions import (
     EVERY,
     GENERIC,
     RATES,
@@ -19,12 +25,6 @@ from conventions import (
     some,
     together,
 )
-from numpy import cos, sin
-from scipy.spatial.transform import Rotation
-from sympy import symbols
-from sympy.physics.vector import ReferenceFrame
-
-import rigidsym as rs
 from rigidsym.tools.identify.readings import SEQUENCES, VELOCITIES, Reading, Velocity, distinct
 from rigidsym.tools.identify.turns import Table, angle_between, quaternion_of
 from rigidsym.tools.identify.velocity import angular_velocities

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from conventions import GENERIC, RATES, sample, some
 
+from helpers.conventions import GENERIC, RATES, sample, some
 from rigidsym.tools.identify.calls import calls
 from rigidsym.tools.identify.readings import VELOCITIES, Reading
 

@@ -6,10 +6,10 @@ import tracemalloc
 
 import numpy as np
 import pytest
-from conventions import GENERIC, holds, omega, rotation, sample
 from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
+from helpers.conventions import GENERIC, holds, omega, rotation, sample
 from rigidsym.tools.identify.columns import by_name, by_width
 from rigidsym.tools.identify.identify import identify_file
 from rigidsym.tools.identify.readings import VELOCITIES, Reading

@@ -1,0 +1,141 @@
+"""Rotations of every kind, built at 50 digits by other means than those of the package."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import sympy as sp
+
+from helpers.witness import hat, mp, number, paths, rotation
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.motion import Motion, derive
+
+CLOSE = mp.mpf(10) ** -30
+
+Curve = Callable[[Any], list[Any]]  # coordinates at a time
+
+Build = Callable[[list[Any]], Any]  # R from coordinates
+
+CONSTANTS = {"alpha0": (2, 7), "a": (2, 7), "b": (3, 7), "c": (6, 7)}  # a unit vector
+
+IN_A_PLANE = CONSTANTS | {"b": (3, 5), "c": (4, 5)}  # for an axis without a first component
+
+CHAINS = (
+    "z(phi)",
+    "y(phi) x(theta)",
+    "z(phi) x(theta) z(psi) y(delta)",
+    "x(a_1) y(a_2) z(a_3) x(a_4) y(a_5)",
+    "x(alpha0) z(phi) y(pi/4) x(theta)",
+    "[1,1,0](beta)",
+    "z(phi) [a,b,c](beta) [1,2,2](psi)",
+    "z(2*phi - psi) x(theta) z(psi)",
+    "z(phi) x(phi)",
+    "z(phi/2) x(theta) z(psi/3)",
+    "z(phi) x(theta/2) z(psi)",
+    "z(a) x(b) x(c)",
+)
+
+
+def turned(axis: list[Any], angle: Any) -> Any:
+    """The turn about a unit axis, as the exponential of its matrix."""
+    return mp.expm(angle * hat(axis))
+
+
+def by_quaternion(w: Any, x: Any, y: Any, z: Any) -> Any:
+    """R whose columns are q e q*, by the products i j = k."""
+
+    def times(p, q):
+        return [
+            p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+            p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+            p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
+            p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
+        ]
+
+    size = w * w + x * x + y * y + z * z
+    result = mp.matrix(3, 3)
+    for column in range(3):
+        unit = [0, *(int(column == k) for k in range(3))]
+        image = times(times([w, x, y, z], unit), [w, -x, -y, -z])
+        for row in range(3):
+            result[row, column] = image[row + 1] / size
+    return result
+
+
+def by_cayley(vector: list[Any]) -> Any:
+    """(1 − C)⁻¹ (1 + C): Cayley's transform of the skew matrix of a Gibbs vector."""
+    return mp.inverse(mp.eye(3) - hat(vector)) * (mp.eye(3) + hat(vector))
+
+
+def unitary(q: list[Any]) -> Any:
+    """R from the Cayley-Klein matrix U: the components of U σ·x U*, by traces."""
+    a, b, c, d = q
+    u = mp.matrix([[mp.mpc(a, b), mp.mpc(c, d)], [mp.mpc(-c, d), mp.mpc(a, -b)]])
+    pauli = [
+        mp.matrix([[0, 1], [1, 0]]),
+        mp.matrix([[0, mp.mpc(0, -1)], [mp.mpc(0, 1), 0]]),
+        mp.matrix([[1, 0], [0, -1]]),
+    ]
+    result = mp.matrix(3, 3)
+    for row in range(3):
+        for column in range(3):
+            image = u.H * pauli[column] * u
+            product = pauli[row] * image
+            result[row, column] = mp.re(product[0, 0] + product[1, 1]) / 2
+    return result
+
+
+def normalised(values: list[Any], size: int) -> list[Any]:
+    """The first `size` values made a unit vector, the others as they are."""
+    length = mp.sqrt(sum(value**2 for value in values[:size]))
+    return [value / length for value in values[:size]] + values[size:]
+
+
+def nearly_straight(size: int, start: int = 3) -> Curve:
+    path = paths(1, size=size, seed=start)[0]
+    return lambda t: list(path.at(t))
+
+
+WITNESSES: dict[str, tuple[Curve, Build]] = {
+    "quaternion": (nearly_straight(4), lambda q: by_quaternion(*q)),
+    "unit_quaternion": (
+        lambda t: normalised(nearly_straight(4)(t), 4),
+        lambda q: by_quaternion(*q),
+    ),
+    "axis_angle": (lambda t: normalised(nearly_straight(4)(t), 3), lambda q: turned(q[:3], q[3])),
+    "rotation_vector": (nearly_straight(3), lambda q: mp.expm(hat(q))),
+    "gibbs_vector": (nearly_straight(3), by_cayley),
+    "modified_rodrigues": (nearly_straight(3), lambda q: by_cayley(q) ** 2),
+    "cayley_klein": (lambda t: normalised(nearly_straight(4)(t), 4), unitary),
+    "direction_cosines": (
+        lambda t: list(rotation("ZYX", nearly_straight(3)(t))),
+        lambda q: mp.matrix([q[:3], q[3:6], q[6:]]),
+    ),
+}
+
+
+@cache
+def motion_of(text: str, *, passive: bool = False) -> Motion:
+    return derive(rotation_from(text, passive=passive))
+
+
+def constants_of(motion: Motion) -> dict[sp.Expr, Any]:
+    chosen = IN_A_PLANE if motion.name.startswith("davenport") else CONSTANTS
+    return {sp.Symbol(name): mp.mpf(p) / q for name, (p, q) in chosen.items()}
+
+
+def chain_witness(motion: Motion) -> Build:
+    """R of a chain: a product of exponentials of its axes."""
+
+    def build(q: list[Any]) -> Any:
+        values = dict(zip(motion.model.coordinates, q, strict=True))
+        values |= constants_of(motion)
+        result = mp.eye(3)
+        for turn in motion.model.turns:
+            axis = [number(sp.sympify(part), values) for part in turn.direction]
+            result = result * turned(axis, number(turn.angle, values))
+        return result
+
+    return build

@@ -1,0 +1,28 @@
+"""Notes typeset together, and the summary on one sheet."""
+
+from __future__ import annotations
+
+import re
+
+from rigidsym.notes.document.document import Document
+from rigidsym.notes.formats.latex import print_latex
+
+BEGIN, END = r"\begin{document}", r"\end{document}"
+
+
+def bound_together(notes: list[str]) -> str:
+    """Several notes as one document, which is faster than one run of TeX each."""
+    preamble = notes[0].split(BEGIN)[0]
+    bodies = (text.split(BEGIN)[1].split(END)[0] for text in notes)
+    return preamble + BEGIN + "\n\\newpage\\setcounter{section}{0}\n".join(bodies) + END
+
+
+UNPACKED = r"\pdfcompresslevel=0 \pdfobjcompresslevel=0 "
+
+
+def sheet_of(document: Document) -> str:
+    """The summary of a note, with the numbers of equations but not the equations."""
+    whole = print_latex(document)
+    before, rest = whole.split(r"\begin{document}")
+    body = rest.split(r"\end{thebibliography}")[1]
+    return f"{before}\\begin{{document}}{re.sub(r'.eqref{[^}]*}', '(99)', body)}"
