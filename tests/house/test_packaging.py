@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import site
 import subprocess
 import sys
 import sysconfig
@@ -15,7 +14,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PROBE = (
-    "from rigidsym import resources\n"
+    "from rigidsym.system import resources\n"
     "print(resources.folder('templates'))\n"
     "assert 'euler_zxz' in resources.names('derivations', '.toml')\n"
     "import rigidsym as rs\n"
@@ -64,7 +63,7 @@ def test_the_editable_install_finds_the_checkout(tmp_path):
     python = home / "bin" / "python"
     libraries = sysconfig.get_path("purelib", vars={"base": str(home), "platbase": str(home)})
     # The dependencies are those of the running interpreter; only rigidsym itself is installed.
-    inherited = "\n".join(site.getsitepackages())
+    inherited = "\n".join(path for path in sys.path if path.endswith("-packages"))
     (Path(libraries) / "inherited.pth").write_text(inherited + "\n")
     install = ("-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "-e", ROOT)
     call(python, *install, cwd=tmp_path)
