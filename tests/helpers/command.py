@@ -9,7 +9,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 
-RIGIDSYM = (sys.executable, "-c", "from rigidsym.commands.cli import main; main()")
+# A test may run where SIGINT is ignored, under nohup or as a background job, and a child would
+# inherit that: it listens again, as a command typed into a terminal does.
+_PROGRAM = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    "from rigidsym.commands.cli import main; main()"
+)
+RIGIDSYM = (sys.executable, "-c", _PROGRAM)
 
 
 def call(*arguments: str, cwd: Path, status: int = 0, **environment: str):

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 
+from helpers.command import RIGIDSYM
 from rigidsym.data.readers import rows_of
 
 COUNT = 1000
@@ -21,8 +21,7 @@ def logged() -> np.ndarray:
 
 
 def command(*arguments: object) -> list[str]:
-    program = "from rigidsym.commands.cli import main; main()"
-    return [sys.executable, "-c", program, "eval", *map(str, arguments)]
+    return [*RIGIDSYM, "eval", *map(str, arguments)]
 
 
 def run(*arguments: object) -> subprocess.CompletedProcess[str]:
