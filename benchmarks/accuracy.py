@@ -15,7 +15,6 @@ import mpmath as mp
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks import measured
 from benchmarks.measure import Settings, progress
 from benchmarks.report import Cell, Column, Figure, Report, Table
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
@@ -150,9 +149,7 @@ def errors(sequence: str, samples: int) -> Errors:
 
 
 def run(settings: Settings) -> Report:
-    """All 24 conventions, or the table that the package carries."""
-    if settings.write:
-        return measured.run(settings)
+    """All 24 conventions."""
     found: dict[str, Errors] = {}
     for sequence in EULER_SEQUENCES:
         progress(f"errors of {sequence}")

@@ -42,8 +42,7 @@ class Settings:
     repeats: int | None = None  # None: each benchmark's own
     size: int = 1_000_000  # orientations in a batch of the kernels
     samples: int = 40  # orientations of each kind whose errors are taken
-    fresh: bool = False  # survey SymPy's forms anew, measure all kernels anew
-    write: bool = False  # write the table of measured errors that the package carries
+    fresh: bool = False  # survey SymPy's forms anew
 
 
 def interleaved(

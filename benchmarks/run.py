@@ -84,7 +84,6 @@ def _settings(given: argparse.Namespace) -> Settings:
         size=given.size,
         samples=given.samples,
         fresh=given.fresh,
-        write=given.write,
     )
 
 
@@ -103,12 +102,6 @@ def _parser() -> argparse.ArgumentParser:
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)
     parser.add_argument("--readme", action="store_true", help="put the tables into README.md")
     parser.add_argument("--fresh", action="store_true", help="survey SymPy's forms anew (minutes)")
-    parser.add_argument(
-        "--write",
-        action="store_true",
-        help="of accuracy: measure all shipped functions that have no row in the package's table "
-        "of errors, or with --fresh all of them (an hour), and write it",
-    )
     return parser
 
 

@@ -13,7 +13,6 @@ from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.formula.manner import DEFAULT, Manner
 
 if TYPE_CHECKING:
-    from rigidsym.kernels.accuracy.table import Measured
     from rigidsym.kernels.lowering.derivatives import Asked
     from rigidsym.kernels.module import KernelModule
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -43,31 +42,18 @@ class Motion(Derivation):
         *,
         conversions: bool = False,
         derivatives: Asked = (),
-        measure: bool | Measured = False,
     ) -> KernelModule:
         """The module of functions for one target: `.source`, `.load()`, `.write(path)`.
 
         `conversions` adds the functions to and from the unit quaternion and the matrix, and
         `unwrap`; `derivatives` those of quantities by their inputs, with the value before them:
         {"angular_velocity_body": ("q", "q_dot")} adds `angular_velocity_body_jacobian_q` and so
-        on, "q jvp" and "q vjp" products with a vector. `measure` states the largest errors of the
-        functions, measured here and now against 50 digits, or as they were; without it, those that
-        are known of the catalogue. Raises KernelError for an unknown target or derivative, and
-        MissingTool or MissingExtra where there is nothing to measure with.
+        on, "q jvp" and "q vjp" products with a vector. Raises KernelError for an unknown target or
+        derivative.
         """
         from rigidsym.kernels.module import generate
 
-        if measure is True:
-            from rigidsym.kernels.accuracy.measure import measure as measured_now
-
-            measure = measured_now(self, [target], conversions=conversions, derivatives=derivatives)
-        return generate(
-            self,
-            target,
-            conversions=conversions,
-            derivatives=derivatives,
-            measured=measure or None,
-        )
+        return generate(self, target, conversions=conversions, derivatives=derivatives)
 
     @property
     def conversions(self) -> Conversions:

@@ -79,12 +79,8 @@ def _texts(
 ) -> Iterator[tuple[str, str]]:
     """(name, content) of each text file, the record last, since it speaks for the others."""
     for target in spec.kernels:
-        yield from motion.kernels(
-            target,
-            conversions=spec.conversions,
-            derivatives=spec.derivatives,
-            measure=spec.measured or False,
-        ).files.items()
+        module = motion.kernels(target, conversions=spec.conversions, derivatives=spec.derivatives)
+        yield from module.files.items()
     note = motion.note(with_kernels="numpy" in spec.kernels, conversions=spec.conversions)
     for ending, printed in _PRINTERS.items():
         if ending in spec.note or (ending == "tex" and PDF in spec.note):

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from rigidsym.commands.options import as_chosen, measures
+from rigidsym.commands.options import as_chosen
 from rigidsym.commands.output_folder import say_what_was_there, with_what_is_there
-from rigidsym.errors import CheckError
 from rigidsym.kernels.targets.c.build import build
 from rigidsym.pipeline import PAGE, page_name, product
 from rigidsym.spec.derivation_file import DerivationSpec, spec_of
@@ -22,20 +21,11 @@ def built(asked: str, out: Path, *, portable: bool = False) -> Iterator[Path]:
     """
     source = Path(asked)
     if source.suffix == ".c":
-        if measures():
-            raise CheckError(f"{asked}: --measure needs the rotation, or the file it comes from")
         yield build(source, portable=portable)
         return
     for single in spec_of(asked).singles():
-        wanted = replace(single, kernels=("c",))
-        folder = _written(_measured(wanted) if measures() else wanted, out)
+        folder = _written(replace(single, kernels=("c",)), out)
         yield build(folder / f"{single.name}.c", portable=portable)
-
-
-def _measured(spec: DerivationSpec) -> DerivationSpec:
-    from rigidsym.commands.measuring import measured
-
-    return measured(spec)[0]  # without a compiler, building fails
 
 
 def paged(asked: str, out: Path) -> Iterator[Path]:

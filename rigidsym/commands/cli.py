@@ -17,7 +17,6 @@ import click
 
 from rigidsym.commands.options import (
     JSON,
-    MEASURE,
     OUT,
     TEMPLATES,
     OnceCommand,
@@ -130,7 +129,6 @@ def run(files: tuple[str, ...], out: Path, pdf: bool, as_json: bool) -> None:
 @commands.command()
 @click.argument("asked", nargs=-1, required=True, metavar="ROTATION|FILE...")
 @click.option("--portable", is_flag=True, help="For any processor of this kind; slower.")
-@MEASURE
 @TEMPLATES
 @OUT
 def build(asked: tuple[str, ...], out: Path, *, portable: bool) -> None:

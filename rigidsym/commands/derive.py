@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.options import as_chosen, measures
+from rigidsym.commands.options import as_chosen
 from rigidsym.commands.output_folder import say_what_was_there, with_what_is_there
 from rigidsym.errors import RigidsymError, SpecError
 from rigidsym.notes.formats.terminal import show
@@ -43,8 +43,6 @@ def produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool)
     _check_folders(singles)
     shown_in_full = len(singles) == 1
     missing: RigidsymError | None = None
-    if measures():
-        singles, missing = _measured(singles)
     singles = [with_what_is_there(single, out) for single in singles]
     for made in _with_progress(singles):
         written, problem = _write(made, out)
@@ -57,17 +55,6 @@ def produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool)
             click.echo(_summary(made, written))
     if missing:
         raise missing
-
-
-def _measured(
-    singles: Iterable[DerivationSpec],
-) -> tuple[list[DerivationSpec], RigidsymError | None]:
-    """With the errors of their functions, and what first could not be measured with."""
-    from rigidsym.commands.measuring import measured
-
-    found = [measured(single) for single in singles]
-    problems = (problem for _, problem in found if problem)
-    return [single for single, _ in found], next(problems, None)
 
 
 def _check_folders(singles: Iterable[DerivationSpec]) -> None:

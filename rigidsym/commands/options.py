@@ -143,30 +143,10 @@ FOR_TARGETS = click.option(
 )
 
 
-def _keep_measure(context: click.Context, _: click.Parameter, is_wanted: bool) -> None:
-    context.meta[_MEASURE] = is_wanted
-
-
-_MEASURE = f"{__name__}.measure"
-MEASURE = click.option(
-    "--measure",
-    is_flag=True,
-    expose_value=False,
-    callback=_keep_measure,
-    help="Measure the functions against 50 digits, and state their largest errors.",
-)
-
-
-def measures() -> bool:
-    """Whether errors are to be measured."""
-    return bool(click.get_current_context().meta.get(_MEASURE, False))
-
-
 _OF_PRODUCTION = (
     WITH_CONVERSIONS,
     WITH_DERIVATIVES,
     FOR_TARGETS,
-    MEASURE,
     in_notation,
     TEMPLATES,
     OUT,

@@ -210,7 +210,6 @@ class Kernel:
     about: str = ""  # words
     unit: str = ""  # SI; "" for a pure number
     parts: tuple[tuple[int, ...], ...] = ()  # shapes of the results that the outputs are, in order
-    measured: str = ""  # a sentence: its largest error; empty where that is not known
 
     def __post_init__(self) -> None:
         if len(self.outputs) != prod(self.shape):
@@ -287,4 +286,3 @@ class Program:
     source: str  # where the rotation comes from
     arguments: tuple[Argument, ...]  # all that occur, in the order of a signature
     kernels: tuple[Kernel, ...]
-    measured_with: str = ""  # the program, its version and the processor, of measured errors

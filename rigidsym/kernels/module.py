@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
 from rigidsym.errors import KernelError
-from rigidsym.kernels.accuracy.digest import digest
-from rigidsym.kernels.accuracy.table import Measured, shipped
 from rigidsym.kernels.lowering.derivatives import Asked, derivatives_of, read_requests
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets import printer
@@ -18,7 +16,6 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.system.files import write_text
 
 if TYPE_CHECKING:
-    from rigidsym.kernels.accuracy.ways import Way
     from rigidsym.kernels.conversions.conversions import ConversionProgram
 
 
@@ -71,15 +68,13 @@ def generate(
     *,
     conversions: bool = False,
     derivatives: Asked = (),
-    measured: Measured | None = None,
 ) -> KernelModule:
     """The kernels of all quantities of a derivation, for one target.
 
     `conversions` adds those between the coordinates, the unit quaternion and the matrix,
-    `derivatives` those that are asked for: ["angular_velocity_body by q"]; `measured` are errors
-    to state, in place of those that are known of the catalogue. Raises KernelError for an unknown
-    target or derivative, for an expression that kernels cannot hold, and where nothing that is
-    derived depends on anything.
+    `derivatives` those that are asked for: ["angular_velocity_body by q"]. Raises KernelError for
+    an unknown target or derivative, for an expression that kernels cannot hold, and if no derived
+    quantity depends on any input.
     """
     chosen = printer(target)
     wanted = derivatives_of(derivation, read_requests(derivatives))
@@ -91,24 +86,12 @@ def generate(
             f"{derived}; expected kernels = [], or another quantity"
         )
     converting: ConversionProgram | None = None
-    ways: tuple[Way, ...] = ()
     if conversions:
-        from rigidsym.kernels.accuracy.ways import stated, ways_of
         from rigidsym.kernels.conversions.conversions import lower_conversions
         from rigidsym.mechanics.conversions.conversions import conversions_of
 
         converting = lower_conversions(
             derivation, conversions_of(derivation.model), chosen.RESERVED
         )
-        ways = ways_of(converting, derivation, program.kernels)
-    kernels = (*program.kernels, *(converting.kernels if converting else ()))
-    names = {digest(kernel) for kernel in kernels} | {way.digest for way in ways}
-    known = measured if measured and target in measured.tools else shipped(names)
-    program = known.stated(program, target)
-    if converting is not None:
-        told = stated(converting, ways, known, target)
-        if told != converting:
-            program = replace(program, measured_with=known.tools[target])
-        converting = told
     files = chosen.render(program, converting)
     return KernelModule(name=derivation.name, target=target, files=files)

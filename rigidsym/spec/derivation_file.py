@@ -11,8 +11,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rigidsym.errors import CheckError, Fault, KernelError, ModelError, SpecError
-from rigidsym.kernels.accuracy.table import Measured, read
+from rigidsym.errors import Fault, KernelError, ModelError, SpecError
 from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
@@ -69,7 +68,6 @@ class DerivationSpec:
     conversions: bool = False  # whether to and from quaternion and matrix, too
     derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
     manner: Manner = DEFAULT  # the notation of notes and terminal
-    measured: Measured | None = None  # errors to state, in place of those of the catalogue
 
     def __post_init__(self) -> None:
         faults = Faults(self.name)
@@ -117,7 +115,6 @@ class DerivationSpec:
             **({"conversions": True} if self.conversions else {}),
             **({"derivatives": list(self.derivatives)} if self.derivatives else {}),
             **({"notation": asdict(self.manner)} if self.manner != DEFAULT else {}),
-            **({"measured": self.measured.lines()} if self.measured else {}),
         }
 
     @classmethod
@@ -127,8 +124,9 @@ class DerivationSpec:
             raise SpecError(source, [Fault(line=0, path="", message="expected an object")])
         faults = Faults(source)
         table = Table(data, (), faults)
-        own = ("name", "title", "theory", "rotations", "parameters", "body", "notation", "measured")
-        table.refuse_others((*own, *_OUTPUT, *_MORE_OUTPUT))
+        own = ("name", "title", "theory", "rotations", "parameters", "body", "notation")
+        former = ("measured",)  # in old records: errors that were printed with the kernels
+        table.refuse_others((*own, *former, *_OUTPUT, *_MORE_OUTPUT))
         rotations = table.tables("rotations", "a list of objects with sequence and angles")
         name, title, output = table.text("name"), _read_title(table), _read_output(table)
         models = [m for rotation in rotations for m in _read_rotation(rotation, name or "")]
@@ -136,7 +134,6 @@ class DerivationSpec:
             table.fault("missing; expected the name of the derivation", "name")
         manner, body = _read_notation(table), _read_body(table, name or "", Path())
         output["theory"] = _read_theory(table, models)
-        output["measured"] = _read_measured(table)
         faults.raise_if_any()
         return cls(
             name=name or "", title=title, models=tuple(models), body=body, manner=manner, **output
@@ -299,15 +296,6 @@ def _read_output(table: Table) -> dict[str, Any]:
     chosen["conversions"] = table.flag("conversions")
     chosen["derivatives"] = _read_derivatives(table, chosen["quantities"] or QUANTITIES)
     return {key: choice for key, choice in chosen.items() if choice is not None}
-
-
-def _read_measured(table: Table) -> Measured | None:
-    lines = table.texts("measured", "the lines of a table of measured errors")
-    try:
-        return None if lines is None else read(line or "" for line in lines)
-    except CheckError as error:
-        table.fault(str(error), "measured")
-    return None
 
 
 def _read_derivatives(table: Table, quantities: Sequence[str]) -> tuple[str, ...] | None:

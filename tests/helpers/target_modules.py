@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from functools import cache
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -94,3 +96,30 @@ def plain(text: str) -> str:
 
 
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wshadow", "-Wconversion")
+
+
+def row_by_row(target: str, function: Callable[..., Any]) -> Callable[..., np.ndarray]:
+    """The function on arrays with one point a row; all its results as one row a point."""
+    compute = _jitted(function) if target == "jax" else function
+
+    def call(*arrays: np.ndarray) -> np.ndarray:
+        found = compute(*arrays)
+        parts = found if isinstance(found, tuple) else (found,)
+        return np.hstack([np.asarray(part).reshape(len(arrays[0]), -1) for part in parts])
+
+    return call
+
+
+def _jitted(function: Callable[..., Any]) -> Callable[..., Any]:
+    """As jax.jit compiles it, in the precision of the arrays."""
+    import jax
+
+    def call(*arrays: np.ndarray) -> Any:
+        before = jax.config.jax_enable_x64
+        jax.config.update("jax_enable_x64", True)
+        try:
+            return jax.tree.map(np.asarray, jax.jit(function)(*arrays))
+        finally:
+            jax.config.update("jax_enable_x64", before)
+
+    return call

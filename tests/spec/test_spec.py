@@ -256,3 +256,9 @@ def test_a_rotation_that_no_file_can_name_has_no_data():
     model = replace(EulerAngles("ZXZ"), name="mine", request={})
     with pytest.raises(ModelError, match="mine was made in Python; no derivation file"):
         DerivationSpec(name="mine", models=(model,)).to_data()
+
+
+def test_errors_that_old_records_state_are_ignored():
+    spec = spec_for("ZXZ")
+    old = spec.to_data() | {"measured": ["# numpy: NumPy 2.4", "digest,points", 1]}
+    assert DerivationSpec.from_data(old) == spec

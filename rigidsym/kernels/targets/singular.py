@@ -11,6 +11,7 @@ from math import ceil
 
 from rigidsym.algebra.series import FIRST_SERIES, Series, series_of, taylor
 from rigidsym.kernels.ir import FUNCTIONS, Call, Expression, Guarded, Kernel, Name, Number
+from rigidsym.kernels.lowering.rounding import SINE, adds_angles, rounding
 from rigidsym.kernels.targets.layout import bracketed, exploded
 from rigidsym.system import resources
 
@@ -159,4 +160,32 @@ def poles(kernel: Kernel) -> Iterator[str]:
         yield (
             f"Divides by {', '.join(found)}: near its zeros the result grows and loses digits; "
             "at them what is divided is NaN."
+        )
+
+
+_NAN = "NaN in a component makes every entry that depends on it NaN, and so does an infinite angle."
+_LARGE = "Results are accurate for angles of any magnitude."
+_ADDED = (
+    "Results are accurate for angles of any magnitude. Where angles are added or multiplied before "
+    "a sine is taken, rounding the sum adds half an eps of its size."
+)
+
+
+def bound(kernel: Kernel) -> Iterator[str]:
+    """The proved bound on the rounding error of one function, if there is one."""
+    found = rounding(kernel)
+    if found is not None and found.error:
+        yield str(found)
+
+
+def errors(kernels: Sequence[Kernel]) -> Iterator[str]:
+    """Paragraphs on errors for the head of a file."""
+    called = {call.function for kernel in kernels for call in calls_of(kernel).values()}
+    has_angles = not called.isdisjoint(("sin", "cos"))
+    angles = [_ADDED if any(map(adds_angles, kernels)) else _LARGE] if has_angles else []
+    yield " ".join([*angles, _NAN])
+    if any(rounding(kernel) for kernel in kernels):
+        yield (
+            "Bounds on rounding errors are proved from the operations, in eps of the result's "
+            f"type, for sines and cosines within {SINE:g} eps and inputs taken as exact."
         )

@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import pi
 from types import ModuleType
 
-from rigidsym.kernels.accuracy import words as accurate
 from rigidsym.kernels.conversions.conversions import ConversionProgram, Formula
 from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program
 from rigidsym.kernels.lowering.sincos import two_over_pi
@@ -157,7 +156,7 @@ def _about(program: Program) -> list[str | Sequence[str]]:
         "not overlap an argument.",
         "Sine and cosine are evaluated here, within 2 eps of their size (eps is 2^-52 in double, "
         "2^-23 in float) at any finite angle.",
-        *accurate.remarks(program.kernels, program.measured_with),
+        *singular.errors(program.kernels),
         "No function allocates, recurses or keeps a state; an array function takes room for "
         f"{_TILE} orientations on the stack.",
     ]
@@ -171,7 +170,7 @@ def _about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
         f"{kernel.symbol}{definition}: {kernel.about}.",
         _vectors(kernel),
         f"{place}{kernel.operations}.",
-        *accurate.accuracy(kernel),
+        *singular.bound(kernel),
         *singular.poles(kernel),
     ]
 

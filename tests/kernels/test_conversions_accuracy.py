@@ -1,0 +1,193 @@
+"""Errors of inverse conversions and of `unwrap`, as angles between rotations."""
+
+from __future__ import annotations
+
+import random
+from functools import cache
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import rigidsym as rs
+from helpers.conversion_modules import module as numpy_module
+from helpers.target_modules import EVERY, row_by_row
+from helpers.witness import distance, hat, mp
+from helpers.witness import rotation as exact_rotation
+from rigidsym.models.rotation_text import rotation_from
+
+BACK = ("from_quaternion", "from_rotation_matrix")
+MOST_OF_EULER = 16.4  # eps in R, near poles too
+MOST_OF_OTHERS = 4.3
+
+
+@cache
+def motion(text: str) -> rs.Motion:
+    return rs.derive(rotation_from(text), ["rotation_matrix"])
+
+
+# the witness: quaternions and coordinates as rotations, by textbook formulas at 50 digits
+
+
+def of_quaternion(w, x, y, z):
+    """The rotation, times the square of the length."""
+    v = mp.matrix([x, y, z])
+    square = x * x + y * y + z * z
+    return (w * w - square) * mp.eye(3) + 2 * v * v.T + 2 * w * hat(v)
+
+
+def of_unit(*parts):
+    return of_quaternion(*parts) / mp.fsum(part * part for part in parts)
+
+
+def of_axis(x, y, z, angle):
+    skew = hat([x, y, z])
+    return mp.eye(3) + mp.sin(angle) * skew + (1 - mp.cos(angle)) * skew * skew
+
+
+def of_vector(x, y, z):
+    length = mp.sqrt(x * x + y * y + z * z)
+    return of_axis(x / length, y / length, z / length, length)
+
+
+def of_shadows(x, y, z):
+    square = x * x + y * y + z * z
+    return of_unit((1 - square) / 2, x, y, z)
+
+
+FORMS = {
+    "quaternion": of_unit,
+    "unit_quaternion": of_quaternion,
+    "axis_angle": of_axis,
+    "rotation_vector": of_vector,
+    "gibbs_vector": lambda x, y, z: of_unit(mp.one, x, y, z),
+    "modified_rodrigues": of_shadows,
+    "cayley_klein": lambda a, b, c, d: of_quaternion(a, d, c, b),
+    "direction_cosines": lambda *entries: mp.matrix([entries[k : k + 3] for k in (0, 3, 6)]),
+}
+
+
+def turned(text: str, q) -> mp.matrix:
+    exact = [mp.mpf(float(part)) for part in q]
+    return FORMS[text](*exact) if text in FORMS else exact_rotation(text, exact)
+
+
+def given(text: str, count: int, seed: int) -> np.ndarray:
+    """Quaternions (count, 4), of Euler angles that come near to poles too."""
+    source = np.random.default_rng(seed)
+    found = source.normal(size=(count, 4))
+    if text in FORMS:
+        return found
+    away = source.choice([-1, 1], count) * 10.0 ** -source.uniform(1, 17, count)
+    pole = source.choice([0, np.pi] if text[0] == text[2] else [-np.pi / 2, np.pi / 2], count)
+    turns = [source.uniform(-np.pi, np.pi, count), pole + away, source.uniform(-3, 3, count)]
+    axes = [np.eye(3)["xyz".index(axis)][:, np.newaxis] for axis in text.lower()]
+    parts = [
+        np.stack([np.cos(angle / 2), *(np.sin(angle / 2) * axis)])
+        for axis, angle in zip(axes, turns, strict=True)
+    ]
+    parts = parts if text.isupper() else parts[::-1]
+    near = multiplied(multiplied(parts[0], parts[1]), parts[2]).T
+    return np.where(np.arange(count)[:, None] % 2, near, found)
+
+
+def multiplied(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """The product of quaternions (4, count)."""
+    vector = p[0] * q[1:] + q[0] * p[1:] + np.cross(p[1:], q[1:], axis=0)
+    return np.concatenate([[p[0] * q[0] - (p[1:] * q[1:]).sum(axis=0)], vector])
+
+
+def worst(text: str, module: ModuleType, p: np.ndarray, target="numpy") -> dict[str, float]:
+    """The largest errors of both ways back, in eps of the quaternions' type."""
+    exact = [of_unit(*map(mp.mpf, row)) for row in p.astype(float).tolist()]
+    matrices = np.array([np.array(R.tolist(), float) for R in exact]).astype(p.dtype)
+    read = [mp.matrix(matrix.astype(float).tolist()) for matrix in matrices]
+    found = {}
+    for name, values, truths in zip(BACK, (p, matrices), (exact, read), strict=True):
+        q = row_by_row(target, getattr(module, name))(values)
+        errors = [
+            distance(turned(text, row), R) / max(map(abs, R))
+            for row, R in zip(q, truths, strict=True)
+        ]
+        found[name] = float(max(errors)) / np.finfo(p.dtype).eps
+    return found
+
+
+def most(text: str) -> float:
+    return MOST_OF_OTHERS if text in FORMS else MOST_OF_EULER
+
+
+@pytest.mark.parametrize("text", [*rs.EULER_SEQUENCES, *FORMS])
+def test_inverse_conversions_are_accurate_near_poles_too(text):
+    for dtype in (np.float64, np.float32):
+        p = given(text, 24, 7).astype(dtype)
+        for name, error in worst(text, numpy_module(text), p).items():
+            assert error <= most(text), name
+
+
+@pytest.mark.parametrize("target", [e for e in EVERY if e.values != ("numpy",)])
+def test_they_are_so_in_every_target(target):
+    text = random.Random(len(target)).choice([*rs.EULER_SEQUENCES, *FORMS])
+    module = motion(text).kernels(target, conversions=True).load()
+    for name, error in worst(text, module, given(text, 30, 8), target).items():
+        assert error <= most(text), (text, name)
+
+
+# unwrap
+
+
+@pytest.mark.parametrize("target", EVERY)
+def test_where_signs_alone_change_unwrap_is_exact(target):
+    text = "unit_quaternion"
+    q = np.random.default_rng(3).normal(size=(50, 4))
+    module = motion(text).kernels(target, conversions=True).load()
+    found = np.reshape(module.unwrap(q.ravel() if target == "javascript" else q), q.shape)
+    np.testing.assert_allclose(np.abs(found), np.abs(q), rtol=2**-22 * (target == "jax"))
+    assert (found != q).any()
+
+
+LARGEST_UNWRAPPED = {
+    "ZXZ": 26.0,
+    "zyx": 25.1,
+    "axis_angle": 0.772,
+    "modified_rodrigues": 1.53,
+}  # eps
+
+
+@pytest.mark.parametrize("text", LARGEST_UNWRAPPED)
+def test_unwrapped_samples_are_the_same_rotations(text):
+    functions = numpy_module(text)
+    q = functions.from_quaternion(given(text, 40, 9))
+    found = functions.unwrap(q)
+    size = np.abs(found).max(axis=1, initial=1.0)
+    errors = [
+        float(distance(turned(text, a), turned(text, b))) for a, b in zip(q, found, strict=True)
+    ]
+    assert (found != q).any()
+    assert (np.array(errors) / size).max() <= 1.25 * LARGEST_UNWRAPPED[text] * 2**-52
+
+
+@pytest.mark.parametrize("away", [1e-13, 1e-11, 1e-9, 1e-7])
+def test_the_other_set_of_turns_about_leaning_axes_is_theirs_beside_poles_too(away):
+    """Its outer angles follow without a difference that cancels where the middle one is short."""
+    functions = motion("davenport").kernels(conversions=True).load()
+    constants = [0.6, 0.8]
+    pole = np.arctan2(-0.6, 0.8)
+    source = np.random.default_rng(5)
+    middle = pole + away * source.choice([-1, 1], 60)
+    q = np.stack([source.uniform(-3, 3, 60), middle, source.uniform(-3, 3, 60)], axis=-1)
+    found = functions.unwrap(q, constants)
+    assert np.abs(found[:, 1] - q[:, 1]).max() > away  # the other set was taken
+    before, after = (functions.rotation_matrix(x, constants) for x in (q, found))
+    np.testing.assert_allclose(after, before, atol=1e-13, rtol=0)
+
+
+def test_turns_that_mirror_each_other_stay_so_at_poles():
+    functions = motion("z(phi) x(theta) z(-phi)").kernels(conversions=True).load()
+    source = np.random.default_rng(6)
+    middle = source.choice([-np.pi, 0.0, np.pi, 1.0, -2.0], 200)
+    q = np.stack([source.uniform(-3, 3, 200), middle], axis=-1)
+    found = functions.unwrap(q)
+    assert (found != q).any()
+    before, after = map(functions.rotation_matrix, (q, found))
+    np.testing.assert_allclose(after, before, atol=1e-12, rtol=0)
