@@ -11,29 +11,19 @@ from pathlib import Path
 import pytest
 
 import rigidsym
-
-PACKAGE = Path(rigidsym.__file__).parent
-
-# A room imports only from the rooms above it. Inside a room the only rule is that no circle forms.
-ORDER = (
-    "version",
-    "errors",
-    "system",
-    "text",
-    "algebra",
-    "data",
-    "models",
-    "mechanics",
-    "kernels",
-    "notes",
-    "page",
-    "spec",
-    "motion",
-    "pipeline",
-    "tools",
-    "commands",
+from house.figures import (
+    INSIDE,
+    ORDER,
+    House,
+    circles,
+    files_beside_folders,
+    floors,
+    lines,
+    upward,
 )
-SIBLINGS = (("kernels", "notes"),)  # neither has to know of the other
+
+HOUSE = House(Path(rigidsym.__file__).parent)
+SIBLINGS = (("kernels", "notes"),)  # neither knows of the other
 
 SEARCHES = {
     "simplify",
@@ -54,91 +44,79 @@ SEARCHES = {
 TEXT_READERS = {"eval", "exec", "compile", "parse_expr", "parse_latex", "lambdify"}
 
 
-def module_of(path: Path) -> str:
-    """`algebra.ring` for rigidsym/algebra/ring.py; "" for the package itself."""
-    return ".".join(path.relative_to(PACKAGE).with_suffix("").parts).removesuffix("__init__")
+# rooms and arrows
 
 
-SOURCES = {module_of(path).removesuffix("."): path for path in sorted(PACKAGE.rglob("*.py"))}
-TREES = {module: ast.parse(path.read_text(encoding="utf-8")) for module, path in SOURCES.items()}
+def test_every_room_has_its_place_in_the_order():
+    assert HOUSE.rooms() == set(ORDER)
+    assert len(set(ORDER)) == len(ORDER)
 
 
-def imports_of(tree: ast.AST) -> set[str]:
-    """Modules of this package that a file imports, wherever in the file; "" is the package."""
-    found: set[str] = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, "imports are written out, from rigidsym on"
-            found |= {_imported(node.module or "", alias.name) for alias in node.names}
-    ours = {name for name in found if name.split(".")[0] == "rigidsym"}
-    return {name.removeprefix("rigidsym").removeprefix(".") for name in ours}
-
-
-def _imported(module: str, name: str) -> str:
-    """A submodule, where the name imported is one."""
-    path = f"{module}.{name}".removeprefix("rigidsym.")
-    return f"{module}.{name}" if path in SOURCES and module.startswith("rigidsym") else module
-
-
-def room_of(module: str) -> int:
-    """The place of a module's room in the order."""
-    room = floor_of(module)
-    assert room in ORDER, f"{module}: give its room a place in ORDER"
-    return ORDER.index(room)
-
-
-def floor_of(module: str) -> str:
-    return module.split(".")[0]
-
-
-def backward_arrows(module: str, imported: set[str]) -> list[str]:
-    """The imports of a module that run against the order."""
-    return [name for name in sorted(imported) if room_of(name) > room_of(module)]
-
-
-@pytest.mark.parametrize("module", [module for module in SOURCES if module])
-def test_imports_run_one_way(module):
-    imported = imports_of(TREES[module]) - {""}  # the package itself holds the version alone
-    assert backward_arrows(module, imported) == []
+def test_imports_run_one_way():
+    assert upward(HOUSE.arrows()) == set()
 
 
 @pytest.mark.parametrize(
-    ("module", "name", "is_backward"),
+    ("arrow", "is_upward"),
     [
-        ("errors", "algebra.ring", True),
-        ("algebra.codec", "algebra.ring", False),
-        ("algebra.new", "algebra.codec", False),
-        ("algebra.ring", "algebra.new", False),
-        ("algebra.new", "models.so3", True),
-        ("algebra.new", "errors", False),
-        ("models.rotation", "mechanics.derivation", True),
-        ("mechanics.kinematics", "kernels.lower", True),
-        ("kernels.ir", "kernels.lower", False),
-        ("notes.formats.latex", "motion", True),
-        ("commands.cli", "pipeline", False),
+        (("errors", "algebra"), True),
+        (("algebra", "errors"), False),
+        (("models", "mechanics"), True),
+        (("commands", "pipeline"), False),
     ],
 )
-def test_an_arrow_the_other_way_is_seen(module, name, is_backward):
-    assert bool(backward_arrows(module, {name})) is is_backward
+def test_an_arrow_the_other_way_is_seen(arrow, is_upward):
+    assert bool(upward({arrow})) is is_upward
 
 
-def test_there_is_no_circle_of_imports():
-    graph = {module: imports_of(tree) - {"", module} for module, tree in TREES.items() if module}
-    tuple(TopologicalSorter(graph).static_order())  # raises CycleError, and names the circle
+def test_no_file_imports_itself_in_a_circle():
+    tuple(TopologicalSorter(HOUSE.imports).static_order())  # raises CycleError, and names them
+
+
+def test_circles_of_parts_are_seen(tmp_path):
+    for name, text in {
+        "a/x": "from house.b import y",
+        "b/y": "",
+        "b/z": "import house.a.x",
+    }.items():
+        path = tmp_path / "house" / f"{name}.py"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    house = House(tmp_path / "house")
+    assert house.arrows() == {("a", "b"), ("b", "a")}
+    assert len(circles(house)) == 1
+    assert house.imports["a.x"] == {"b.y"}
+    (tmp_path / "house/b/z.py").write_text("")
+    assert circles(House(tmp_path / "house")) == []
 
 
 @pytest.mark.parametrize("rooms", SIBLINGS, ids=" and ".join)
 def test_siblings_do_not_import_one_another(rooms):
-    for module, tree in TREES.items():
-        if floor_of(module) in rooms:
-            other = rooms[1 - rooms.index(floor_of(module))]
-            assert not [name for name in imports_of(tree) if floor_of(name) == other]
+    assert not HOUSE.arrows() & {rooms, rooms[::-1]}
 
 
 def test_kernels_import_their_representation_and_not_the_reverse():
-    assert not [name for name in imports_of(TREES["kernels.ir"]) if "targets" in name]
+    assert not [name for name in HOUSE.imports["kernels.ir"] if "targets" in name]
+
+
+def test_the_house_can_be_drawn_on_one_page():
+    arrows = HOUSE.arrows()
+    assert len(files_beside_folders(HOUSE)) <= 7
+    assert len(HOUSE.rooms()) <= 20
+    assert floors(arrows) <= 10
+    assert len(arrows) <= 80
+
+
+@pytest.mark.parametrize("room", INSIDE)
+def test_inside_a_room_few_arrows_run(room):
+    assert len(HOUSE.arrows(room)) <= INSIDE[room]
+
+
+def test_every_file_fits_in_the_head():
+    assert not {module: count for module, count in lines(HOUSE).items() if count > 400}
+
+
+# what is called
 
 
 def names_in(tree: ast.AST) -> set[str]:
@@ -149,9 +127,9 @@ def names_in(tree: ast.AST) -> set[str]:
     return found | {alias.name.split(".")[-1] for node in imports for alias in node.names}
 
 
-@pytest.mark.parametrize("module", SOURCES)
+@pytest.mark.parametrize("module", HOUSE.sources)
 def test_nothing_is_searched_for(module):
-    assert not names_in(TREES[module]) & SEARCHES
+    assert not names_in(HOUSE.trees[module]) & SEARCHES
 
 
 def called_by_name(tree: ast.AST) -> set[str]:
@@ -168,14 +146,15 @@ def called_by_name(tree: ast.AST) -> set[str]:
     return bare | of_sympy
 
 
-@pytest.mark.parametrize("module", SOURCES)
+@pytest.mark.parametrize("module", HOUSE.sources)
 def test_no_text_is_run(module):
-    assert not called_by_name(TREES[module]) & TEXT_READERS
+    assert not called_by_name(HOUSE.trees[module]) & TEXT_READERS
 
 
-@pytest.mark.parametrize("module", SOURCES)
+@pytest.mark.parametrize("module", HOUSE.sources)
 def test_no_error_is_swallowed_unseen(module):
-    handlers = [node for node in ast.walk(TREES[module]) if isinstance(node, ast.ExceptHandler)]
+    tree = HOUSE.trees[module]
+    handlers = [node for node in ast.walk(tree) if isinstance(node, ast.ExceptHandler)]
     for handler in handlers:
         assert handler.type is not None, f"{module}:{handler.lineno}: a bare except"
         assert "Exception" not in {
@@ -213,10 +192,6 @@ def test_names_of_the_package_are_found_on_first_use():
         rigidsym.simplify  # noqa: B018
 
 
-def test_the_order_has_no_entry_twice():
-    assert len(set(ORDER)) == len(ORDER)
-
-
 # tests
 
 
@@ -230,4 +205,4 @@ def test_tests_share_only_what_helpers_hold(path):
     names = {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
     names |= {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}
     roots = {name.split(".")[0] for name in names}
-    assert roots & own <= {"helpers"}
+    assert roots & own <= ({"helpers", "house"} if path.parent.name == "house" else {"helpers"})
