@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from rigidsym.kernels.lowering.derivatives import Asked
     from rigidsym.kernels.module import KernelModule
     from rigidsym.mechanics.conversions.conversions import Conversions
-    from rigidsym.models.body import RigidBody
+    from rigidsym.models.body import BodyDescription, RigidBody
+    from rigidsym.models.distribution import Distribution
     from rigidsym.notes.note import Note
 
 
@@ -128,13 +129,14 @@ def derive(
     model: RotationModel | str,
     only: Collection[str] = (),
     *,
-    body: RigidBody | None = None,
+    body: RigidBody | BodyDescription | Distribution | None = None,
     theory: bool = False,
 ) -> Motion:
     """The proved kinematics of a rotation model; `only` names the quantities that are wanted.
 
     A text is read as on the command line: "ZXZ", "z(phi) x(theta)", "quaternion". With a `body`
-    its kinetic energy and angular momentum follow, in the principal axes or any others. `theory`
+    its kinetic energy and angular momentum follow, in the principal axes or any others; a
+    description of one, or a distribution of mass, is integrated first. `theory`
     puts before it what holds for every body and rotation, equations 1 to 16 of the lecture.
 
     Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over,
@@ -154,7 +156,11 @@ def derive(
 
 
 def _derivation(
-    model: RotationModel, only: Collection[str], body: RigidBody | None, *, has_theory: bool
+    model: RotationModel,
+    only: Collection[str],
+    body: RigidBody | BodyDescription | Distribution | None,
+    *,
+    has_theory: bool,
 ) -> Derivation:
     if has_theory:
         from rigidsym.mechanics.lecture.numbering import NEEDED, with_theory

@@ -10,6 +10,7 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.algebra.angles import not_exact
 from rigidsym.errors import BodyError
 from rigidsym.models.distribution import Distribution
 from rigidsym.models.plausibility import check_inertia, check_mass
@@ -95,6 +96,8 @@ class RigidBody:
         for entry in (self.mass, *self.inertia, *self.centre):
             if entry.has(TIME, AppliedUndef) or entry.has(sp.I, sp.nan, sp.oo, sp.zoo):
                 raise BodyError(f"{self.name}: {entry} is no real constant")
+            for number in entry.atoms(sp.Float):
+                raise BodyError(f"{self.name}: {not_exact(number)}")
             for symbol in sorted(entry.free_symbols - known, key=str):
                 raise BodyError(f"{self.name}: {symbol} is not among the parameters")
 
@@ -133,6 +136,22 @@ class RigidBody:
 
     def __str__(self) -> str:
         return self.name
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class BodyDescription:
+    """A body as a file or a user describes it: where its mass is, and what its names stand for.
+
+    Nothing is integrated yet, so that a description is cheap; `derive` makes the RigidBody of it.
+    """
+
+    distribution: Distribution
+    name: str = "body"
+    title: str = ""
+    parameters: tuple[Parameter, ...] = ()  # what is known of the symbols
+    allow: bool = False  # whether unphysical numbers pass
+    keeps_numbers: bool = False  # whether sums of numbers stay sums, and are not rounded once
+    request: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
 
 def _short(value: sp.Expr) -> str:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import sympy as sp
 
@@ -144,3 +146,12 @@ class Known:
 
 
 Distribution = Particles | Solid | Polyhedron | Composite | Known
+KEYS: Mapping[type, str] = MappingProxyType(  # of a [body] table, and of its parts
+    {
+        Particles: "particles",
+        Solid: "shape",
+        Polyhedron: "shape",
+        Composite: "parts",
+        Known: "inertia",
+    }
+)

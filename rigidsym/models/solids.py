@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from types import MappingProxyType
 
 import sympy as sp
@@ -39,6 +40,11 @@ class Shape:
     lengths: tuple[Length, ...]
     form: Form
     larger: tuple[tuple[str, str], ...] = ()  # keys, the first at least as long as the second
+
+    @property
+    def has_corners(self) -> bool:
+        """Whether it is described by points, whose coordinates may have any sign."""
+        return any(length.key == "corners" for length in self.lengths)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -258,6 +264,8 @@ def shaped(
     shape = shape_of(name)
     if len(lengths) != len(shape.names):
         raise BodyError(f"{name}: expected {', '.join(shape.names)}, got {len(lengths)} lengths")
+    lengths = [sp.sympify(length, strict=True) for length in lengths]
+    check_lengths(name, [float(e) if e.is_number else None for e in lengths])
     coordinates = free_coordinates(("u", "v", "w"), [*lengths, mass, density])
     chosen, place, bounds, element = shape.form(*coordinates, *lengths)
     return Solid(
@@ -269,6 +277,22 @@ def shaped(
         mass=mass,
         density=density,
     )
+
+
+def check_lengths(name: str, values: Sequence[float | None]) -> None:
+    """Raises BodyError for a number that cannot be a length of the shape; None is not checked."""
+    shape = shape_of(name)
+    keys = [length.key for length in shape.lengths for _ in length.names]
+    known = {key: v for key, v in zip(keys, values, strict=True) if v is not None}
+    for key, value in zip(keys, values, strict=True):
+        if value is not None and not value > 0 and not shape.has_corners:
+            raise BodyError(f"{name}: {key} is {value:g} m; expected a positive length")
+    for larger, smaller in shape.larger:
+        if known.get(larger, inf) < known.get(smaller, 0):
+            raise BodyError(
+                f"{name}: {larger} is {known[larger]:g} m, less than {smaller} with "
+                f"{known[smaller]:g} m"
+            )
 
 
 def free_coordinates(names: Sequence[str], used: Sequence[sp.Expr | None]) -> tuple[sp.Symbol, ...]:

@@ -27,19 +27,27 @@ from rigidsym.mechanics.energy import momentum_forms
 from rigidsym.mechanics.kinematics import derive as kinematics
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass import inertia
+from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.mechanics.mass.inertia import Found
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
-from rigidsym.models.body import RigidBody
+from rigidsym.models.body import BodyDescription, RigidBody
+from rigidsym.models.distribution import Distribution
 from rigidsym.models.rotation import RotationModel
 
 BODY_QUANTITIES = MappingProxyType({**INERTIA_QUANTITIES, **ENERGY_QUANTITIES})
 
 
-def derive(model: RotationModel, body: RigidBody, only: Collection[str] = ()) -> Derivation:
+def derive(
+    model: RotationModel,
+    body: RigidBody | BodyDescription | Distribution,
+    only: Collection[str] = (),
+) -> Derivation:
     """The kinematics of a rotation model, then the energies and momenta of a body that turns so.
+
+    The moments of a description are integrated first; BodyError if that fails.
 
     `only` names the quantities to derive; all there are where it is empty. Raises what
     `kinematics.derive` raises, ModelError where a name stands for two things, and QuantityError
@@ -49,6 +57,7 @@ def derive(model: RotationModel, body: RigidBody, only: Collection[str] = ()) ->
     unknown = ", ".join(name for name in only if name not in known)
     if unknown:
         raise QuantityError(f"no quantity {unknown}; there are {', '.join(known)}")
+    body = rigid_body(body)
     arguments = arguments_of(model, body)
     turning = [name for name in only if name in QUANTITY_NAMES]
     motion = kinematics.derive(model, turning or ("rotation_matrix",) if only else ())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import sympy as sp
 
@@ -10,11 +11,33 @@ from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.rational import Rationals
 from rigidsym.errors import BodyError
 from rigidsym.mechanics.mass.moments import Moments, moments_of
-from rigidsym.models.body import Parameter, RigidBody, described
-from rigidsym.models.distribution import Distribution, Solid
+from rigidsym.mechanics.mass.numbers import in_parameters, is_measured
+from rigidsym.models.body import BodyDescription, Parameter, RigidBody, described
+from rigidsym.models.distribution import KEYS, Distribution, Solid
 from rigidsym.models.solids import shape_of, shaped
 
 Rows = list[list[Quotient]]
+
+
+def rigid_body(body: RigidBody | BodyDescription | Distribution) -> RigidBody:
+    """The mass, the centre and the inertia tensor of anything that `derive` takes for a body.
+
+    The moments of a description are integrated here; a description in numbers keeps them as
+    parameters that have a value. Raises BodyError, with the place, for a body that cannot be.
+    """
+    if isinstance(body, RigidBody):
+        return body
+    given = body if isinstance(body, BodyDescription) else BodyDescription(distribution=body)
+    made = body_of(
+        given.distribution,
+        name=given.name,
+        title=given.title,
+        parameters=given.parameters,
+        allow=given.allow,
+    )
+    if not given.keeps_numbers and is_measured(made):
+        made = in_parameters(made)
+    return replace(made, request=given.request)
 
 
 def body_of(
@@ -27,9 +50,23 @@ def body_of(
 ) -> RigidBody:
     """The body that a distribution of mass makes, with the inertia tensor about its centre.
 
-    `parameters` describes the symbols. Raises BodyError where the mass is zero, and for numbers
-    that no body has, unless they are to `allow`.
+    `parameters` describes the symbols. Raises BodyError if the mass is zero, and for unphysical
+    numbers unless `allow` is set.
     """
+    try:
+        return _integrated(distribution, name, title, parameters, allow)
+    except BodyError as error:
+        place = error.place or (KEYS[type(distribution)],)
+        raise BodyError(str(error), place=place) from error
+
+
+def _integrated(
+    distribution: Distribution,
+    name: str,
+    title: str,
+    parameters: Sequence[Parameter],
+    allow: bool,
+) -> RigidBody:
     moments = moments_of(distribution)
     if moments.mass == 0:
         raise BodyError(f"{name}: the mass is zero; expected a positive mass")
@@ -108,5 +145,6 @@ def solid(
             sp.sympify(e, strict=True) for e in (given if isinstance(given, Sequence) else [given])
         ]
     total = sp.Symbol("M") if mass is None and density is None else mass
-    made = shaped(shape, values, mass=total, density=density)
+    exact = [None if e is None else sp.sympify(e, strict=True) for e in (total, density)]
+    made = shaped(shape, values, mass=exact[0], density=exact[1])
     return body_of(made, name=name or shape, allow=allow)

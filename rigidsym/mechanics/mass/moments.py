@@ -26,6 +26,7 @@ from rigidsym.models.distribution import (
     Composite,
     Distribution,
     Known,
+    Part,
     Particles,
     Polyhedron,
     Solid,
@@ -93,7 +94,7 @@ def _(given: Known) -> Moments:
 @moments_of.register
 def _(given: Composite) -> Moments:
     """The parts, each turned, moved and added; a hole is taken away."""
-    found = [moments_of(part.what) for part in given.parts]
+    found = [_of_part(part, place) for place, part in enumerate(given.parts)]
     held = [e for m in found for e in m.expressions]
     held += [e for part in given.parts for e in (*part.at, *part.turned)]
     field = Rationals(held, given.conditions)
@@ -114,6 +115,13 @@ def _(given: Composite) -> Moments:
         [field.total([second[i][j] for second in seconds]) for i, j in _PAIRS],
         proofs=tuple(dict.fromkeys(proof for m in found for proof in m.proofs)),
     )
+
+
+def _of_part(part: Part, place: int) -> Moments:
+    try:
+        return moments_of(part.what)
+    except BodyError as error:
+        raise BodyError(str(error), place=("parts", place, *error.place)) from error
 
 
 @moments_of.register
