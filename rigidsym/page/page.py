@@ -64,7 +64,9 @@ class _Page:
         self.document = document
         self.functions = functions_of(derivation.model)
         self.groups = groups_of(
-            self.functions.derivation, self.document.notation, shown_angles(derivation.model)
+            self.functions.derivation,
+            self.document.notation,
+            shown_angles(derivation.model, self.document.notation),
         )
         self.copies = copies_of(derivation, document)
         self.printer = PagePrinter(document, copied=self.copies)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import asin, atan2, degrees
 from typing import Any
 
 import sympy as sp
@@ -12,12 +11,10 @@ from rigidsym.mechanics.derivation import Markup
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import AXES
-from rigidsym.notes.figure.figure import MOST_TURNS, turns_of, view_of
-from rigidsym.notes.figure.scene import BODY
+from rigidsym.notes.figure.scene import BODY, MOST_TURNS, NODE, scene_of, turns_of
 from rigidsym.notes.figure.svg import as_in_formulas
-from rigidsym.notes.formula.formula import markup
+from rigidsym.notes.formula.lengths import VECTOR
 from rigidsym.notes.formula.notation import Notation
-from rigidsym.notes.prose.words import VECTOR
 
 _AZIMUTH, _ELEVATION = 35, 22  # degrees, where no figure says better
 _AXIS = Markup(r"\mathbf{e}", "e")  # of the one turn that any rotation is
@@ -28,10 +25,10 @@ def has_turns(model: RotationModel) -> bool:
     return 1 <= len(model.turns) <= MOST_TURNS
 
 
-def shown_angles(model: RotationModel) -> dict[sp.Expr, float]:
-    """The coordinates that are angles of turns, as the figure of the note has them; radians."""
-    view = view_of(model)
-    angles = view[0] if view else ()
+def shown_angles(model: RotationModel, notation: Notation) -> dict[sp.Expr, float]:
+    """The coordinates that are angles of turns, as in the figure of the note; radians."""
+    scene = scene_of(model, notation)
+    angles = scene.view.angles if scene else ()
     pairs = zip(turns_of(model), angles, strict=False)
     return {turn.angle: angle for turn, angle in pairs if turn.angle in model.coordinates}
 
@@ -42,17 +39,17 @@ def stage_of(model: RotationModel, notation: Notation) -> Mapping[str, Any]:
     `vector` are the places of its components among the coordinates, `angle` is the place of the
     angle about it, where that is a coordinate.
     """
-    view = view_of(model)
-    toward = view[1].toward if view else None
+    scene = scene_of(model, notation)
+    view = scene.view if scene else None
     named = notation.manner.symbol
     shown = turns_of(model) if has_turns(model) or model.vector else ()
     angles = {turn.angle for turn in shown} if model.vector else set()
     return {
-        "azimuth": round(degrees(atan2(toward[1], toward[0]))) if toward else _AZIMUTH,
-        "elevation": round(degrees(asin(toward[2]))) if toward else _ELEVATION,
+        "azimuth": view.azimuth if view else _AZIMUTH,
+        "elevation": view.elevation if view else _ELEVATION,
         "space": list(AXES),
         "body": [_written(named(axis)) for axis in BODY],
-        "turns": [_written(markup(turn.angle, notation)) for turn in shown],
+        "turns": [_written(turn.name) for turn in scene.turns] if scene else [],
         "node": _written(_between(model)),
         "vector": [*map(model.coordinates.index, model.vector)],
         "angle": next((k for k, q in enumerate(model.coordinates) if q in angles), None),
@@ -63,7 +60,7 @@ def stage_of(model: RotationModel, notation: Notation) -> Mapping[str, Any]:
 def _between(model: RotationModel) -> Markup:
     """An axis that is neither of space nor of the body, as the note calls it."""
     if has_turns(model):
-        return Markup("N", "N")
+        return NODE
     return VECTOR if model.vector else _AXIS
 
 

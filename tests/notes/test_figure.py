@@ -19,13 +19,13 @@ from rigidsym.models.quaternions import AxisAngle, UnitQuaternion
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import time_function
 from rigidsym.models.vectors import GibbsVector, RotationVector
-from rigidsym.notes.figure.camera import STANDARD, camera, cross, dot, sweep, turned, unit
-from rigidsym.notes.figure.drawing import Box, Drawing, Label, Stroke
-from rigidsym.notes.figure.figure import MOST_TURNS, figure_of
-from rigidsym.notes.figure.labels import Wish, placed
+from rigidsym.notes.figure.camera import STANDARD, camera, combined, cross, dot, turned, unit
+from rigidsym.notes.figure.drawing import Box, Drawing, Ellipse, Label, Stroke, beyond, placed
+from rigidsym.notes.figure.scene import MOST_TURNS, scene_of
 from rigidsym.notes.figure.svg import svg
 from rigidsym.notes.figure.tikz import tikz
 from rigidsym.notes.formula.notation import notation_of
+from rigidsym.notes.prose.figure_words import figure_of
 from rigidsym.notes.prose.words import plain
 
 LETTERS = "zxyzxy"
@@ -201,8 +201,11 @@ def test_the_pens_draw_all_of_it(drawing):
     in_html = svg(drawing, title="T", description="D", name="f")
     assert in_tex.count(r"\draw[") == len(drawing.strokes) == in_html.count("<polyline")
     assert in_tex.count(r"\node[") == len(drawing.labels) == in_html.count("<text")
-    assert in_tex.count(r"\fill[") == len(drawing.areas)
-    assert in_tex.count("densely dashed") == in_html.count(" hidden")
+    assert in_tex.count(r"\fill[") == len(drawing.sectors)
+    assert in_tex.count(", hidden,") == in_html.count(" hidden")
+    assert in_tex.count(" arc (") == sum(s.arc is not None for s in drawing.strokes) + len(
+        drawing.sectors
+    )
     assert "-0.0" not in re.findall(r"-0\.0+\b", in_html + in_tex)
 
 
@@ -219,9 +222,7 @@ def test_a_drawing_stays_inside_its_box(drawing):
 
 def test_words_in_a_picture_are_escaped():
     label = Label(kind="turn", symbol=Markup("a<b", "a<b&\u202e"), place=(0.0, 0.0))
-    drawing = Drawing(
-        areas=(), strokes=(Stroke(kind="turn", points=((0, 0), (1, 1))),), labels=(label,)
-    )
+    drawing = Drawing(strokes=(Stroke(kind="turn", points=((0, 0), (1, 1))),), labels=(label,))
     written = svg(drawing, title="<t>", description='"d"', name="f")
     assert ">a&lt;b&amp; </text>" in written
     assert "&lt;t&gt;</title>" in written
@@ -243,7 +244,7 @@ def test_a_turn_keeps_lengths_and_its_axis(vector, angle):
 def test_a_turn_is_right_handed():
     x, y, z = STANDARD
     assert turned(x, z, pi / 2) == pytest.approx(y)
-    assert list(sweep(x, z, radians(30), 1))[-1] == pytest.approx((cos(pi / 6), sin(pi / 6), 0))
+    assert turned(x, z, radians(30)) == pytest.approx((cos(pi / 6), sin(pi / 6), 0))
 
 
 @pytest.mark.parametrize(("azimuth", "elevation"), [(0, 0), (30, 20), (75, -40)])
@@ -274,7 +275,35 @@ def test_a_segment_crosses_a_box_if_one_of_its_points_is_inside(start, end):
 
 def test_a_label_that_has_no_free_place_takes_the_least_bad():
     hatch = [Stroke(kind="guide", points=((x / 20, -3.0), (x / 20, 3.0))) for x in range(-60, 61)]
-    wish = Wish(kind="space", symbol=Markup("x", "x"), line=((0, 0), (1, 0)), is_at_end=True)
-    (label,), met = placed([wish], hatch, 0.5)
-    assert met
+    label = placed("space", Markup("x", "x"), beyond([(0, 0), (1, 0)]), hatch, [])
+    met = [s for stroke in hatch for s in stroke.segments if label.box.is_crossed_by(s)]
+    assert 0 < len(met) <= 3  # it is about as wide as two gaps of the hatch
     assert hypot(*label.place) < 2
+
+
+@pytest.mark.parametrize("name", ["rotation vector", "oblique", "chain zxyzx", "words"])
+def test_the_angle_drawn_is_the_angle_of_the_turn(name):
+    """Also where the line that is carried along is not perpendicular to the axis."""
+    scene = scene_of(CHAINS[name], notation_of(arguments_of(CHAINS[name])))
+    assert scene is not None
+    angles = scene.view.angles
+    for arc, angle in zip(scene.posed(angles).arcs, angles, strict=True):
+        start, end = (combined((1, -1), (v, arc.centre)) for v in (arc.before, arc.after))
+        assert dot(start, arc.axis) == pytest.approx(0)
+        cosine = dot(start, end) / (hypot(*start) * hypot(*end))
+        assert cosine == pytest.approx(cos(angle))
+        quarter = combined((0, 1), (arc.start, arc.side))
+        assert quarter == pytest.approx(turned(arc.start, arc.axis, pi / 2))
+
+
+def test_an_ellipse_begins_and_ends_at_its_angles():
+    arc = Ellipse(centre=(1.0, 0.0), u=(2.0, 0.0), v=(0.0, 1.0), start=0.0, end=pi / 2)
+    assert arc.points[0] == pytest.approx((3, 0))
+    assert arc.points[-1] == pytest.approx((1, 1))
+
+
+def test_the_axes_in_tikz_have_names_that_can_be_used():
+    text = tikz(drawn(EulerAngles("ZXZ")).drawing)
+    names = re.findall(r"\\coordinate \((.*?)\)", text)
+    assert names == ["O", "x", "y", "z", "x'", "y'", "z'", "N"]
+    assert r"\draw[space, ->] (O) -- (x);" in text

@@ -32,13 +32,13 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.document.note_tables import functions, symbols
 from rigidsym.notes.document.summary import summary
-from rigidsym.notes.figure.figure import figure_of
 from rigidsym.notes.formula.formula import markup
 from rigidsym.notes.formula.manner import DEFAULT, Manner
 from rigidsym.notes.formula.notation import notation_of
 from rigidsym.notes.formula.rewriting import in_manner
 from rigidsym.notes.layout.entries import entry_names, indexed
 from rigidsym.notes.layout.fitting import Fitter
+from rigidsym.notes.prose.figure_words import figure_of
 from rigidsym.notes.prose.prose import motion, product, turn
 from rigidsym.notes.prose.singular_words import failures, meaning, measured
 from rigidsym.notes.prose.words import (

@@ -17,13 +17,13 @@ from rigidsym.notes.document.document import (
     Table,
     Text,
 )
+from rigidsym.notes.formula.lengths import VECTOR
 from rigidsym.notes.formula.notation import Notation
 from rigidsym.notes.prose.singular_words import WITH_CONDITIONS
 from rigidsym.notes.prose.words import (
     BODY_POSITION,
     OPERATOR,
     POSITION,
-    VECTOR,
     listed,
     symbols_of,
     unit_in_words,

@@ -1,4 +1,4 @@
-"""Vectors in space and the camera that looks at them, in plain floats."""
+"""Vectors in plain floats, and the camera that projects them onto the page."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from math import cos, hypot, radians, sin
 
 Vector = tuple[float, float, float]
 Point = tuple[float, float]
-Frame = tuple[Vector, Vector, Vector]  # its axes
+Frame = tuple[Vector, Vector, Vector]  # three orthonormal axes
 
 STANDARD: Frame = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def dot(a: Vector, b: Vector) -> float:
-    return sum(p * q for p, q in zip(a, b, strict=True))
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def cross(a: Vector, b: Vector) -> Vector:
@@ -26,10 +26,9 @@ def scaled(factor: float, a: Vector) -> Vector:
 
 
 def combined(coefficients: Sequence[float], vectors: Sequence[Vector]) -> Vector:
-    """The sum of the vectors with these coefficients."""
-    x, y, z = (
-        sum(c * v[part] for c, v in zip(coefficients, vectors, strict=True)) for part in range(3)
-    )
+    """The linear combination Σ c_k v_k; of the axes of a frame, a vector from its components."""
+    pairs = list(zip(coefficients, vectors, strict=True))
+    x, y, z = (sum(c * v[part] for c, v in pairs) for part in range(3))
     return (x, y, z)
 
 
@@ -38,38 +37,44 @@ def unit(a: Vector) -> Vector:
 
 
 def turned(a: Vector, axis: Vector, angle: float) -> Vector:
-    """Right-handed turn about a unit axis, by an angle in radians (Rodrigues)."""
+    """The vector rotated right-handedly about a unit axis, by an angle in radians (Rodrigues)."""
     along = (1 - cos(angle)) * dot(axis, a)
     return combined((cos(angle), sin(angle), along), (a, cross(axis, a), axis))
 
 
-def sweep(a: Vector, axis: Vector, angle: float, steps: int) -> Iterator[Vector]:
-    """Where a vector passes on such a turn, both ends among it."""
-    return (turned(a, axis, angle * step / steps) for step in range(steps + 1))
+def frames(axes: Sequence[Vector], angles: Sequence[float]) -> Iterator[Frame]:
+    """The frame of space, and the frame after each turn; axes have components before the turn."""
+    frame = STANDARD
+    yield frame
+    for axis, angle in zip(axes, angles, strict=True):
+        about = combined(axis, frame)
+        x, y, z = (turned(a, about, angle) for a in frame)
+        frame = (x, y, z)
+        yield frame
 
 
 def is_same(a: Vector, b: Vector) -> bool:
-    return max(abs(p - q) for p, q in zip(a, b, strict=True)) < 1e-6
+    return max(abs(a[0] - b[0]), abs(a[1] - b[1]), abs(a[2] - b[2])) < 1e-6
 
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """Parallel projection; the third axis of space is upright in the picture."""
+    """Parallel projection; the third axis of space is vertical in the picture."""
 
     right: Vector
     up: Vector
-    toward: Vector  # the viewer
+    toward: Vector  # from the origin to the viewer
 
     def project(self, a: Vector) -> Point:
         return (dot(self.right, a), dot(self.up, a))
 
     def depth(self, a: Vector) -> float:
-        """How far a point stands toward the viewer; negative behind the origin."""
+        """Distance from the picture plane toward the viewer; negative behind the origin."""
         return dot(self.toward, a)
 
 
 def camera(azimuth: float, elevation: float) -> Camera:
-    """The camera of a viewer in this direction, in degrees; above the plane if positive."""
+    """The camera of a viewer at this azimuth and elevation, in degrees."""
     a, e = radians(azimuth), radians(elevation)
     toward = (cos(e) * cos(a), cos(e) * sin(a), sin(e))
     right = (-sin(a), cos(a), 0.0)

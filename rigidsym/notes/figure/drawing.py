@@ -1,35 +1,69 @@
-"""A drawing as data, for any pen: strokes, areas and labels in a plane.
+"""A posed scene as a drawing for any pen: strokes and labels in a plane.
 
-The unit is the length of the unit vectors of space; a label is set in letters of TYPE_SIZE.
+The unit is the length of the unit vectors of space; labels are set in letters of TYPE_SIZE.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import chain, pairwise
-from typing import Literal
+from itertools import pairwise
+from math import atan2, ceil, cos, hypot, pi, radians, sin, tau
 
 from rigidsym.mechanics.derivation import Markup
-from rigidsym.notes.figure.camera import Point
+from rigidsym.notes.figure.camera import Camera, Point, Vector, dot, is_same, scaled
+from rigidsym.notes.figure.scene import Arc, Kind, Posed, Ray
 from rigidsym.notes.layout.text_width import columns, ems
 
-Kind = Literal["space", "body", "node", "vector", "turn", "guide"]
 Segment = tuple[Point, Point]
 
 TYPE_SIZE = 0.15  # one em, in units of the drawing
+AXIS = 1.35  # lengths of the axes drawn
+NODE = 1.2
+
 _HEIGHT = 1.0  # of a label, in ems: from the foot of ψ to the head of a prime
+_STEP = radians(7.5)  # between the points of an arc
+_MARGIN = 0.025  # between a label and anything else
+_GAPS = (0.05, 0.09, 0.14, 0.2, 0.26, 0.34, 0.42)  # between a label and what it names
+_BENDS = (0, 25, -25, 50, -50, 80, -80, 110, -110)  # degrees off the direction of an axis
+_BESIDE = (0, 180, 40, -40, 140, -140, 75, -75, 105, -105)  # outside an arc or inside
+_ALONG = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)  # fraction of the way along an arc
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ellipse:
+    """The arc centre + cos t·u + sin t·v of an ellipse, for t from `start` to `end` in radians."""
+
+    centre: Point
+    u: Point
+    v: Point
+    start: float
+    end: float
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        steps = max(2, ceil(abs(self.end - self.start) / _STEP))
+        change = (self.end - self.start) / steps
+        return tuple(self.at(self.start + change * step) for step in range(steps + 1))
+
+    def at(self, t: float) -> Point:
+        x, y = (
+            c + cos(t) * p + sin(t) * q for c, p, q in zip(self.centre, self.u, self.v, strict=True)
+        )
+        return (x, y)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Stroke:
-    """A line through points."""
+    """A line through points, which are on `arc` if it is one."""
 
     kind: Kind
     points: tuple[Point, ...]
+    name: Markup | None = None  # of an axis
+    arc: Ellipse | None = None
     is_thin: bool = False
-    is_hidden: bool = False  # behind what is in front of it: dashed
+    is_hidden: bool = False  # behind the origin: dashed
     has_arrow: bool = False  # at its end
 
     @property
@@ -37,17 +71,9 @@ class Stroke:
         return pairwise(self.points)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Area:
-    """A tinted area within a closed line."""
-
-    kind: Kind
-    points: tuple[Point, ...]
-
-
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A rectangle, by its centre and the halves of its sides."""
+    """A rectangle, by its centre and half its width and height."""
 
     centre: Point
     half_width: float
@@ -61,7 +87,7 @@ class Box:
         return dx < self.half_width + other.half_width and dy < self.half_height + other.half_height
 
     def is_crossed_by(self, segment: Segment) -> bool:
-        """Whether any point of the segment lies inside (the test of Liang and Barsky)."""
+        """Whether any point of the segment is inside (the test of Liang and Barsky)."""
         (x0, y0), (x1, y1) = segment
         (x, y), start, end = self.centre, 0.0, 1.0
         if min(x0, x1) > x + self.half_width or max(x0, x1) < x - self.half_width:
@@ -81,7 +107,7 @@ class Box:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Label:
-    """A symbol, centred on a place."""
+    """A symbol, centred on a point."""
 
     kind: Kind
     symbol: Markup
@@ -89,12 +115,8 @@ class Label:
 
     @property
     def box(self) -> Box:
-        return box_of(self.symbol, self.place)
-
-
-def box_of(symbol: Markup, place: Point) -> Box:
-    """The room that a symbol takes around a place, in the wider of its two writings."""
-    return Box(place, _half_width(symbol), TYPE_SIZE * _HEIGHT / 2)
+        """The space that the symbol needs, in LaTeX or in Unicode, whichever is wider."""
+        return Box(self.place, _half_width(self.symbol), TYPE_SIZE * _HEIGHT / 2)
 
 
 @lru_cache(maxsize=256)
@@ -104,16 +126,20 @@ def _half_width(symbol: Markup) -> float:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Drawing:
-    """What the pens draw: areas first, then strokes, then labels."""
+    """What the pens draw: the sectors of turns, then strokes, then labels."""
 
-    areas: tuple[Area, ...]
     strokes: tuple[Stroke, ...]
     labels: tuple[Label, ...]
 
     @property
+    def sectors(self) -> tuple[Ellipse, ...]:
+        """The arcs of turns, whose sectors are tinted."""
+        return tuple(s.arc for s in self.strokes if s.kind == "turn" and s.arc is not None)
+
+    @property
     def bounds(self) -> tuple[Point, Point]:
         """The lower left and the upper right corner of all that is drawn."""
-        points = list(chain.from_iterable(stroke.points for stroke in self.strokes))
+        points = [point for stroke in self.strokes for point in stroke.points]
         for box in (label.box for label in self.labels):
             x, y = box.centre
             points += [
@@ -122,3 +148,140 @@ class Drawing:
             ]
         xs, ys = zip(*points, strict=True)
         return (min(xs), min(ys)), (max(xs), max(ys))
+
+
+def drawn(scene: Posed, seen: Camera) -> Drawing:
+    """The drawing of a scene, with labels that touch no line and no other label if they can."""
+    axes = [_axis(ray, seen) for ray in scene.rays]
+    arcs = [_arc(arc, seen) for arc in scene.arcs]
+    strokes = (*_circles(scene, seen), *_guides(scene, seen), *axes, *arcs)
+    labels: list[Label] = []
+    for arc, stroke in zip(scene.arcs, arcs, strict=True):
+        labels.append(placed("turn", arc.turn.name, beside(stroke.points), strokes, labels))
+    for ray, stroke in zip(scene.rays, axes, strict=True):
+        labels.append(placed(ray.kind, ray.name, beyond(stroke.points), strokes, labels))
+    return Drawing(strokes=strokes, labels=tuple(labels))
+
+
+def _axis(ray: Ray, seen: Camera) -> Stroke:
+    is_line = ray.kind == "node"
+    reach = AXIS if ray.kind in ("space", "body") else NODE
+    end = seen.project(scaled(reach, ray.direction))
+    start = (-end[0], -end[1]) if is_line else (0.0, 0.0)
+    return Stroke(kind=ray.kind, points=(start, end), name=ray.name, has_arrow=not is_line)
+
+
+def _arc(arc: Arc, seen: Camera) -> Stroke:
+    ellipse = _ellipse(arc, seen, arc.turn.radius, 0.0, arc.angle)
+    return Stroke(kind="turn", points=ellipse.points, arc=ellipse, has_arrow=True)
+
+
+def _ellipse(arc: Arc, seen: Camera, radius: float, start: float, end: float) -> Ellipse:
+    """Part of the circle that a point of the line describes."""
+    u, v = scaled(radius, arc.start), scaled(radius, arc.side)
+    return Ellipse(
+        centre=seen.project(arc.centre),
+        u=seen.project(u),
+        v=seen.project(v),
+        start=start,
+        end=end,
+    )
+
+
+def _circles(scene: Posed, seen: Camera) -> Iterator[Stroke]:
+    """The circles about the axes of the first and the last turn, dashed behind the origin."""
+    first, last = scene.arcs[0], scene.arcs[-1]
+    yield from _circle("space", first, seen)
+    if not is_same(first.axis, last.axis):
+        yield from _circle("body", last, seen)
+
+
+def _circle(kind: Kind, arc: Arc, seen: Camera) -> Iterator[Stroke]:
+    """In front of the plane of the picture and behind it; there the depth changes its sign."""
+    across, along = seen.depth(arc.start), seen.depth(arc.side)
+    nearest = atan2(along, across)
+    half = _visible_half(hypot(across, along), seen.depth(arc.centre))
+    for is_hidden, start, end in (
+        (False, nearest - half, nearest + half),
+        (True, nearest + half, nearest - half + tau),
+    ):
+        if end - start > 1e-9:
+            ellipse = _ellipse(arc, seen, 1.0, start, end)
+            yield Stroke(
+                kind=kind, points=ellipse.points, arc=ellipse, is_thin=True, is_hidden=is_hidden
+            )
+
+
+def _visible_half(swing: float, centre: float) -> float:
+    """Half the angle over which centre + swing·cos t is positive."""
+    if abs(centre) >= swing:
+        return pi if centre >= 0 else 0.0
+    return pi / 2 + atan2(centre, (swing**2 - centre**2) ** 0.5)
+
+
+def _guides(scene: Posed, seen: Camera) -> Iterator[Stroke]:
+    """Lines to the ends of arcs where there is no axis, from the centre of the arc."""
+    drawn: list[Vector] = []
+    for arc in scene.arcs:
+        for end in (arc.before, arc.after):
+            is_known = scene.named(end) is not None and dot(arc.axis, end) ** 2 < 1e-12
+            if not is_known and not any(is_same(end, other) for other in drawn):
+                drawn.append(end)
+                line = (seen.project(arc.centre), seen.project(end))
+                yield Stroke(kind="guide", points=line, is_thin=True)
+
+
+Place = tuple[Point, float]  # a point, and the direction in radians in which its label is seen
+
+
+def beyond(line: Sequence[Point]) -> list[Place]:
+    """Where the label of an axis goes: beyond its end."""
+    outward = _direction(line[0], line[-1])
+    return [(line[-1], outward + radians(bend)) for bend in _BENDS]
+
+
+def beside(line: Sequence[Point]) -> list[Place]:
+    """Where the label of an arc goes: outside its middle, or else near it."""
+    points = [line[round(share * (len(line) - 1))] for share in _ALONG]
+    return [(p, _direction((0.0, 0.0), p) + radians(bend)) for p in points for bend in _BESIDE]
+
+
+def _direction(start: Point, end: Point) -> float:
+    return atan2(end[1] - start[1], end[0] - start[0])
+
+
+def placed(
+    kind: Kind,
+    symbol: Markup,
+    places: Sequence[Place],
+    strokes: Sequence[Stroke],
+    labels: Sequence[Label],
+) -> Label:
+    """The label at the first free place, the nearest first; else where it touches the fewest."""
+    taken = [label.box for label in labels]
+    segments = [segment for stroke in strokes for segment in stroke.segments]
+    least, best = len(segments) + len(taken) + 1, None
+    for gap in _GAPS:
+        for start, direction in places:
+            label = Label(kind=kind, symbol=symbol, place=_shifted(symbol, start, direction, gap))
+            box = label.box.grown(_MARGIN)
+            met = sum(map(box.is_crossed_by, segments)) + sum(map(box.meets, taken))
+            if met == 0:
+                return label
+            if met < least:
+                least, best = met, label
+    assert best is not None
+    return best
+
+
+def _shifted(symbol: Markup, start: Point, direction: float, gap: float) -> Point:
+    """The centre of a label whose box is `gap` away from a point, in a direction."""
+    dx, dy = cos(direction), sin(direction)
+    half_width, half_height = _half_width(symbol), TYPE_SIZE * _HEIGHT / 2
+    # the distance from the centre of the box to its edge in this direction
+    edge = min(
+        half_width / abs(dx) if abs(dx) > 1e-9 else float("inf"),
+        half_height / abs(dy) if abs(dy) > 1e-9 else float("inf"),
+    )
+    distance = min(edge, hypot(half_width, half_height)) + gap
+    return (start[0] + distance * dx, start[1] + distance * dy)

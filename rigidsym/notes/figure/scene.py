@@ -1,78 +1,124 @@
-"""A product of turns in space: the axes with their names, and an arc for each turn.
+"""What the figure of a rotation shows, in space: axes with their names, and an arc for each turn.
 
-The turns are taken as the product is read from left to right, each about an axis that the turns
-before it have moved. Turn k has its axis u_k; its arc leads from where the next axis u_{k+1} stands
-before the turn to where it stands after it, and that of the last turn from the axis before.
+A product of turns is read from left to right; each turn is about an axis that the turns before it
+have moved. Directions are given by their components in the frame after a number of turns, so one
+scene serves all angles: a note draws it at those of its view, the live page at those of its
+sliders.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import combinations, pairwise
+from math import hypot, radians, sin
+from typing import Literal
 
+import sympy as sp
+
+from rigidsym.mechanics.claims import fill
 from rigidsym.mechanics.derivation import Markup
+from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.figure.camera import (
     STANDARD,
-    Frame,
+    Camera,
+    Point,
     Vector,
+    camera,
     combined,
+    cross,
     dot,
+    frames,
     is_same,
     scaled,
-    sweep,
-    turned,
+    unit,
 )
-from rigidsym.notes.figure.drawing import Kind
-from rigidsym.notes.prose.words import equal
+from rigidsym.notes.formula.formula import markup
+from rigidsym.notes.formula.lengths import VECTOR, length_of
+from rigidsym.notes.formula.notation import Notation
 
+Kind = Literal["space", "body", "node", "vector", "turn", "guide"]
+
+MOST_TURNS = 5  # more would be a tangle
 BODY = tuple(Markup(f"{axis}'", f"{axis}′") for axis in AXES)
+NODE = Markup("N", "N")
+RADII = (0.6, 0.78, 0.46, 0.7, 0.38)  # of the arcs; those of consecutive turns differ
 
 _SPACE = tuple(Markup(axis, axis) for axis in AXES)
-_NODE_NAMES = tuple(Markup(f"N_{k}", f"N{'₀₁₂₃₄₅'[k]}") for k in range(1, 6))
-_RADII = (0.6, 0.78, 0.46, 0.7, 0.38)  # of the arcs, so that neighbours do not run together
-_ARC_STEPS = 16
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Arc:
-    """One turn in space."""
-
-    axis: Vector
-    start: Vector
-    angle: float  # radians
-    radius: float
-    name: Markup
-    start_name: Markup | str  # of the axis that is taken along
-    end: Vector
-
-    def path(self, scale: float) -> Iterator[Vector]:
-        start = scaled(scale * self.radius, self.start)
-        return sweep(start, self.axis, self.angle, _ARC_STEPS)
+_VIEWS = (  # angles of the turns, azimuth and elevation in degrees; the clearest one is taken
+    ((50, 40, 40, 40, 65), 28, 22),
+    ((60, 45, 60, 65, 40), 73, 18),
+    ((60, 35, 60, 45, 35), 28, 24),
+    ((60, 60, 60, 55, 45), 34, 18),
+    ((30, 65, 50, 65, 65), 61, 26),
+    ((30, 60, 30, 50, 55), 16, 30),
+    ((65, 40, 45, 40, 35), 55, 30),
+    ((35, 30, 35, 30, 50), 28, 18),
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ray:
-    """A direction that bears a name."""
+    """A named direction, fixed in the frame after `frame` turns."""
 
     kind: Kind
     name: Markup
+    frame: int
     direction: Vector
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Names:
-    """What is written beside the lines."""
+class Rotary:
+    """A turn: its axis and a line that it carries along, in components before the turn."""
 
-    angles: tuple[Markup, ...]
-    body: tuple[Markup, ...] = BODY  # its axes
-    between: Markup | None = None  # the only axis that is neither of space nor of the body
-    is_vector: bool = False  # whether that axis is a vector, with a point
+    axis: Vector
+    start: Vector
+    radius: float  # of its arc
+    name: Markup  # of its angle
+    start_name: Markup | str  # of the line that is carried along
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Scene:
-    """All that is shown, in space."""
+class Arc:
+    """A turn in space: the point centre + cos t·start + sin t·side, for t from 0 to the angle."""
+
+    turn: Rotary
+    axis: Vector
+    angle: float  # radians
+    before: Vector  # the line that is carried along, before and after the turn
+    after: Vector
+
+    @property
+    def centre(self) -> Vector:
+        """The foot of the perpendicular from the end of the line to the axis."""
+        return scaled(dot(self.before, self.axis), self.axis)
+
+    @property
+    def start(self) -> Vector:
+        return combined((1, -1), (self.before, self.centre))
+
+    @property
+    def side(self) -> Vector:
+        return cross(self.axis, self.before)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class View:
+    """Angles of the turns in radians, and the direction of the viewer in degrees."""
+
+    angles: tuple[float, ...]
+    azimuth: int
+    elevation: int
+
+    @property
+    def camera(self) -> Camera:
+        return camera(self.azimuth, self.elevation)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Posed:
+    """A scene at given angles: all directions have space components."""
 
     rays: tuple[Ray, ...]
     arcs: tuple[Arc, ...]
@@ -81,70 +127,171 @@ class Scene:
         return next((ray for ray in self.rays if is_same(ray.direction, direction)), None)
 
 
-def scene_of(
-    axes: Sequence[Vector],
-    angles: Sequence[float],
-    names: Names,
-) -> Scene:
-    """The turns by these angles."""
-    frames = list(_frames(axes, angles))
-    arcs = tuple(
-        Arc(
-            axis=combined(axis, frames[k]),
-            start=combined(_start(axes, k), frames[k]),
-            end=combined(_start(axes, k), frames[k + 1]),
-            start_name=_name_of(_start(axes, k)),
-            angle=angle,
-            radius=_RADII[k],
-            name=name,
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Scene:
+    """The axes of space and of the body, the axes of the turns between them, and the turns."""
+
+    rays: tuple[Ray, ...]
+    turns: tuple[Rotary, ...]
+    fixed: tuple[float | None, ...]  # the angles of turns that are constant, in radians
+
+    def posed(self, angles: Sequence[float]) -> Posed:
+        """The scene at these angles, in radians."""
+        bases = list(frames([turn.axis for turn in self.turns], angles))
+        rays = (replace(r, direction=combined(r.direction, bases[r.frame])) for r in self.rays)
+        arcs = (
+            Arc(
+                turn=turn,
+                axis=combined(turn.axis, before),
+                angle=angle,
+                before=combined(turn.start, before),
+                after=combined(turn.start, after),
+            )
+            for turn, angle, (before, after) in zip(
+                self.turns, angles, pairwise(bases), strict=True
+            )
         )
-        for k, (axis, angle, name) in enumerate(zip(axes, angles, names.angles, strict=True))
+        return Posed(rays=tuple(_merged(rays)), arcs=tuple(arcs))
+
+    @property
+    def view(self) -> View:
+        """The clearest of the standard views."""
+        return max(map(self._seen, _VIEWS), key=self._clarity)
+
+    def _seen(self, view: tuple[tuple[int, ...], int, int]) -> View:
+        acute, azimuth, elevation = view
+        angles = (
+            radians(angle) if fixed is None else fixed
+            for angle, fixed in zip(acute, self.fixed, strict=False)
+        )
+        return View(angles=tuple(angles), azimuth=azimuth, elevation=elevation)
+
+    def _clarity(self, view: View) -> float:
+        """How far apart the ends of all axes appear, and how open the arcs: the worst case."""
+        posed, seen = self.posed(view.angles), view.camera
+        ends = [seen.project(ray.direction) for ray in posed.rays]
+        ends += [(-x, -y) for (x, y), r in zip(ends, posed.rays, strict=True) if r.kind == "node"]
+        pairs = list(combinations(ends, 2))
+        return min(
+            min(hypot(a[0] - b[0], a[1] - b[1]) for a, b in pairs),
+            min(hypot(*end) for end in ends),
+            min(2 * _separation(a, b) for a, b in pairs),
+            min(1.5 * abs(sin(arc.angle) * dot(seen.toward, arc.axis)) for arc in posed.arcs),
+        )
+
+
+def _separation(a: Point, b: Point) -> float:
+    """The sine of the angle between two directions, 1 where it is obtuse."""
+    if a[0] * b[0] + a[1] * b[1] < 0:
+        return 1.0
+    return abs(a[0] * b[1] - a[1] * b[0]) / (hypot(*a) * hypot(*b) + 1e-9)
+
+
+def _merged(rays: Iterator[Ray]) -> Iterator[Ray]:
+    """Each direction once, with all its names: z = z′; an axis of a turn adds none."""
+    found: list[Ray] = []
+    for ray in rays:
+        place = next((k for k, r in enumerate(found) if is_same(r.direction, ray.direction)), None)
+        if place is None:
+            found.append(ray)
+        elif ray.kind == "body":
+            both = fill("{0} = {1}", "{0} = {1}", found[place].name, ray.name)
+            found[place] = replace(found[place], name=both)
+    yield from found
+
+
+def scene_of(model: RotationModel, notation: Notation) -> Scene | None:
+    """The scene of a product of turns, or of the one turn about the axis of a vector.
+
+    None for any other model, for more than MOST_TURNS, and for axes that are not numbers.
+    """
+    turns = turns_of(model)
+    are_numbers = all(part.is_number for turn in turns for part in turn.direction)
+    if not (1 <= len(turns) <= MOST_TURNS and are_numbers):
+        return None
+    axes = [_components(turn) for turn in turns]
+    starts = [_start(axes, k) for k in range(len(axes))]
+    return Scene(
+        rays=tuple(_rays(axes, model, notation)),
+        turns=tuple(
+            Rotary(
+                axis=axis,
+                start=start,
+                radius=radius,
+                name=markup(turn.angle, notation),
+                start_name=_name_of(start),
+            )
+            for axis, start, radius, turn in zip(axes, starts, RADII, turns, strict=False)
+        ),
+        fixed=tuple(float(turn.angle) if turn.angle.is_number else None for turn in turns),
     )
-    return Scene(rays=tuple(_rays(frames[-1], names, arcs)), arcs=arcs)
 
 
-def _frames(axes: Sequence[Vector], angles: Sequence[float]) -> Iterator[Frame]:
-    """The frame of space, and where it stands after each turn."""
-    frame = STANDARD
-    yield frame
-    for axis, angle in zip(axes, angles, strict=True):
-        about = combined(axis, frame)
-        x, y, z = (turned(a, about, angle) for a in frame)
-        frame = (x, y, z)
-        yield frame
+def turns_of(model: RotationModel) -> tuple[Turn, ...]:
+    """The turns that are drawn: those of the product, or the one about the vector."""
+    return model.turns or _about_the_vector(model)
+
+
+def _components(turn: Turn) -> Vector:
+    x, y, z = (float(part) for part in turn.direction)
+    return unit((x, y, z))
+
+
+def _about_the_vector(model: RotationModel) -> tuple[Turn, ...]:
+    """The one turn about the vector that three coordinates are components of, drawn somewhere."""
+    if not model.vector:
+        return ()
+    axis = tuple(sp.Rational(part, 3) for part in (1, 2, 2))
+    return (Turn(axis=VECTOR.text, angle=_angle_about(model), components=axis),)
+
+
+def _angle_about(model: RotationModel) -> sp.Expr:
+    """The angle of the turn: a coordinate, the length of the vector, or a new letter."""
+    units = dict(zip(model.coordinates, model.coordinate_units, strict=True))
+    angles = [q for q, unit in units.items() if unit == "rad" and q not in model.vector]
+    length = length_of(model)
+    if not angles and length is not None and units[model.vector[0]] == "rad":
+        return length.symbol
+    taken = {q.func.__name__ for q in model.coordinates}
+    letters = (letter for letter in ("alpha", "beta", "gamma") if letter not in taken)
+    return angles[0] if angles else sp.Symbol(next(letters))
+
+
+def _start(axes: Sequence[Vector], k: int) -> Vector:
+    """The line that turn k carries along: the axis of the next turn, or of the one before."""
+    wished = [axes[k + 1]] if k + 1 < len(axes) else [axes[k - 1]] if k else []
+    candidates = (*wished, *STANDARD)
+    return next((c for c in candidates if abs(dot(c, axes[k])) < 0.75), STANDARD[0])
 
 
 def _name_of(axis: Vector) -> Markup | str:
-    """The letter of a coordinate axis; any other is an axis."""
+    """The letter of a coordinate axis, or the word "axis"."""
     names = (name for name, other in zip(_SPACE, STANDARD, strict=True) if is_same(axis, other))
     return next(names, "axis")
 
 
-def _start(axes: Sequence[Vector], k: int) -> Vector:
-    """What turn k takes from one drawn place to another: the next axis, or that before the last."""
-    wished = [axes[k + 1]] if k + 1 < len(axes) else [axes[k - 1]] if k else []
-    for candidate in (*wished, *STANDARD):
-        if abs(dot(candidate, axes[k])) < 0.9:
-            return candidate
-    return STANDARD[0]
+def _rays(axes: Sequence[Vector], model: RotationModel, notation: Notation) -> Iterator[Ray]:
+    """The axes of space, those of the body, and the axes of turns that are neither."""
+    named = notation.manner.symbol
+    for name, direction in zip(_SPACE, STANDARD, strict=True):
+        yield Ray(kind="space", name=name, frame=0, direction=direction)
+    for name, direction in zip(BODY, STANDARD, strict=True):
+        yield Ray(kind="body", name=named(name), frame=len(axes), direction=direction)
+    between = [k for k in range(len(axes)) if not _is_drawn(axes, k)]
+    for number, k in enumerate(between, start=1):
+        if not model.turns:
+            yield Ray(kind="vector", name=named(VECTOR), frame=k, direction=axes[k])
+        else:
+            several = Markup(f"N_{number}", f"N{'₀₁₂₃₄₅'[number]}")
+            name = several if len(between) > 1 else NODE
+            yield Ray(kind="node", name=name, frame=k, direction=axes[k])
 
 
-def _rays(body: Frame, names: Names, arcs: Sequence[Arc]) -> Iterator[Ray]:
-    """The axes of space, those of the body that stand elsewhere, and the axes between."""
-    axes = [*zip(_SPACE, STANDARD, strict=True), *zip(names.body, body, strict=True)]
-    found: list[Vector] = []
-    for name, direction in axes:
-        if any(is_same(direction, other) for other in found):
-            continue
-        shared = [other for other, same in axes if is_same(same, direction)]
-        kind: Kind = "space" if len(found) < len(_SPACE) else "body"
-        found.append(direction)
-        yield Ray(kind=kind, name=equal(*shared) if len(shared) > 1 else name, direction=direction)
-    nodes: list[Vector] = []
-    for arc in arcs:
-        if not any(is_same(arc.axis, other) for other in (*found, *nodes)):
-            nodes.append(arc.axis)
-    for place, direction in enumerate(nodes):
-        name = _NODE_NAMES[place] if len(nodes) > 1 else names.between or Markup("N", "N")
-        kind = "vector" if names.is_vector else "node"
-        yield Ray(kind=kind, name=name, direction=direction)
+def _is_drawn(axes: Sequence[Vector], k: int) -> bool:
+    """Whether the axis of turn k is, at any angles, an axis of space or of the body.
+
+    The turns before it, or those after it, are then all about this axis.
+    """
+    is_coordinate_axis = any(is_same(axes[k], axis) for axis in STANDARD)
+    ends = (axes[:k], axes[k + 1 :])
+    return is_coordinate_axis and any(all(is_same(a, axes[k]) for a in end) for end in ends)

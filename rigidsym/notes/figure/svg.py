@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from html import escape
+from math import hypot
 
 from rigidsym.notes.figure.camera import Point
-from rigidsym.notes.figure.drawing import TYPE_SIZE, Area, Drawing, Label, Stroke
+from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Stroke
 from rigidsym.notes.formats.sanitize import cleaned
 
 _EM = 18.0  # pixels
@@ -26,49 +27,41 @@ def svg(drawing: Drawing, *, title: str, description: str, name: str) -> str:
         [
             f'<svg viewBox="{box}" width="{_number(width)}" height="{_number(height)}" role="img" '
             f'aria-labelledby="{name}-title {name}-desc">',
-            f'<title id="{name}-title">{_text(title)}</title>',
-            f'<desc id="{name}-desc">{_text(description)}</desc>',
-            *_areas(drawing.areas),
-            *_strokes(drawing.strokes),
-            *_labels(drawing.labels),
+            f'<title id="{name}-title">{escape(cleaned(title))}</title>',
+            f'<desc id="{name}-desc">{escape(cleaned(description))}</desc>',
+            *_elements(drawing),
             "</svg>",
         ]
     )
 
 
-def _areas(areas: Iterable[Area]) -> Iterator[str]:
-    for area in areas:
-        yield f'<polygon class="area {area.kind}" points="{_points(area.points)}"/>'
-
-
-def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:
-    for stroke in strokes:
-        names: list[str] = [stroke.kind]
-        names += ["thin"] if stroke.is_thin else []
-        names += ["hidden"] if stroke.is_hidden else []
+def _elements(drawing: Drawing) -> Iterator[str]:
+    for arc in drawing.sectors:
+        yield f'<polygon class="area turn" points="{_points((arc.centre, *arc.points))}"/>'
+    for stroke in drawing.strokes:
+        names = [
+            stroke.kind,
+            *(["thin"] if stroke.is_thin else []),
+            *(["hidden"] if stroke.is_hidden else []),
+        ]
         yield f'<polyline class="{" ".join(names)}" points="{_points(stroke.points)}"/>'
         if stroke.has_arrow:
             yield f'<polygon class="head {stroke.kind}" points="{_points(_head(stroke))}"/>'
+    for label in drawing.labels:
+        x, y = label.place
+        yield (
+            f'<text class="{label.kind}" x="{_number(x * _SCALE)}" y="{_number(-y * _SCALE)}" '
+            f'dy=".32em">{escape(as_in_formulas(label.symbol.text))}</text>'
+        )
 
 
 def _head(stroke: Stroke) -> tuple[Point, ...]:
     """A slim arrow head whose point is the end of the stroke."""
     (x0, y0), (x1, y1) = stroke.points[-2:]
-    length = ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5
-    size = _ARROW / _SCALE
-    dx, dy = size * (x1 - x0) / length, size * (y1 - y0) / length
+    size = _ARROW / _SCALE / (hypot(x1 - x0, y1 - y0) or 1.0)
+    dx, dy = size * (x1 - x0), size * (y1 - y0)
     foot = (x1 - dx, y1 - dy)
     return ((x1, y1), (foot[0] - dy / 3, foot[1] + dx / 3), (foot[0] + dy / 3, foot[1] - dx / 3))
-
-
-def _labels(labels: Iterable[Label]) -> Iterator[str]:
-    for label in labels:
-        x, y = label.place
-        symbol = as_in_formulas(label.symbol.text)
-        yield (
-            f'<text class="{label.kind}" x="{_number(x * _SCALE)}" y="{_number(-y * _SCALE)}" '
-            f'dy=".32em">{escape(symbol)}</text>'
-        )
 
 
 def as_in_formulas(text: str) -> str:
@@ -81,9 +74,5 @@ def _points(points: Iterable[Point]) -> str:
 
 
 def _number(value: float) -> str:
-    """One digit after the point, and no minus before nothing."""
+    """One digit after the point, and never -0.0."""
     return f"{round(value, 1) + 0.0:.1f}"
-
-
-def _text(text: str) -> str:
-    return escape(cleaned(text))

@@ -1,57 +1,96 @@
-"""The pen for LaTeX: a drawing as a tikzpicture."""
+"""The pen for LaTeX: a drawing as a tikzpicture with named coordinates, and arcs as arcs."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
+from math import degrees
+from unicodedata import normalize
 
+from rigidsym.mechanics.derivation import Markup
 from rigidsym.notes.figure.camera import Point
-from rigidsym.notes.figure.drawing import TYPE_SIZE, Area, Drawing, Label, Stroke
+from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Ellipse, Stroke
 
 _EM = 0.3865  # cm, at 11 points
+_UNIT = _EM / TYPE_SIZE
 _STYLES = (
     "space/.style={black!80}, body/.style={blue!65!black, line width=1pt}, "
     "node/.style={red!70!black, line width=.8pt, dash pattern=on 6pt off 2pt on 1pt off 2pt}, "
     "vector/.style={red!70!black, line width=1pt}, "
-    "turn/.style={teal!75!black, line width=.9pt}, guide/.style={black!45}"
+    "turn/.style={teal!75!black, line width=.9pt}, guide/.style={black!45}, "
+    "hidden/.style={densely dashed, opacity=.6}"
 )
 
 
 def tikz(drawing: Drawing) -> str:
     """The drawing in TikZ; it needs the library arrows.meta."""
-    lines = [*_areas(drawing.areas), *_strokes(drawing.strokes), *_labels(drawing.labels)]
-    scale = f"{_EM / TYPE_SIZE:.3f}"
-    options = f"scale={scale}, >={{Latex[length=2mm]}}, line join=round, line cap=round, {_STYLES}"
-    return "\n".join([rf"\begin{{tikzpicture}}[{options}]", *lines, r"\end{tikzpicture}"])
+    options = f"scale={_UNIT:.3f}, >={{Latex[length=2mm]}}, line join=round, line cap=round"
+    return "\n".join(
+        [
+            rf"\begin{{tikzpicture}}[{options}, {_STYLES}]",
+            *_coordinates(drawing.strokes),
+            *_sectors(drawing.sectors),
+            *_strokes(drawing.strokes),
+            *(
+                rf"\node[{label.kind}, inner sep=0pt] at {_point(label.place)} "
+                f"{{${label.symbol.latex}$}};"
+                for label in drawing.labels
+            ),
+            r"\end{tikzpicture}",
+        ]
+    )
 
 
-def _areas(areas: Iterable[Area]) -> Iterator[str]:
-    for area in areas:
-        yield rf"\fill[{area.kind}, opacity=.1] {_path(area.points)} -- cycle;"
+def _coordinates(strokes: Iterable[Stroke]) -> Iterator[str]:
+    yield r"\coordinate (O) at (0,0);"
+    for stroke in strokes:
+        if stroke.name is not None:
+            yield rf"\coordinate {_named(stroke.name)} at {_point(stroke.points[-1])};"
+
+
+def _named(axis: Markup) -> str:
+    """The end of an axis by the first of its names: (z') for z′ = z″, (N1) for N₁."""
+    first = normalize("NFKD", axis.text.split(" = ")[0]).replace("′", "'")
+    return "(" + re.sub(r"[^A-Za-z0-9']", "", first) + ")"
+
+
+def _sectors(arcs: Iterable[Ellipse]) -> Iterator[str]:
+    for arc in arcs:
+        yield rf"\fill[turn, opacity=.1, {_plane(arc)}] (0,0) -- {_turned(arc)} -- cycle;"
 
 
 def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:
     for stroke in strokes:
         options: list[str] = [stroke.kind]
-        options += ["line width=.4pt"] if stroke.is_thin else []
-        options += ["densely dashed", "opacity=.6"] if stroke.is_hidden else []
+        options += ["thin"] if stroke.is_thin else []
+        options += ["hidden"] if stroke.is_hidden else []
         options += ["->"] if stroke.has_arrow else []
-        yield rf"\draw[{', '.join(options)}] {_path(stroke.points)};"
+        if stroke.arc is not None:
+            yield rf"\draw[{', '.join([*options, _plane(stroke.arc)])}] {_turned(stroke.arc)};"
+        else:
+            start, end = map(_point, stroke.points)
+            tip = end if stroke.name is None else _named(stroke.name)
+            yield rf"\draw[{', '.join(options)}] {start} -- {tip};"
 
 
-def _labels(labels: Iterable[Label]) -> Iterator[str]:
-    for label in labels:
-        at, symbol = _point(label.place), f"${label.symbol.latex}$"
-        yield rf"\node[{label.kind}, inner sep=0pt] at {at} {{{symbol}}};"
+def _plane(arc: Ellipse) -> str:
+    """The plane of an arc, seen obliquely: its centre and the radii at 0 and 90 degrees."""
+    centre = _point(arc.centre)
+    shift = "" if centre == "(O)" else f"shift={{{centre}}}, "
+    u, v = (f"({_number(x)}cm,{_number(y)}cm)" for x, y in (arc.u, arc.v))
+    return f"{shift}x={{{u}}}, y={{{v}}}"
 
 
-def _path(points: Iterable[Point]) -> str:
-    return " -- ".join(map(_point, points))
+def _turned(arc: Ellipse) -> str:
+    start, end = (f"{degrees(angle):.1f}" for angle in (arc.start, arc.end))
+    return f"({start}:1) arc ({start}:{end}:1)"
 
 
 def _point(point: Point) -> str:
-    return f"({_number(point[0])},{_number(point[1])})"
+    x, y = map(_number, point)
+    return "(O)" if x == y == _number(0.0) else f"({x},{y})"
 
 
 def _number(value: float) -> str:
-    """Three digits after the point, and no minus before nothing."""
+    """Three digits after the point, and never -0.000."""
     return f"{round(value, 3) + 0.0:.3f}"

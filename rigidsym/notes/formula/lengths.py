@@ -17,6 +17,7 @@ from rigidsym.mechanics.kinematics.vectors import LENGTH
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
 
+VECTOR = Markup(r"\mathbf{v}", "v")
 _LETTERS = ("n", "l", "r")  # one that nothing in the model is called by is taken
 
 

@@ -16,14 +16,13 @@ from rigidsym.mechanics.quantities.mass import DIRECTION, POINT
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.document.document import Cited, Code, EquationReference, Span, Strong, Text
 from rigidsym.notes.formula.formula import markup
-from rigidsym.notes.formula.lengths import length_of
+from rigidsym.notes.formula.lengths import VECTOR, length_of
 from rigidsym.notes.formula.manner import DEFAULT, Manner
 from rigidsym.notes.formula.notation import Notation, notation_of
 
 POSITION = Markup(r"\mathbf{x}", "x")
 BODY_POSITION = Markup(r"\mathbf{x}'", "x′")
 COORDINATES = Markup(r"\mathbf{q}", "q")
-VECTOR = Markup(r"\mathbf{v}", "v")
 OPERATOR = Markup(r"\mathbf{C}(\mathbf{u})", "C(u)")  # of u ×
 VECTOR_OF = Markup(r"\mathbf{C}^{-1}", "C⁻¹")
 ACTIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", POSITION, ROTATION, BODY_POSITION)
