@@ -1,46 +1,122 @@
-"""Claims become proofs: what reduces to zero is exact, what does not is refused or left open."""
+"""The one door for proofs: a residual is reduced here, and what reduces to zero is exact.
+
+Nothing else constructs an exact Proof. A residual that does not vanish refutes its claim if the
+ring knows every relation or a point shows it; otherwise the claim stays unproved.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
+from typing import NamedTuple, Protocol
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.rational import Rationals
+from rigidsym.algebra.signs import Bounds, sign_within
 from rigidsym.errors import DerivationError, NotARotation
 from rigidsym.mechanics.counterexamples import is_nonzero_somewhere
 from rigidsym.mechanics.derivation import Markup, Proof
-from rigidsym.models.rotation import RotationModel
+from rigidsym.models.rotation import Pullback
 from rigidsym.models.so3 import TIME
 
 
-class Prover:
-    """Decides claims about one model in its ring."""
+class Subject(Protocol):
+    """What claims are about: a RotationModel, or `Constants`."""
 
-    def __init__(self, model: RotationModel, codec: Codec) -> None:
-        self.model = model
+    @property
+    def name(self) -> str: ...
+    @property
+    def coordinates(self) -> tuple[sp.Expr, ...]: ...
+    @property
+    def constraints(self) -> tuple[sp.Expr, ...]: ...
+    @property
+    def pullback(self) -> Pullback | None: ...
+
+
+class Constants(NamedTuple):
+    """A subject at rest: a body, whose symbols are bound by conditions at most."""
+
+    name: str
+    constraints: tuple[sp.Expr, ...] = ()
+    coordinates: tuple[sp.Expr, ...] = ()
+    pullback: Pullback | None = None
+
+
+def identity(
+    left: sp.MatrixBase, claim: Markup, name: str, conditions: Sequence[sp.Expr] = ()
+) -> Proof:
+    """The proof that a matrix of rational functions of a body's constants is zero."""
+    field = Rationals(left, conditions)
+    quotients = [field.read(entry) for entry in left]
+    return Prover(Constants(name, tuple(conditions)), field.codec).cancel(quotients, claim)
+
+
+class Prover:
+    """Decides claims about one subject in its ring."""
+
+    def __init__(self, subject: Subject, codec: Codec) -> None:
+        self.subject = subject
         self.codec = codec
 
     def vanishes(
         self, residual: RingMatrix, claim: Markup, *, divided_by: PolyElement | None = None
     ) -> Proof:
-        """The proof that a matrix is zero, and that what was divided by is not.
+        """The proof that a matrix is zero, and that its divisor is not.
 
-        Raises DerivationError where the matrix is shown not to be zero; where the ring does not
-        know enough to tell, the proof says *unproved* and holds what is left.
+        Raises DerivationError if the matrix is shown not to be zero. If the ring does not know
+        enough to tell, the proof is *unproved* and holds what is left.
         """
-        if residual.is_zero():
-            return self._unless_zero(divided_by, claim)
+        divisors = () if divided_by is None else (divided_by,)
+        if self._reduces_to_zero(residual):
+            return self._unless_zero(divisors, claim)
         left = self._decoded(residual)
-        if self.model.pullback is not None and self._pulled_back(left).is_zero():
-            return self._unless_zero(divided_by, claim)
+        if self.subject.pullback is not None and self._pulled_back(left).is_zero():
+            return self._unless_zero(divisors, claim)
         if self._is_refuted(left):
             raise DerivationError(
-                f"{self.model.name}: {claim.text} is false; left over: {self._plain(left)}"
+                f"{self.subject.name}: {claim.text} is false; left over: {self._plain(left)}"
             )
         return Proof(claim=claim, status="unproved", residual=left)
+
+    def cancel(self, quotients: Sequence[Quotient], claim: Markup) -> Proof:
+        """The proof that quotients are zero, and that none of their divisors is."""
+        numerators = RingMatrix.column(self.codec.ring, (q.numerator for q in quotients))
+        proof = self.vanishes(numerators, claim)
+        if not proof.is_exact:
+            return proof
+        below = dict.fromkeys(q.denominator for q in quotients if not q.denominator.is_ground)
+        return self._unless_zero(below, claim)
+
+    def is_root(
+        self, squared: RingMatrix, value: sp.Expr, bounds: Mapping[sp.Symbol, Bounds], claim: Markup
+    ) -> Proof:
+        """The proof that a value is the positive root of what its square equals.
+
+        `squared` is the difference of the squares. The sign follows for variables within bounds
+        and positive constants; if it does not, the proof is *unproved* and holds the value.
+        """
+        proof = self.vanishes(squared, claim)
+        if proof.is_exact and sign_within(value, bounds) != 1:
+            return Proof(claim=claim, status="unproved", residual=sp.ImmutableMatrix([[value]]))
+        return proof
+
+    def is_rotation(self, residual: RingMatrix, claim: Markup) -> Proof:
+        """As `vanishes`, for the claims that make a matrix a rotation; raises NotARotation."""
+        try:
+            return self.vanishes(residual, claim)
+        except DerivationError as error:
+            raise NotARotation(
+                f"{self.subject.name}: not a rotation, since {claim.text} fails; "
+                f"left over: {self._plain(self._decoded(residual))}"
+            ) from error
+
+    def _reduces_to_zero(self, residual: RingMatrix) -> bool:
+        return all(self.codec.ring.is_zero(entry) for entry in residual.entries)
 
     def _pulled_back(self, left: sp.ImmutableMatrix) -> RingMatrix:
         """What is left, in the ring of the functions that stand for the coordinates."""
@@ -51,33 +127,23 @@ class Prover:
     @cached_property
     def _pullback(self) -> tuple[Codec, dict[sp.Expr, sp.Expr]]:
         """The ring of the pullback, and what the coordinates and their rates become in it."""
-        assert self.model.pullback is not None
+        pullback = self.subject.pullback
+        assert pullback is not None
         values: dict[sp.Expr, sp.Expr] = {}
-        pairs = zip(self.model.coordinates, self.model.pullback.coordinates, strict=True)
-        for coordinate, value in pairs:
+        for coordinate, value in zip(self.subject.coordinates, pullback.coordinates, strict=True):
             for order in range(3):
                 values[sp.diff(coordinate, TIME, order)] = sp.diff(value, TIME, order)
         given = [gen.expression for gen in self.codec.ring.generators if gen.expression.is_Symbol]
-        inputs = [*self.model.pullback.coordinates, *given]
-        return codec_for(inputs, constraints=self.model.pullback.constraints), values
+        inputs = [*pullback.coordinates, *given]
+        return codec_for(inputs, constraints=pullback.constraints), values
 
-    def _unless_zero(self, divisor: PolyElement | None, claim: Markup) -> Proof:
-        """Exact, unless the divisor may be zero everywhere; it is then what is left over."""
-        if divisor is not None and not self._is_decided:
+    def _unless_zero(self, divisors: Iterable[PolyElement], claim: Markup) -> Proof:
+        """Exact, unless a divisor may be zero everywhere; it is then what is left over."""
+        for divisor in () if self._is_decided else divisors:
             left = self._decoded(RingMatrix.of(self.codec.ring, [[divisor]]))
             if not self._is_refuted(left):
                 return Proof(claim=claim, status="unproved", residual=left)
         return Proof(claim=claim, status="exact")
-
-    def is_rotation(self, residual: RingMatrix, claim: Markup) -> Proof:
-        """As `vanishes`, for the claims that make a matrix a rotation; raises NotARotation."""
-        try:
-            return self.vanishes(residual, claim)
-        except DerivationError as error:
-            raise NotARotation(
-                f"{self.model.name}: not a rotation, since {claim.text} fails; "
-                f"left over: {self._plain(self._decoded(residual))}"
-            ) from error
 
     def _decoded(self, residual: RingMatrix) -> sp.ImmutableMatrix:
         decode = self.codec.decode
@@ -88,7 +154,7 @@ class Prover:
         names = {
             sp.diff(q, TIME, order): sp.Symbol(q.func.__name__ + suffix)
             for order, suffix in ((2, "_ddot"), (1, "_dot"), (0, ""))
-            for q in self.model.coordinates
+            for q in self.subject.coordinates
         }
         entries = [
             (f"{left[i, j].xreplace(names)}", f" in row {i + 1}, column {j + 1}")
@@ -101,14 +167,14 @@ class Prover:
     @property
     def _is_decided(self) -> bool:
         """Whether what does not reduce to zero is not zero."""
-        return self.codec.ring.complete and not self.model.constraints
+        return self.codec.ring.complete and not self.subject.constraints
 
     def _is_refuted(self, left: sp.ImmutableMatrix) -> bool:
         """Whether what is left is certainly not zero.
 
-        A ring that knows every relation can tell. Where it does not, and under constraints, whose
+        A ring that knows every relation can tell. If it does not, and under constraints, whose
         ideal need not hold all that vanishes with them, a value at a point tells.
         """
         return self._is_decided or any(
-            is_nonzero_somewhere(entry, self.model.constraints) for entry in left if entry != 0
+            is_nonzero_somewhere(entry, self.subject.constraints) for entry in left if entry != 0
         )

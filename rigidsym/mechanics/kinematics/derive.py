@@ -28,9 +28,8 @@ from rigidsym.mechanics.derivation import (
 )
 from rigidsym.mechanics.kinematics import composition
 from rigidsym.mechanics.kinematics.composition import hat
-from rigidsym.mechanics.kinematics.isotropic import applied, matrix_form
 from rigidsym.mechanics.kinematics.rates import Inverse
-from rigidsym.mechanics.kinematics.vectors import vector_form
+from rigidsym.mechanics.kinematics.vector_forms import applied_form, matrix_form, vector_form
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities.kinematics import (
@@ -273,8 +272,9 @@ class _Kinematics:
             claims.solves(frame.matrix, self._inverse_symbol(frame), frame.omega),
             divided_by=below,
         )
-        whole = matrix_form(self.model, above, self.values.codec, frame.inverse, below)
-        form = whole and applied(whole, RATES, frame.omega)
+        form = applied_form(
+            self.prove, self.model.vector, above, below, RATES, to=(frame.omega, given)
+        )
         return _Found(
             self.present.matrix(rates, below),
             "The inverse rate matrix is applied to a given angular velocity.",
@@ -317,12 +317,12 @@ class _Kinematics:
     ) -> _Found:
         """A matrix over `below`, as a function of the vector too where it is one."""
         over = self.values.ring.one if below is None else below
-        form = matrix_form(self.model, matrix, self.values.codec, symbol, over)
+        form = matrix_form(self.prove, self.model.vector, matrix, over, symbol)
         proved = proofs if form is None else (*proofs, form.proof)
         return _Found(self.present.matrix(matrix, below), because, proved, form)
 
     def _vector(self, frame: Frame, omega: RingMatrix, because: str, proof: Proof) -> _Found:
-        form = vector_form(self.model, omega, self.values.codec, frame.omega)
+        form = vector_form(self.prove, self.model.vector, omega, frame.omega)
         proofs = (proof,) if form is None else (proof, form.proof)
         return _Found(self.present.matrix(omega), because, proofs, form)
 

@@ -14,15 +14,13 @@ from types import MappingProxyType
 import sympy as sp
 
 from rigidsym.algebra.present import presenter_for
-from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.rational import Rationals
-from rigidsym.errors import DerivationError
 from rigidsym.mechanics.arguments import DIRECTION, POINT
 from rigidsym.mechanics.derivation import Markup, Proof
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass.moments import Moments, moments_of
 from rigidsym.mechanics.mass.principal import Principal, principal_of
-from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.prove import Prover, identity
 from rigidsym.mechanics.quantities import mass as claims
 from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Composite, Known, Part
@@ -90,23 +88,23 @@ class _Inertia:
         return Found(
             self.body.centre,
             "The centre of mass is the mean of the places, each with its mass.",
-            (*proofs, _vanishes(rest, claims.CENTRED, self.body.name)),
+            (*proofs, identity(rest, claims.CENTRED, self.body.name)),
         )
 
     def inertia_tensor(self) -> Found:
         body, moments = self.body, self.moments
-        proofs = [_vanishes(body.inertia - body.inertia.T, claims.SYMMETRIC, body.name)]
+        proofs = [identity(body.inertia - body.inertia.T, claims.SYMMETRIC, body.name)]
         if body.distribution is None:
             because = "The inertia tensor of the body is given, about its centre of mass."
             return Found(body.inertia, because, tuple(proofs))
         about_origin = moments.second.trace() * _ONE - moments.second
         rest = about_origin - body.inertia - _moved(body.mass, body.centre)
-        proofs.append(_vanishes(rest, claims.ABOUT_ORIGIN, body.name))
+        proofs.append(identity(rest, claims.ABOUT_ORIGIN, body.name))
         because = "The inertia tensor is that of the lecture, about the centre of mass."
         if isinstance(body.distribution, Composite):
             rest = self._of_parts(body.distribution.parts) - body.inertia
             conditions = body.distribution.conditions
-            proofs.append(_vanishes(rest, claims.OF_PARTS, body.name, conditions))
+            proofs.append(identity(rest, claims.OF_PARTS, body.name, conditions))
             because = (
                 "The tensors of the parts are turned, moved to the common centre of mass by the "
                 "theorem of parallel axes, and added."
@@ -131,7 +129,7 @@ class _Inertia:
         return Found(
             sp.ImmutableMatrix(body.inertia + self._shift),
             "About another point the whole mass, put into the centre of mass, is added.",
-            (_vanishes(rest, claims.OF_POINT, body.name),),
+            (identity(rest, claims.OF_POINT, body.name),),
         )
 
     @property
@@ -161,7 +159,7 @@ class _Inertia:
             "The moment about a line is the quadratic form of the tensor about a point p of it. "
             "The direction is a unit vector, and n × (x′ − p) is as long as the distance from the "
             "line.",
-            (_vanishes(rest, claims.OF_LINE, self.body.name),),
+            (identity(rest, claims.OF_LINE, self.body.name),),
         )
 
     @property
@@ -196,7 +194,7 @@ class _Inertia:
         return Found(
             radii,
             "At this distance from the axis the whole mass would have the same moment.",
-            (_vanishes(rest, claims.OF_RADII, body.name),),
+            (identity(rest, claims.OF_RADII, body.name),),
         )
 
     def _root(self, square: sp.Expr) -> sp.Expr:
@@ -217,7 +215,7 @@ class _Inertia:
         proofs = []
         if found.axes is None:
             values = [_volume(inertia - moment * _ONE) for moment in found.moments]
-            proofs.append(_vanishes(sp.Matrix(values), claims.CHARACTERISTIC, name))
+            proofs.append(identity(sp.Matrix(values), claims.CHARACTERISTIC, name))
         return Found(found.moments, found.because, tuple(proofs))
 
     def principal_axes(self) -> Found | None:
@@ -232,8 +230,8 @@ class _Inertia:
             axes,
             "Each axis is a direction that the tensor keeps.",
             (
-                _vanishes(turned, claims.DIAGONAL, name),
-                _vanishes(whole, claims.ORTHOGONAL_AXES, name),
+                identity(turned, claims.DIAGONAL, name),
+                identity(whole, claims.ORTHOGONAL_AXES, name),
             ),
         )
 
@@ -248,7 +246,7 @@ class _Inertia:
         return Found(
             sp.ImmutableMatrix(semi_axes),
             "The ellipsoid is that of all x′ for which x′·I′ x′ = 1.",
-            (_vanishes(rest, claims.ELLIPSOID, self.body.name),),
+            (identity(rest, claims.ELLIPSOID, self.body.name),),
         )
 
     def inertia_tensor_space(self) -> Found:
@@ -280,20 +278,6 @@ def _volume(columns: sp.MatrixBase) -> sp.Expr:
 
 def _scalar(value: sp.Expr) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix([[value]])
-
-
-def _vanishes(
-    rest: sp.MatrixBase, claim: Markup, name: str, conditions: Sequence[sp.Expr] = ()
-) -> Proof:
-    """The proof that a matrix is zero; raises DerivationError where it is shown not to be."""
-    field = Rationals(rest, conditions)
-    left: list[Quotient] = [field.read(entry) for entry in rest]
-    if not any(entry.numerator for entry in left):
-        return Proof(claim=claim, status="exact")
-    shown = sp.ImmutableMatrix(*rest.shape, [field.write(entry) for entry in left])
-    if field.ring.complete and not conditions:
-        raise DerivationError(f"{name}: {claim.text} is false; left over: {shown}")
-    return Proof(claim=claim, status="unproved", residual=shown)
 
 
 _STEPS: Mapping[str, Callable[[_Inertia], Found | None]] = MappingProxyType(

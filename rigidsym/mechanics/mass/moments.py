@@ -22,6 +22,7 @@ from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.rational import Rationals
 from rigidsym.errors import BodyError
 from rigidsym.mechanics.derivation import Markup, Proof
+from rigidsym.mechanics.prove import Constants, Prover
 from rigidsym.models.distribution import (
     Composite,
     Distribution,
@@ -37,8 +38,7 @@ _ANTIDERIVATIVES = Markup(
     r"\frac{\partial F}{\partial u} = f \text{ for every integral}", "∂F/∂u = f for every integral"
 )
 _ELEMENT = Markup(
-    r"\left(\frac{dA}{du\,dv}\right)^2 = \det\mathbf{J}^{\mathsf T}\mathbf{J}",
-    "element² = det JᵀJ",
+    r"\frac{dA}{du\,dv} = \sqrt{\det\mathbf{J}^{\mathsf T}\mathbf{J}}", "element = √(det JᵀJ)"
 )
 
 
@@ -152,7 +152,7 @@ def _(solid: Solid) -> Moments:
         Rationals.over(codec),
         *_scaled(scale, volume, first, second),
         element=presenter_for(codec).element(measure),
-        proofs=(*proofs, Proof(claim=_ANTIDERIVATIVES, status="exact")),
+        proofs=(*proofs, work.antiderivatives()),
     )
 
 
@@ -189,18 +189,22 @@ class _Integrals:
 
     def __init__(self, codec: Codec, solid: Solid) -> None:
         self.codec, self.ring, self.solid = codec, codec.ring, solid
+        self.prove = Prover(Constants(solid.title), codec)
         self._each = [Integrator(codec, variable) for variable in solid.coordinates]
+        self._left: list[PolyElement] = []  # ∂F/∂u − f of every integral
 
     def integral(self, element: PolyElement) -> PolyElement:
-        """Over all coordinates. Raises BodyError where an antiderivative is not one."""
+        """Over all coordinates."""
         pairs = list(zip(self._each, self.solid.bounds, strict=True))
         for integrator, bounds in reversed(pairs):
             antiderivative = integrator.antiderivative(element)
-            left = self.ring.reduce(integrator.derivative(antiderivative) - element)
-            if left:
-                raise BodyError(f"an integral over {integrator.variable} failed its proof: {left}")
+            self._left.append(integrator.derivative(antiderivative) - element)
             element = integrator.between(antiderivative, bounds)
         return element
+
+    def antiderivatives(self) -> Proof:
+        """That every integrand was the derivative of what was put at the bounds."""
+        return self.prove.vanishes(RingMatrix.column(self.ring, self._left), _ANTIDERIVATIVES)
 
     def measure(self) -> tuple[PolyElement, tuple[Proof, ...]]:
         """The length, area or volume that belongs to a unit of the coordinates."""
@@ -210,14 +214,19 @@ class _Integrals:
         if len(columns) == 3:
             determinant = tangents.det()
             return determinant * self._sign(determinant), ()
-        element = self.codec.encode(self.solid.element)
+        given = self.solid.element
+        element = self.codec.encode(given)
         residual = self.ring.reduce(element**2) - (tangents @ tangents.T).det()
         if residual:
             raise BodyError(
-                f"{self.solid.title}: the element {self.solid.element} is not that of the map; its "
+                f"{self.solid.title}: the element {given} is not that of the map; its "
                 f"square differs by {self.codec.decode(self.ring.reduce(residual))}"
             )
-        return element, (Proof(claim=_ELEMENT, status="exact"),)
+        if self._sign(element) < 0:
+            raise BodyError(f"{self.solid.title}: the element {given} is negative; turn its sign")
+        bounds = dict(zip(self.solid.coordinates, self.solid.bounds, strict=True))
+        squared = RingMatrix.column(self.ring, [residual])
+        return element, (self.prove.is_root(squared, given, bounds, _ELEMENT),)
 
     def split(self, measure: PolyElement) -> tuple[PolyElement, PolyElement]:
         """The measure as a constant times what is integrated: all of it is one or the other."""
@@ -230,7 +239,7 @@ class _Integrals:
         return measure, self.ring.one
 
     def _sign(self, determinant: PolyElement) -> int:
-        """Of a determinant, from places within the bounds; the map may not fold over.
+        """Of a determinant or an element, at points within the bounds; the map may not fold over.
 
         With constants that have no value it is looked at in three places alone, since not every
         choice of values need be one that the solid can have.

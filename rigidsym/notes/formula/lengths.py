@@ -13,7 +13,7 @@ from functools import lru_cache
 import sympy as sp
 
 from rigidsym.mechanics.derivation import Markup
-from rigidsym.mechanics.kinematics.vectors import LENGTH
+from rigidsym.mechanics.kinematics.vector_forms import LENGTH
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import sympy as sp
 
 from rigidsym.mechanics.derivation import Markup, VectorForm, VectorTerm
-from rigidsym.mechanics.kinematics.vectors import ALONG, CROSS, TWICE, V_DOT, V
+from rigidsym.mechanics.kinematics.vector_forms import ALONG, CROSS, TWICE, V_DOT, V
 from rigidsym.models.so3 import TIME
 
 _V_DDOT = Markup(r"\ddot{\mathbf{v}}", "v̈")

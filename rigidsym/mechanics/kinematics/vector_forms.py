@@ -1,23 +1,25 @@
-"""Vectors shown as vectors: Ω = f v̇ + g v × v̇ + ..., where three coordinates form a vector v.
+"""Vectors and matrices of a vector v: Ω = f v̇ + g v × v̇ + ..., R = 1 + a C(v) + b C(v)².
 
-The coefficients are read off where v points along its first axis, and the form that they make is
-then proved equal to all components at every v. No coefficient is assumed.
+The coefficients are read off where v points along its first axis. What they make, as it is
+printed, is then proved equal to all entries at every v. No coefficient is assumed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import reduce
 from operator import add
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.present import presenter_for
-from rigidsym.mechanics.derivation import Markup, Proof, VectorForm, VectorTerm
-from rigidsym.models.rotation import RotationModel
+from rigidsym.algebra.quotient import Quotient
+from rigidsym.mechanics.claims import fill
+from rigidsym.mechanics.derivation import Markup, VectorForm, VectorTerm
+from rigidsym.mechanics.kinematics.composition import hat
+from rigidsym.mechanics.prove import Prover
 from rigidsym.models.so3 import TIME
 
 LENGTH = sp.Symbol("n", positive=True)  # |v|
@@ -28,38 +30,70 @@ CROSS = Markup(r"\mathbf{v}\times\dot{\mathbf{v}}", "v × v̇")
 TWICE = Markup(r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})", "v × (v × v̇)")
 ALONG = Markup(r"(\mathbf{v}\cdot\dot{\mathbf{v}})\,\mathbf{v}", "(v·v̇) v")
 
+_ONE = Markup(r"\mathbf{1}", "1")
+_SKEW = Markup(r"\mathbf{C}(\mathbf{v})", "C(v)")
+_SQUARE = Markup(r"\mathbf{C}(\mathbf{v})^{2}", "C(v)²")
+_OUTER = Markup(r"\mathbf{v}\,\mathbf{v}^{\mathsf T}", "v vᵀ")
+_APPLIED = {  # to a vector w
+    _ONE: ("{0}", "{0}"),
+    _SKEW: (r"\mathbf{{v}}\times{0}", "v × {0}"),
+    _SQUARE: (r"\mathbf{{v}}\times(\mathbf{{v}}\times{0})", "v × (v × {0})"),
+    _OUTER: (r"(\mathbf{{v}}\cdot{0})\,\mathbf{{v}}", "(v·{0}) v"),
+}
+_TERMS_OF = r"{0}\text{{ in terms of }}\mathbf{{v}}"
+
 Weighted = list[tuple[PolyElement, Markup, RingMatrix]]  # coefficient, its vector, over the ring
 
 
 def vector_form(
-    model: RotationModel, omega: RingMatrix, codec: Codec, symbol: Markup
+    prove: Prover, vector: Sequence[sp.Expr], omega: RingMatrix, symbol: Markup
 ) -> VectorForm | None:
-    """Ω or Ω′ in terms of v, v̇, v × v̇ and v × (v × v̇); None where there is no such form."""
-    if not model.vector:
+    """Ω or Ω′ in terms of v, v̇, v × v̇ and v × (v × v̇); None if there is no such form."""
+    if not vector:
         return None
-    work = Vectors(model.vector, codec)
-    forms = [form for form in work.forms(omega) if work.is_equal(form, omega)]
-    if not forms:
-        return None
-    terms = min((work.terms(form) for form in forms), key=length_of_form)
-    claim = Markup(
-        rf"{symbol.latex}\text{{ in terms of }}\mathbf{{v}}, \dot{{\mathbf{{v}}}}",
-        f"{symbol.text} in terms of v, v̇",
-    )
-    return VectorForm(
-        terms=terms,
-        components=model.vector,
-        length=LENGTH,
-        proof=Proof(claim=claim, status="exact"),
-    )
+    work = Vectors(vector, prove)
+    claim = fill(_TERMS_OF + r", \dot{{\mathbf{{v}}}}", "{0} in terms of v, v̇", symbol)
+    return work.shortest(work.forms(omega), omega, prove.codec.ring.one, claim)
 
 
-def length_of_form(terms: Sequence[VectorTerm]) -> int:
+def matrix_form(
+    prove: Prover, vector: Sequence[sp.Expr], matrix: RingMatrix, below: PolyElement, symbol: Markup
+) -> VectorForm | None:
+    """A matrix (3, 3) over `below` as a 1 + b C(v) + c v vᵀ, or with C(v)²; None if it is not."""
+    if not vector or matrix.shape != (3, 3):
+        return None
+    work = Vectors(vector, prove)
+    claim = fill(_TERMS_OF, "{0} in terms of v", symbol)
+    return work.shortest(work.matrix_forms(matrix), matrix, below, claim)
+
+
+def applied_form(
+    prove: Prover,
+    vector: Sequence[sp.Expr],
+    matrix: RingMatrix,
+    below: PolyElement,
+    symbol: Markup,
+    *,
+    to: tuple[Markup, RingMatrix],
+) -> VectorForm | None:
+    """A matrix (3, 3) over `below`, applied to a vector w, (3, 1): a w + b v × w + ..."""
+    if not vector or matrix.shape != (3, 3):
+        return None
+    work, (name, w) = Vectors(vector, prove), to
+    forms = [
+        [(c, fill(*_APPLIED[basis], name), part @ w) for c, basis, part in form]
+        for form in work.matrix_forms(matrix)
+    ]
+    claim = fill(_TERMS_OF + ", {1}", "{0} in terms of v, {1}", symbol, name)
+    return work.shortest(forms, matrix @ w, below, claim)
+
+
+def _length_of_form(terms: Sequence[VectorTerm]) -> int:
     return sum(int(sp.count_ops(term.coefficient)) + 1 for term in terms)
 
 
-def one_fraction(coefficient: sp.Expr) -> sp.Expr:
-    """A coefficient over one denominator where that is shorter: (n − sin n)/n³."""
+def _one_fraction(coefficient: sp.Expr) -> sp.Expr:
+    """A coefficient over one denominator if that is shorter: (n − sin n)/n³."""
     together = sp.together(coefficient)
     # fractions within fractions are worth an operation or two
     return together if sp.count_ops(together) <= sp.count_ops(coefficient) + 2 else coefficient
@@ -68,9 +102,10 @@ def one_fraction(coefficient: sp.Expr) -> sp.Expr:
 class Vectors:
     """The vector of one model over its ring, and the point where it lies along its first axis."""
 
-    def __init__(self, vector: Sequence[sp.Expr], codec: Codec) -> None:
-        self.vector = vector
-        self.codec = codec
+    def __init__(self, vector: Sequence[sp.Expr], prove: Prover) -> None:
+        self.vector = tuple(vector)
+        self.prove = prove
+        self.codec = codec = prove.codec
         self.ring = codec.ring
         self.v = [codec.encode(part) for part in vector]
         self.v_dot = [codec.encode(sp.diff(part, TIME)) for part in vector]
@@ -100,20 +135,73 @@ class Vectors:
             self.lifted([(twice, V_DOT, v_dot), around, (along, TWICE, crossed_twice), ahead]),
         ]
 
-    def is_equal(self, form: Weighted, omega: RingMatrix) -> bool:
-        """Whether the sum of the terms is Ω at every v: decided in the ring."""
-        total = reduce(add, (vector.scale(coefficient) for coefficient, _, vector in form))
-        return bool(form) and (total - omega).is_zero()
+    def matrix_forms(self, matrix: RingMatrix) -> list[Weighted]:
+        """The candidates: with v vᵀ, and with C(v)² in its place."""
+        entries = (matrix.rows[i][j] for i, j in ((0, 0), (1, 1), (2, 1)))
+        along, across, turned = map(self.special, entries)
+        once = self.by_length(turned)
+        half = self.by_length(along - across)
+        outer = None if half is None else self.by_length(half)
+        if once is None or outer is None:
+            return []
+        v = self.column(self.v)
+        one, skew, dyad = RingMatrix.identity(self.ring, 3), hat(v), v @ v.T
+        return [
+            self.lifted([(across, _ONE, one), (once, _SKEW, skew), (outer, _OUTER, dyad)]),
+            self.lifted([(along, _ONE, one), (once, _SKEW, skew), (outer, _SQUARE, skew @ skew)]),
+        ]
 
-    def terms(self, form: Weighted) -> tuple[VectorTerm, ...]:
-        """What is printed: the coefficients as functions of the length."""
+    def shortest(
+        self, forms: Iterable[Weighted], whole: RingMatrix, below: PolyElement, claim: Markup
+    ) -> VectorForm | None:
+        """The shortest of the forms that equal whole/below, proved as it is printed."""
+        equal = [form for form in forms if self._is_equal(form, whole)]
+        if not equal:
+            return None
+        printed = [(self._terms(form, below), form) for form in equal]
+        terms, form = min(printed, key=lambda pair: _length_of_form(pair[0]))
+        vectors = [vector for coefficient, _, vector in form if coefficient]
+        return VectorForm(
+            terms=terms,
+            components=self.vector,
+            length=LENGTH,
+            proof=self.prove.cancel(self._residual(terms, vectors, whole, below), claim),
+        )
+
+    def _is_equal(self, form: Weighted, whole: RingMatrix) -> bool:
+        """Whether the sum of the terms is the whole at every v: decided in the ring."""
+        total = reduce(add, (vector.scale(c) for c, _, vector in form), whole.scale(-self.ring.one))
+        return bool(form) and total.is_zero()
+
+    def _terms(self, form: Weighted, below: PolyElement) -> tuple[VectorTerm, ...]:
+        """What is printed: the coefficients over `below` as functions of the length."""
         present = presenter_for(self.codec)
         along_axis = dict(zip(self.vector, (LENGTH, 0, 0), strict=True))
         return tuple(
-            VectorTerm(one_fraction(present.element(coefficient).subs(along_axis)), vector)
-            for coefficient, vector, _ in form
+            VectorTerm(_one_fraction(present.quotient(quotient).subs(along_axis)), name)
+            for coefficient, name, _ in form
+            for quotient in (Quotient(self.ring, self.ring.reduce(coefficient), below),)
             if coefficient
         )
+
+    def _residual(
+        self,
+        terms: Sequence[VectorTerm],
+        vectors: Sequence[RingMatrix],
+        whole: RingMatrix,
+        below: PolyElement,
+    ) -> list[Quotient]:
+        """The printed terms less whole/below, entry by entry, with |v| = √(v·v)."""
+        ring, length = self.ring, sp.sqrt(sum(part**2 for part in self.vector))
+        coefficients = [
+            self.codec.encode_quotient(term.coefficient.xreplace({LENGTH: length}))
+            for term in terms
+        ]
+        total = [Quotient(ring, -entry, below) for entry in whole.entries]
+        for coefficient, vector in zip(coefficients, vectors, strict=True):
+            for place, entry in enumerate(vector.entries):
+                total[place] += coefficient * Quotient.whole(ring, entry)
+        return total
 
     def special(self, element: PolyElement) -> PolyElement:
         """The element where v = (|v|, 0, 0); |v| is the root, where the ring has it."""

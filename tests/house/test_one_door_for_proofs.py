@@ -1,0 +1,126 @@
+"""Only mechanics/prove.py makes exact proofs, and each place that uses it fails if it is wrong."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+from rigidsym.algebra.integrate import Integrator
+from rigidsym.errors import BodyError, DerivationError
+from rigidsym.mechanics.derivation import VectorTerm
+from rigidsym.mechanics.kinematics.vector_forms import Vectors
+from rigidsym.mechanics.mass import inertia
+from rigidsym.mechanics.mass.moments import moments_of
+from rigidsym.models.distribution import Solid
+
+PACKAGE = Path(rs.__file__).parent
+DOOR = PACKAGE / "mechanics" / "prove.py"
+a, R = sp.symbols("a R")
+u, v = sp.symbols("u v")
+
+
+def exact_proofs(source: str) -> list[int]:
+    """The lines that construct a Proof without a status that is plainly another."""
+    calls = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)]
+    found = []
+    for call in calls:
+        name = call.func.attr if isinstance(call.func, ast.Attribute) else None
+        name = call.func.id if isinstance(call.func, ast.Name) else name
+        status = [k.value for k in call.keywords if k.arg == "status"]
+        is_open = bool(status) and getattr(status[0], "value", None) == "unproved"
+        says_exact = bool(status) and getattr(status[0], "value", None) == "exact"
+        if (name == "Proof" and not is_open) or says_exact:
+            found.append(call.lineno)
+    return found
+
+
+@pytest.mark.parametrize(
+    "path", sorted(PACKAGE.rglob("*.py")), ids=lambda path: str(path.relative_to(PACKAGE))
+)
+def test_only_the_door_constructs_exact_proofs(path):
+    assert path == DOOR or exact_proofs(path.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        'Proof(claim=c, status="exact")',
+        "Proof(claim=c, status=status)",
+        "derivation.Proof(**found)",
+        'replace(proof, status="exact")',
+    ],
+)
+def test_a_second_door_would_be_seen(source):
+    assert exact_proofs(source) == [1]
+
+
+@pytest.mark.parametrize(
+    "quantity",
+    ["angular_velocity_space", "rotation_matrix", "rates_from_angular_velocity_body"],
+)
+def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch, quantity):
+    right = Vectors._terms
+
+    def wrong(*given):
+        first, *others = right(*given)
+        return (VectorTerm(first.coefficient + 1, first.vector), *others)
+
+    monkeypatch.setattr(Vectors, "_terms", wrong)
+    with pytest.raises(DerivationError, match=r"in terms of v.* is false"):
+        rs.derive("gibbs_vector", [quantity])
+
+
+def test_a_wrong_shift_of_an_inertia_tensor_is_refused(monkeypatch):
+    right = inertia._moved
+    monkeypatch.setattr(inertia, "_moved", lambda mass, by: 2 * right(mass, by))
+    with pytest.raises(DerivationError, match="is false"):
+        rs.derive("ZXZ", ["inertia_tensor_point"], body=rs.solid("cone"))
+
+
+def test_a_wrong_antiderivative_is_refused(monkeypatch):
+    right = Integrator.antiderivative
+
+    def wrong(self, element):
+        return right(self, element) + self.ring.generator(self.ring.index[self.variable])
+
+    monkeypatch.setattr(Integrator, "antiderivative", wrong)
+    with pytest.raises(DerivationError, match="for every integral is false"):
+        moments_of(torus_shell(a * (R + a * sp.cos(v)), density=sp.Symbol("sigma")))
+
+
+def torus_shell(element: sp.Expr, density: sp.Expr) -> Solid:
+    distance = R + a * sp.cos(v)
+    return Solid(
+        title="torus shell",
+        coordinates=(u, v),
+        place=sp.ImmutableMatrix([distance * sp.cos(u), distance * sp.sin(u), a * sp.sin(v)]),
+        bounds=((sp.S.Zero, 2 * sp.pi),) * 2,
+        element=element,
+        density=density,
+    )
+
+
+def test_an_element_with_the_wrong_sign_is_refused():
+    with pytest.raises(BodyError, match="is negative"):
+        moments_of(disc(-u))
+
+
+def test_an_element_is_exact_only_if_its_sign_is_known():
+    assert [proof.status for proof in moments_of(disc(u)).proofs] == ["exact", "exact"]
+    unsure, integrals = moments_of(torus_shell(a * (R + a * sp.cos(v)), sp.S.One)).proofs
+    assert (unsure.status, integrals.status) == ("unproved", "exact")
+
+
+def disc(element: sp.Expr) -> Solid:
+    return Solid(
+        title="disc",
+        coordinates=(u, v),
+        place=sp.ImmutableMatrix([u * sp.cos(v), u * sp.sin(v), 0]),
+        bounds=((sp.S.Zero, a), (sp.S.Zero, 2 * sp.pi)),
+        element=element,
+        density=sp.S.One,
+    )
