@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import Any
 
 import sympy as sp
 
-from helpers.witness import hat, mp, number, paths, rotation
+from helpers.witness import derivative, evaluate, hat, mp, number, paths, rotation, unhat
+from rigidsym.models.euler_angles import EULER_SEQUENCES
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.motion import Motion, derive
 
@@ -139,3 +142,106 @@ def chain_witness(motion: Motion) -> Build:
         return result
 
     return build
+
+
+@dataclass(frozen=True, eq=False)
+class Moving:
+    """A rotation on its way along a path q(t), seen at t = 0.
+
+    Its attributes are the quantities of the derivation by their names, with the numbers of this
+    moment put into the printed expressions. `turned(t)` is the same rotation, built by other means.
+    """
+
+    text: str
+    passive: bool
+    point: int
+
+    def __repr__(self) -> str:
+        return f"{self.text}{'-passive' * self.passive}{f'-{self.point}' if self.point else ''}"
+
+    @cached_property
+    def motion(self) -> Motion:
+        return motion_of(self.text, passive=self.passive)
+
+    @cached_property
+    def _way(self) -> tuple[Curve, Build]:
+        size = len(self.motion.model.coordinates)
+        if self.text in EULER_SEQUENCES:
+            curve = paths(2, size=size)[self.point].at
+            return curve, lambda q: rotation(self.text, q)
+        return WITNESSES.get(self.text) or (nearly_straight(size), chain_witness(self.motion))
+
+    def turned(self, t: Any) -> Any:
+        """R at a time, from body to space components."""
+        curve, build = self._way
+        return build(list(curve(t)))
+
+    @cached_property
+    def turned_rate(self) -> Any:
+        return derivative(self.turned)
+
+    @cached_property
+    def turned_velocity(self) -> Any:
+        """Ω in space components, from the numerical derivative of R."""
+        return unhat(self.turned_rate * self.turned(0).T)
+
+    @cached_property
+    def turned_acceleration(self) -> Any:
+        second = derivative(self.turned, order=2)
+        return unhat(second * self.turned(0).T + self.turned_rate * self.turned_rate.T)
+
+    @cached_property
+    def values(self) -> dict[sp.Expr, Any]:
+        """The constants, and the coordinates with their rates and second derivatives."""
+        return values_on(self.motion, self._way[0])
+
+    def argument(self, name: str) -> Any:
+        return mp.matrix([self.values[symbol] for symbol in self.motion.argument(name).symbols])
+
+    def at(self, quantity: str, **given: Any) -> Any:
+        """A quantity, with vectors given for some of its arguments."""
+        values = dict(self.values)
+        for name, vector in given.items():
+            values |= zip(self.motion.argument(name).symbols, vector, strict=True)
+        return evaluate(self.motion.step(quantity).expression, values)
+
+    @property
+    def is_passive(self) -> bool:
+        """Whether the transpose of R is printed; some presets are passive by themselves."""
+        return self.motion.model.passive
+
+    def has(self, quantity: str) -> bool:
+        return any(step.quantity.name == quantity for step in self.motion.steps)
+
+    def __getattr__(self, quantity: str) -> Any:
+        if quantity.startswith("_") or not self.has(quantity):
+            raise AttributeError(quantity)
+        self.__dict__[quantity] = self.at(quantity)
+        return self.__dict__[quantity]
+
+    @property
+    def R(self) -> Any:
+        """Body to space components, whichever of R and its transpose is printed."""
+        return self.rotation_matrix.T if self.is_passive else self.rotation_matrix
+
+    @property
+    def R_dot(self) -> Any:
+        return self.rotation_rate.T if self.is_passive else self.rotation_rate
+
+
+def values_on(motion: Motion, curve: Curve) -> dict[sp.Expr, Any]:
+    """Coordinates and rates at t = 0 of a curve, and values of the constants."""
+    values = constants_of(motion)
+    for order in range(3):
+        for place, symbol in enumerate(motion.arguments[order].symbols):
+            values[symbol] = mp.diff(lambda t, k=place: curve(t)[k], 0, order)
+    return values
+
+
+# Every rotation that can be asked for by name, the 24 conventions at two points, and some chains.
+MOVING = tuple(
+    Moving(text, passive, point)
+    for text in (*EULER_SEQUENCES, *PARAMETRISATIONS, *PRESETS, *CHAINS)
+    for passive in (False, True)
+    for point in range(2 if text in EULER_SEQUENCES else 1)
+)

@@ -1,4 +1,4 @@
-"""Every rotation that can be asked for obeys the laws, against rotations built another way."""
+"""The library of rotations: vectors, chains, kernels, and what cannot be read."""
 
 from __future__ import annotations
 
@@ -13,91 +13,23 @@ from helpers.parametrisations import (
     CHAINS,
     CLOSE,
     WITNESSES,
-    Curve,
     chain_witness,
-    constants_of,
     motion_of,
     nearly_straight,
+    values_on,
 )
 from helpers.witness import derivative, evaluate, hat, mp, number, paths, unhat
 from rigidsym.errors import ExpressionError, ModelError, QuantityError
 from rigidsym.mechanics.kinematics import derive as kinematics
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.motion import Motion, derive
+from rigidsym.motion import derive
 from rigidsym.notes.formats.terminal import show
 from rigidsym.spec.derivation_file import DerivationSpec, spec_for
 
 
-def values_on(motion: Motion, curve: Curve) -> dict[sp.Expr, Any]:
-    """Coordinates and rates at t = 0 of a curve, and values of the constants."""
-    values = constants_of(motion)
-    for order in range(3):
-        for place, symbol in enumerate(motion.arguments[order].symbols):
-            values[symbol] = mp.diff(lambda t, k=place: curve(t)[k], 0, order)
-    return values
-
-
 def agree(first: Any, second: Any) -> bool:
     return max(abs(entry) for entry in first - second) < CLOSE
-
-
-def cases() -> list[Any]:
-    texts = [*PARAMETRISATIONS, *PRESETS, *CHAINS]
-    return [pytest.param(t, p, id=f"{t}{'-passive' * p}") for t in texts for p in (False, True)]
-
-
-@pytest.mark.parametrize(("text", "passive"), cases())
-def test_the_laws_hold_for_every_rotation(text, passive):
-    motion = motion_of(text, passive=passive)
-    assert motion.is_proved
-    size = len(motion.model.coordinates)
-    curve, build = WITNESSES.get(text) or (nearly_straight(size), chain_witness(motion))
-    values = values_on(motion, curve)
-
-    def shown(name: str) -> Any:
-        return evaluate(motion.step(name).expression, values)
-
-    def R(t: Any) -> Any:
-        return build(curve(t))
-
-    rate, second = derivative(R), derivative(R, order=2)
-    still = R(0)
-    omega = unhat(rate * still.T)
-    acceleration = unhat(second * still.T + rate * rate.T)
-    is_shown_transposed = motion.model.passive
-    assert agree(shown("rotation_matrix"), still.T if is_shown_transposed else still)
-    assert agree(shown("rotation_rate"), rate.T if is_shown_transposed else rate)
-    spin = rate.T * still if is_shown_transposed else rate * still.T
-    assert agree(shown("spin_matrix"), spin)
-    assert agree(shown("angular_velocity_space"), omega)
-    assert agree(shown("angular_velocity_body"), still.T * omega)
-    assert agree(shown("angular_acceleration_space"), acceleration)
-    assert agree(shown("angular_acceleration_body"), still.T * acceleration)
-    check_rates(motion, values, omega, still)
-
-
-def check_rates(motion: Motion, values: dict[sp.Expr, Any], omega: Any, still: Any) -> None:
-    """W q̇ = Ω, and the rates that Ω gives, in both frames.
-
-    They give this Ω back, keep R a rotation, and are the smallest that do: the given ones differ
-    from them by what is at right angles.
-    """
-    rates = mp.matrix([values[symbol] for symbol in motion.argument("q_dot").symbols])
-    for frame, vector in (("space", omega), ("body", still.T * omega)):
-        matrix = evaluate(motion.step(f"rate_matrix_{frame}").expression, values)
-        assert agree(matrix * rates, vector)
-        name = f"rates_from_angular_velocity_{frame}"
-        assert hasattr(motion, name) == (motion.singularities.rank == 3)
-        if not hasattr(motion, name):
-            continue
-        given = dict(zip(motion.argument(f"omega_{frame}").symbols, vector, strict=True))
-        found = evaluate(motion.step(name).expression, values | given)
-        assert agree(matrix * found, vector)
-        assert abs((found.T * (rates - found))[0]) < CLOSE
-        moved = dict(zip(motion.argument("q_dot").symbols, found, strict=True))
-        spin = evaluate(motion.spin_matrix, values | moved)
-        assert agree(spin, evaluate(motion.spin_matrix, values))
 
 
 @pytest.mark.parametrize("text", [*PARAMETRISATIONS, *PRESETS, *CHAINS])
