@@ -1,43 +1,53 @@
-"""From checked data to the content of files: pure, so that `check` can compare and tests can read.
+"""The page to read first: how a rotation becomes kernels and notes.
 
-Nothing here writes; the command line does.
+    1. read     a rotation or a derivation file -> DerivationSpec     text, models, spec
+    2. derive   DerivationSpec -> Motion, steps with their proofs      mechanics
+    3. print    Motion -> Output, the content of each file             kernels, notes, page
+    4. write    Output -> files in DIR/NAME/                           commands
+
+Every stage but the last is pure: it reads what it is given and writes nothing, so that `check`
+compares the files of an Output with those on disk.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
+from rigidsym.errors import BodyError, SpecError
+from rigidsym.kernels.lowering.derivatives import read_request
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derivation import Proof
-from rigidsym.motion import Motion, derive
+from rigidsym.models.body import RigidBody
+from rigidsym.motion import QUANTITIES, Motion, derive
 from rigidsym.notes.formats.record import record
+from rigidsym.notes.formula.manner import CHOICES, DEFAULT, Manner
 from rigidsym.notes.note import Note
-from rigidsym.spec.derivation_file import DerivationSpec
+from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
+from rigidsym.spec.faults import Source
+from rigidsym.spec.vocabulary import Vocabulary
+from rigidsym.system import resources
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
 
-PDF = "pdf"  # made from the LaTeX, which is written beside it
-PAGE = "page"  # NAME_page.html: the note with a figure that moves
-
+PDF = "pdf"  # typeset from the LaTeX, which is written beside it
+PAGE = "page"  # NAME_page.html: the note with an interactive figure
 _PRINTERS = {"tex": Note.latex, "html": Note.html, "md": Note.markdown, "ipynb": Note.notebook}
-
-
-def page_name(name: str) -> str:
-    """The file of a derivation's page."""
-    return f"{name}_{PAGE}.html"
+NOTE_FORMATS = (*_PRINTERS, PAGE, PDF)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Product:
+class Output:
     """One derivation and the text files that are printed from it."""
 
+    spec: DerivationSpec
     motion: Motion
-    conversions: Conversions | None  # where they were asked for
+    conversions: Conversions | None  # if they were asked for
     files: Mapping[str, str]  # file name -> content, for the folder that is named motion.name
-    wants_pdf: bool
 
     @property
     def name(self) -> str:
@@ -45,7 +55,7 @@ class Product:
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
-        """All that was claimed, of the conversions too where they were asked for."""
+        """All proofs, those of the conversions included."""
         return (*self.motion.proofs, *(self.conversions.proofs if self.conversions else ()))
 
     @property
@@ -53,41 +63,113 @@ class Product:
         return self.files[f"{self.name}.json"]
 
 
-def product(spec: DerivationSpec) -> Product:
-    """The product of a specification that names one rotation."""
+def output_of(spec: DerivationSpec) -> Output:
+    """Stages 2 and 3 for the specification of one rotation."""
     motion = motion_of(spec)
     conversions = motion.conversions if spec.conversions else None
-    texts = _texts(motion, conversions, spec)
-    return Product(
-        motion=motion,
-        conversions=conversions,
-        files=dict(texts),
-        wants_pdf=PDF in spec.note,
+    files = dict(_printed(motion, conversions, spec))
+    return Output(spec=spec, motion=motion, conversions=conversions, files=files)
+
+
+# 1. read
+
+
+def read(source: str) -> DerivationSpec:
+    """A derivation file, by path or shipped name, or else a rotation such as "ZXZ"."""
+    if source in resources.names("derivations", ".toml") or Path(source).suffix == ".toml":
+        return read_file(source)
+    return spec_for(source)
+
+
+def read_file(file: str) -> DerivationSpec:
+    """A derivation file, by path or shipped name. Raises SpecError with all its faults."""
+    from rigidsym.spec import derivation_file
+
+    return derivation_file.read_file(file, vocabulary())
+
+
+def read_spec(text: str, *, source: str, name: str, folder: Path | None = None) -> DerivationSpec:
+    """The text of a derivation file; see `derivation_file.read_spec`."""
+    from rigidsym.spec import derivation_file
+
+    return derivation_file.read_spec(text, vocabulary(), source=source, name=name, folder=folder)
+
+
+def read_record(request: object, *, source: str = "request") -> DerivationSpec:
+    """The specification that a record (NAME.json) was made from. Raises SpecError."""
+    from rigidsym.spec import derivation_file
+
+    return derivation_file.from_data(request, vocabulary(), source=source)
+
+
+def vocabulary() -> Vocabulary:
+    """The names that a derivation file may use."""
+    return Vocabulary(
+        quantities=QUANTITIES,
+        kernels=tuple(TARGETS),
+        note=NOTE_FORMATS,
+        notation=Manner,
+        choices=CHOICES,
+        derivative=read_request,
     )
 
 
+# 2. derive
+
+
 def motion_of(spec: DerivationSpec) -> Motion:
-    """The derivation of a specification that names one rotation."""
+    """The derivation of a specification with one rotation."""
     (model,) = spec.models
-    motion = derive(model, only=spec.quantities, body=spec.body, theory=spec.theory)
-    motion = replace(motion, name=spec.name, title=spec.title or motion.title)
-    return motion.written(**asdict(spec.manner))
+    body = integrated(spec).body
+    motion = derive(model, only=spec.quantities, body=body, theory=spec.theory)
+    notation = cast("Manner | None", spec.notation) or DEFAULT
+    return replace(motion, name=spec.name, title=spec.title or motion.title, notation=notation)
 
 
-def _texts(
+def integrated(spec: DerivationSpec) -> DerivationSpec:
+    """The specification with the mass distribution of its body integrated, for all its rotations.
+
+    Raises SpecError, with the line of the file, for an impossible body.
+    """
+    if spec.body is None or isinstance(spec.body, RigidBody):
+        return spec
+    from rigidsym.mechanics.mass.bodies import rigid_body
+
+    try:
+        return replace(spec, body=rigid_body(spec.body))
+    except BodyError as error:
+        source = spec.source or Source(spec.name)
+        fault = source.fault(("body", *error.place), str(error))
+        raise SpecError(source.name, [fault]) from None
+
+
+# 3. print
+
+
+def _printed(
     motion: Motion, conversions: Conversions | None, spec: DerivationSpec
 ) -> Iterator[tuple[str, str]]:
-    """(name, content) of each text file, the record last, since it speaks for the others."""
+    """(name, content) of each text file; the record, which describes the others, comes last."""
     for target in spec.kernels:
         module = motion.kernels(target, conversions=spec.conversions, derivatives=spec.derivatives)
         yield from module.files.items()
+    if spec.note:
+        yield from _notes(motion, spec)
+    data = record(motion, spec.to_data(), conversions)
+    yield f"{spec.name}.json", json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
     note = motion.note(with_kernels="numpy" in spec.kernels, conversions=spec.conversions)
-    for ending, printed in _PRINTERS.items():
+    for ending, printer in _PRINTERS.items():
         if ending in spec.note or (ending == "tex" and PDF in spec.note):
-            yield f"{spec.name}.{ending}", printed(note)
+            yield f"{spec.name}.{ending}", printer(note)
     if PAGE in spec.note:
         from rigidsym.page.page import print_page
 
         yield page_name(spec.name), print_page(motion, note.document)
-    data = record(motion, spec.to_data(), conversions)
-    yield f"{spec.name}.json", json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def page_name(name: str) -> str:
+    """The file of a derivation's page."""
+    return f"{name}_{PAGE}.html"

@@ -1,44 +1,50 @@
-"""From a rotation or a derivation file to one thing alone: a compiled module, or a page."""
+"""`rigidsym build`: kernels in C, compiled into a Python module."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from rigidsym.commands.options import as_chosen
-from rigidsym.commands.output_folder import say_what_was_there, with_what_is_there
+import click
+
+from rigidsym.commands.command import command as make
+from rigidsym.commands.options import FolderOptions, option, with_options
+from rigidsym.commands.page import write_files
 from rigidsym.kernels.targets.c.build import build
-from rigidsym.pipeline import PAGE, page_name, product
-from rigidsym.spec.derivation_file import DerivationSpec, spec_of
-from rigidsym.system.files import write_text
+from rigidsym.pipeline import integrated, read
 
 
-def built(asked: str, out: Path, *, portable: bool = False) -> Iterator[Path]:
-    """The module NAME_c.py of a file NAME.c, or of each rotation; its files go to out/NAME/.
+@dataclass(frozen=True, kw_only=True)
+class BuildOptions(FolderOptions):
+    """All options of `build`."""
 
-    What is written stays where the compiler is missing or stops; see `c_build.build`.
+    portable: bool = option(
+        "--portable", is_flag=True, help="Run on any CPU of this architecture; slower."
+    )
+
+
+@make("rigidsym build ZXZ")
+@click.argument("sources", nargs=-1, required=True, metavar="ROTATION|FILE...")
+@with_options(BuildOptions)
+def command(sources: tuple[str, ...], options: BuildOptions) -> None:
+    """Compile kernels in C into Python modules, NAME_c.py.
+
+    For a rotation or a derivation FILE, the C source is written first, as by --target c. NAME.c
+    is compiled with the other files of its derivation beside it. The binary uses this CPU's
+    instruction set; use --portable to share it. Without a C compiler the exit code is 4, and the
+    source is written all the same.
     """
-    source = Path(asked)
-    if source.suffix == ".c":
-        yield build(source, portable=portable)
+    for source in sources:
+        for module in _built(source, options):
+            click.echo(module)
+
+
+def _built(source: str, options: BuildOptions) -> Iterator[Path]:
+    """The module of a file NAME.c, or of each rotation."""
+    if Path(source).suffix == ".c":
+        yield build(Path(source), portable=options.portable)
         return
-    for single in spec_of(asked).singles():
-        folder = _written(replace(single, kernels=("c",)), out)
-        yield build(folder / f"{single.name}.c", portable=portable)
-
-
-def paged(asked: str, out: Path) -> Iterator[Path]:
-    """The page of each rotation of what was asked for, in out/NAME/ beside its record."""
-    for single in as_chosen(spec_of(asked)).singles():
-        folder = _written(replace(single, kernels=(), note=(PAGE,)), out)
-        yield folder / page_name(single.name)
-
-
-def _written(spec: DerivationSpec, out: Path) -> Path:
-    """The folder of a rotation, once its files are written."""
-    made = product(with_what_is_there(spec, out))
-    say_what_was_there(made, out)
-    for name, text in made.files.items():
-        write_text(out / made.name / name, text)
-    return out / made.name
+    for single in integrated(read(source)).singles():
+        folder = write_files(replace(single, kernels=("c",)), options.out)
+        yield build(folder / f"{single.name}.c", portable=options.portable)

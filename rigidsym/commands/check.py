@@ -1,4 +1,4 @@
-"""Generated files against a fresh derivation, by what their record says they were made from."""
+"""`rigidsym check`: generated files against a fresh derivation, by their record."""
 
 from __future__ import annotations
 
@@ -9,29 +9,51 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
+import click
+
+from rigidsym.commands.command import command as make
+from rigidsym.commands.options import TemplateOptions, with_options
 from rigidsym.errors import CheckError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
-from rigidsym.pipeline import product
-from rigidsym.spec.derivation_file import DerivationSpec
+from rigidsym.pipeline import output_of, read_record
+
+
+@make("rigidsym check out")
+@click.argument(
+    "paths",
+    nargs=-1,
+    required=True,
+    metavar="PATH...",
+    type=click.Path(exists=True, path_type=Path),
+)
+@with_options(TemplateOptions)
+@click.pass_context
+def command(context: click.Context, paths: tuple[Path, ...], options: TemplateOptions) -> None:  # noqa: ARG001
+    """Compare generated files with a fresh derivation.
+
+    PATH is a generated file or a folder; each record NAME.json says how the files beside it were
+    made. The exit code is 1 if a file is missing or differs.
+    """
+    findings = list(_findings(paths))
+    for finding in findings:
+        click.echo(str(finding))
+    if any(finding.problem for finding in findings):
+        context.exit(1)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Finding:
-    """What became of one file."""
+    """The state of one file."""
 
     path: Path
-    problem: str = ""  # "" where it is as derived
-
-    @property
-    def is_fine(self) -> bool:
-        return not self.problem
+    problem: str = ""  # "" if it is as derived
 
     def __str__(self) -> str:
-        return f"{self.path}: {self.problem or 'as derived'}"
+        return f"{self.path}: {self.problem or 'up to date'}"
 
 
-def findings(paths: Iterable[Path]) -> Iterator[Finding]:
-    """One finding for each file that a record under the paths stands for.
+def _findings(paths: Iterable[Path]) -> Iterator[Finding]:
+    """One finding for each file that a record under the paths describes.
 
     Raises CheckError for a path without a record.
     """
@@ -41,7 +63,7 @@ def findings(paths: Iterable[Path]) -> Iterator[Finding]:
 
 
 def _records(path: Path) -> list[Path]:
-    """The records for a folder, recursively, or for one generated file."""
+    """The records in a folder and below it, or beside one generated file."""
     if path.is_dir():
         found = sorted(file for file in path.rglob("*.json") if _is_record(file))
     else:
@@ -49,8 +71,7 @@ def _records(path: Path) -> list[Path]:
         found = [beside] if beside.is_file() and _is_record(beside) else []
     if not found:
         raise CheckError(
-            f"{path}: no record of a derivation here; expected the NAME.json that stands beside "
-            "generated files"
+            f"{path}: no record of a derivation here; expected NAME.json beside generated files"
         )
     return found
 
@@ -60,10 +81,10 @@ def _is_record(file: Path) -> bool:
 
 
 def _read(file: Path) -> Mapping[str, Any]:
-    """The content of a JSON file; empty where it is not an object."""
+    """The object in a JSON file; empty if there is none."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
-    except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
+    except (ValueError, RecursionError):
         return {}
     return content if isinstance(content, dict) else {}
 
@@ -74,7 +95,7 @@ def _compare(record: Path) -> Iterator[Finding]:
     if version != SCHEMA_VERSION:
         yield Finding(path=record, problem=f"schema version {version}, expected {SCHEMA_VERSION}")
         return
-    fresh = product(DerivationSpec.from_data(content.get("request"), source=str(record)))
+    fresh = output_of(read_record(content.get("request"), source=str(record)))
     for name, text in fresh.files.items():
         yield _finding(record.parent / name, text)
 

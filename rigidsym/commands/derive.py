@@ -1,117 +1,108 @@
-"""What `derive` and `run` do: read, derive, write, show."""
+"""`rigidsym derive`, and what `run` shares with it: derive, print, write, show."""
 
 from __future__ import annotations
 
 import shutil
 import sys
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
-from rigidsym.commands.options import as_chosen
-from rigidsym.commands.output_folder import say_what_was_there, with_what_is_there
-from rigidsym.errors import RigidsymError, SpecError
+from rigidsym.commands.command import command as make
+from rigidsym.commands.options import PrintingOptions, RotationOptions, with_options
+from rigidsym.commands.output_folder import report_other_files, with_existing_files
+from rigidsym.errors import RigidsymError
 from rigidsym.notes.formats.terminal import show
-from rigidsym.pipeline import PDF, Product, product
-from rigidsym.spec.derivation_file import DerivationSpec, read_file
+from rigidsym.pipeline import PDF, Output, integrated, output_of
+from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.files import write_bytes, write_text
+from rigidsym.system.progress import counter
 
 
-def read_all(files: Iterable[str]) -> list[DerivationSpec]:
-    """Read every file; faults of all files are raised together."""
-    specs: list[DerivationSpec] = []
-    wrong: list[SpecError] = []
-    for file in files:
-        try:
-            specs.append(read_file(file))
-        except SpecError as error:
-            wrong.append(error)
-    if wrong:
-        *others, last = wrong
-        for other in others:
-            click.echo(f"rigidsym: {other}", err=True)
-        raise last
-    return specs
+@dataclass(frozen=True, kw_only=True)
+class DeriveOptions(PrintingOptions, RotationOptions):
+    """All options of `derive`."""
 
 
-def produce(specs: list[DerivationSpec], out: Path, *, pdf: bool, as_json: bool) -> None:
-    """Derive, write, and show what was asked for; `pdf` asks for it where a file does not."""
-    chosen = [_with_pdf(spec) if pdf else spec for spec in map(as_chosen, specs)]
-    singles = [single for spec in chosen for single in spec.singles()]
+@make('rigidsym derive "z(yaw) y(pitch) x(roll)" --target numpy,c --pdf')
+@click.argument("rotation")
+@with_options(DeriveOptions)
+def command(rotation: str, options: DeriveOptions) -> None:
+    """Derive one rotation, show the result, and write its kernels and note.
+
+    ROTATION is ZXZ or 313 (intrinsic: about the current body axes), zxz (extrinsic: about the
+    fixed axes), turns such as "z(phi) x(theta) [1,1,0](psi)", or a name such as quaternion;
+    `rigidsym list` shows all of them.
+    """
+    produce([options.spec(rotation)], options)
+
+
+def produce(specs: Sequence[DerivationSpec], options: PrintingOptions) -> None:
+    """Derive, print, write and show each rotation of some specifications."""
+    asked = [options.applied_to(integrated(spec)) for spec in specs]
+    singles = [single for spec in asked for single in spec.singles()]
     _check_folders(singles)
-    shown_in_full = len(singles) == 1
     missing: RigidsymError | None = None
-    singles = [with_what_is_there(single, out) for single in singles]
-    for made in _with_progress(singles):
-        written, problem = _write(made, out)
+    for output in _outputs([with_existing_files(single, options.out) for single in singles]):
+        written, problem = _write(output, options.out)
         missing = missing or problem
-        if as_json:
-            click.echo(made.record_text, nl=False)
-        elif shown_in_full:
-            _show(made, written)
+        if options.as_json:
+            click.echo(output.record_text, nl=False)
+        elif len(singles) == 1:
+            _show(output, written)
         else:
-            click.echo(_summary(made, written))
+            click.echo(_summary(output, written))
     if missing:
         raise missing
 
 
 def _check_folders(singles: Iterable[DerivationSpec]) -> None:
-    """Two derivations of one run do not write one folder."""
+    """Refuse two different derivations that would write one folder."""
     first: dict[str, DerivationSpec] = {}
     for single in singles:
         if first.setdefault(single.name, single) != single:
             raise click.UsageError(
                 f"two different derivations are named {single.name} and would write one folder; "
-                "run them apart, with an --out of their own, or rename a file"
+                "run them separately with different --out, or rename a file"
             )
 
 
-def _with_pdf(spec: DerivationSpec) -> DerivationSpec:
-    return replace(spec, note=tuple(dict.fromkeys((*spec.note, PDF))))
-
-
-def _with_progress(singles: list[DerivationSpec]) -> Iterator[Product]:
-    """The products, with a bar on standard error where there are several and it is a terminal."""
+def _outputs(singles: Sequence[DerivationSpec]) -> Iterator[Output]:
+    """The output of each rotation, with a bar if there are several and a terminal shows it."""
     if len(singles) == 1 or not sys.stderr.isatty():
-        yield from map(product, singles)
+        yield from map(output_of, singles)
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
-    columns = (TextColumn("{task.description:<28}"), BarColumn(), MofNCompleteColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("", total=len(singles))
+    with counter(len(singles)) as begin:
         for single in singles:
-            progress.update(task, description=single.name)
-            yield product(single)
-            progress.advance(task)
+            begin(single.name)
+            yield output_of(single)
 
 
-def _write(made: Product, out: Path) -> tuple[list[Path], RigidsymError | None]:
-    """Write the files of one product; a missing TeX is reported after all else is written."""
-    folder = out / made.name
-    say_what_was_there(made, out)
-    written = [write_text(folder / name, text) for name, text in made.files.items()]
-    if not made.wants_pdf:
+def _write(output: Output, out: Path) -> tuple[list[Path], RigidsymError | None]:
+    """Write the files; a missing TeX is reported after all other files are written."""
+    folder = out / output.name
+    report_other_files(output, out)
+    written = [write_text(folder / name, text) for name, text in output.files.items()]
+    if PDF not in output.spec.note:
         return written, None
-    from rigidsym.notes.formats.pdf import typeset  # which few runs need
+    from rigidsym.notes.formats.pdf import typeset
 
     try:
-        paper = typeset(made.files[f"{made.name}.tex"])
+        paper = typeset(output.files[f"{output.name}.tex"])
     except RigidsymError as error:
         return written, error
-    return [*written, write_bytes(folder / f"{made.name}.pdf", paper.pdf)], None
+    return [*written, write_bytes(folder / f"{output.name}.pdf", paper.pdf)], None
 
 
-def _show(made: Product, written: list[Path]) -> None:
-    width = shutil.get_terminal_size((88, 24)).columns
-    motion, conversions = made.motion, made.conversions
-    click.echo(show(motion, width=min(width, 120), manner=motion.manner, conversions=conversions))
+def _show(output: Output, written: list[Path]) -> None:
+    width = min(shutil.get_terminal_size((88, 24)).columns, 120)
+    motion = output.motion
+    click.echo(show(motion, width=width, manner=motion.notation, conversions=output.conversions))
     click.echo("\nWritten: " + "\n         ".join(str(path) for path in written))
 
 
-def _summary(made: Product, written: list[Path]) -> str:
-    exact = sum(proof.is_exact for proof in made.proofs)
-    return f"{made.name:<28} {exact} of {len(made.proofs)} claims proved  {written[0].parent}"
+def _summary(output: Output, written: list[Path]) -> str:
+    exact = sum(proof.is_exact for proof in output.proofs)
+    return f"{output.name:<28} {exact} of {len(output.proofs)} claims proved  {written[0].parent}"

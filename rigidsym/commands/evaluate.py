@@ -1,4 +1,4 @@
-"""The body of `rigidsym eval`: from texts to an evaluation, with a bar."""
+"""`rigidsym eval`: quantities for every row of a file."""
 
 from __future__ import annotations
 
@@ -7,39 +7,69 @@ from pathlib import Path
 
 import click
 
+from rigidsym.commands.command import command as make
+from rigidsym.commands.options import names_of
 from rigidsym.data.writers import draft_of
 from rigidsym.errors import ModelError
-from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel
-from rigidsym.motion import Motion, derive
+from rigidsym.motion import Body, Motion, derive
+from rigidsym.pipeline import integrated, read
 from rigidsym.system.progress import Progress, bar
 from rigidsym.tools.evaluate.evaluate import Evaluated, Evaluation, evaluation
 
 
-def evaluated(
+@make("rigidsym eval ZYX log.csv --degrees --out rates.npy")
+@click.argument("rotation")
+@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option(
+    "--quantity",
+    "--only",
+    "quantities",
+    multiple=True,
+    default=("angular_velocity_body",),
+    show_default=True,
+    metavar="NAME",
+    help="Quantity to evaluate. May be repeated.",
+)
+@click.option(
+    "--out",
+    required=True,
+    type=click.Path(dir_okay=False, path_type=Path),
+    metavar="RESULT",
+    help="Result file; the ending .npy or .parquet sets its format, others give CSV.",
+)
+@click.option("--columns", metavar="NAME,...", help="Names of the columns of FILE, in order.")
+@click.option("--given", multiple=True, metavar="NAME=NUMBER", help="An input without a column.")
+@click.option("--degrees", is_flag=True, help="Read and write angles and rates in degrees.")
+@click.option(
+    "--threads", type=click.IntRange(1), default=1, show_default=True, help="Worker threads."
+)
+@click.option("--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster.")
+def command(
     rotation: str,
-    source: Path,
-    path: Path,
-    *,
-    quantities: Sequence[str],
+    file: Path,
+    quantities: tuple[str, ...],
+    out: Path,
     columns: str | None,
-    given: Sequence[str],
+    given: tuple[str, ...],
     degrees: bool,
     threads: int,
     scheduler: str | None,
-) -> Evaluated:
-    """Evaluate quantities of a rotation, or of a derivation file, for each row of a file.
+) -> None:
+    """Evaluate quantities of ROTATION for every row of FILE, however long.
 
-    The numbers of the file's body are known; `given` goes before them.
+    ROTATION is as for `derive`, or a derivation file, whose body provides its numbers. FILE is
+    NPY, Parquet, or text with one row a line. Columns are found by name (phi, theta, psi,
+    phi_dot, ...); without names they are the inputs in order.
     """
     model, body = _subject(rotation)
     motion = derive(model, only=quantities, body=body)
     work = evaluation(
         motion,
         quantities,
-        source,
-        path,
-        columns=None if columns is None else [name.strip() for name in columns.split(",")],
+        file,
+        out,
+        columns=None if columns is None else names_of(columns),
         given=_known(motion, quantities) | dict(map(_number, given)),
         degrees=degrees,
         threads=threads,
@@ -47,8 +77,10 @@ def evaluated(
     )
     if scheduler is not None:
         click.echo(f"rigidsym: connecting to {scheduler}", err=True)
-    with bar(source.name) as progress:
-        return _run(work, progress)
+    with bar(file.name) as progress:
+        made = _run(work, progress)
+    resumed = f", {made.resumed} of them by an earlier run" if made.resumed else ""
+    click.echo(f"{made.path}: {made.rows} rows{resumed}; {', '.join(made.columns)}")
 
 
 def _run(work: Evaluation, progress: Progress | None) -> Evaluated:
@@ -56,22 +88,23 @@ def _run(work: Evaluation, progress: Progress | None) -> Evaluated:
         return work.run(progress)
     except (KeyboardInterrupt, OSError):
         if (draft := draft_of(work.path)).exists():
-            click.echo(f"rigidsym: {draft} keeps what is done; run it again to go on", err=True)
+            click.echo(
+                f"rigidsym: {draft} keeps the rows done so far; run it again to continue",
+                err=True,
+            )
         raise
 
 
-def _subject(rotation: str) -> tuple[RotationModel, RigidBody | None]:
-    """The rotation, and the body that turns so where a derivation file has one."""
-    from rigidsym.spec.derivation_file import spec_of
-
-    spec = spec_of(rotation)
+def _subject(rotation: str) -> tuple[RotationModel, Body | None]:
+    """The rotation, and the body of a derivation file that has one."""
+    spec = integrated(read(rotation))
     if len(spec.models) != 1:
         raise ModelError(f"{rotation} has {len(spec.models)} rotations; expected one")
     return spec.models[0], spec.body
 
 
 def _known(motion: Motion, quantities: Sequence[str]) -> dict[str, float]:
-    """The parameters of the body that have a value, where a quantity takes them."""
+    """The values of the body's parameters, if a quantity takes them."""
     taken = {name for quantity in quantities for name in motion.step(quantity).quantity.inputs}
     if motion.body is None or "parameters" not in taken:
         return {}

@@ -1,13 +1,16 @@
-"""`rigidsym identify`: from texts and files to findings, with progress."""
+"""`rigidsym identify`: the convention that given numbers follow."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import click
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rigidsym.commands.command import command as make
 from rigidsym.system.progress import bar
 from rigidsym.tools.identify.identify import Identification, identify_file, identify_source
 from rigidsym.tools.identify.readings import ANGLE_NAMES
@@ -18,18 +21,69 @@ _COUNTS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
 _BRACKETS = str.maketrans("[](){};", "      ,")
 
 
-def identified(
+@make("rigidsym identify --angles roll=10,pitch=20,yaw=30 --quaternion 0.95,0.04,0.19,0.24")
+@click.argument(
+    "file",
+    required=False,
+    metavar="[FILE]",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+)
+@click.option(
+    "--angles", multiple=True, metavar="A,B,C", help="Three angles; roll=A,... names them."
+)
+@click.option("--matrix", multiple=True, metavar="R11,R12,...", help="Nine numbers, row by row.")
+@click.option("--quaternion", multiple=True, metavar="A,B,C,D", help="Scalar first or last.")
+@click.option("--rates", multiple=True, metavar="A,B,C", help="Rates of the angles; needs --omega.")
+@click.option("--omega", multiple=True, metavar="X,Y,Z", help="The angular velocity.")
+@click.option("--columns", metavar="NAME,...", help="Names of the columns of FILE; - skips one.")
+@click.option(
+    "--tolerance",
+    type=float,
+    metavar="RADIANS",
+    help="Largest angle between data and reading.  [default: from the digits given]",
+)
+@click.option("--all", "everything", is_flag=True, help="Show all readings, with all calls.")
+@click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
+@click.pass_context
+def command(
+    context: click.Context,
+    /,
+    file: Path | None,
+    columns: str | None,
+    tolerance: float | None,
+    everything: bool,
+    as_json: bool,
+    **texts: tuple[str, ...],
+) -> None:
+    """Name the convention that angles and a matrix or quaternion follow.
+
+    Give samples as options, each option once per sample, or in FILE. FILE is NPY, with 3 angles
+    and 9 or 4 numbers a row (then 3 rates and 3 components of the angular velocity), or text with
+    named columns: roll,pitch,yaw or phi,theta,psi or a1,a2,a3; r11,...,r33 or q1,...,q4 or
+    qw,qx,qy,qz; a1_dot,... or rate1,...; omega1,omega2,omega3. The exit code is 1 if no
+    convention fits.
+    """
+    found = _identified(file, texts, columns=columns, tolerance=tolerance)
+    if as_json:
+        click.echo(json.dumps(found.record(), indent=1, ensure_ascii=False))
+    else:
+        head, _, rest = found.text(everything=everything).partition("\n")
+        click.echo(f"{click.style(head, bold=True)}\n{rest}")
+    if not found.fits:
+        context.exit(1)
+
+
+def _identified(
     path: Path | None,
     texts: Mapping[str, Sequence[str]],
     *,
-    columns: str | None = None,
-    tolerance: float | None = None,
+    columns: str | None,
+    tolerance: float | None,
 ) -> Identification:
-    """What is in a file, or in the texts of the options.
+    """The finding for a file, or for the samples in the texts of the options.
 
-    `texts` has the samples of each part, in their order; `columns` names those of the file.
-    Raises OptionError for neither, for both and for texts that do not read, and SampleError for
-    a file that does not.
+    Raises OptionError for neither, for both and for unreadable texts, and SampleError for an
+    unreadable file.
     """
     if path is None and any(texts.values()):
         try:
@@ -73,7 +127,7 @@ def _numbers(name: str, text: str, faults: list[str]) -> tuple[list[str], list[f
 
 
 def _from_path(path: Path, columns: str | None, tolerance: float | None) -> Identification:
-    """Samples from a file, with a bar on standard error where that is a terminal."""
+    """Samples from a file, with a bar if standard error is a terminal."""
     names = None if columns is None else [name.strip() for name in columns.split(",")]
     with bar(path.name) as progress:
         try:

@@ -1,48 +1,72 @@
-"""The body of `rigidsym inertia`: a file of particles or a mesh, measured."""
+"""`rigidsym inertia`: mass properties of particles or of a mesh."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 
 import click
 
+from rigidsym.commands.command import command as make
 from rigidsym.data.mass.inertia import inertia_of
 from rigidsym.data.mass.mesh import ENDINGS, mesh_inertia, read_mesh_file
 from rigidsym.data.mass.properties import Measured
 from rigidsym.system.progress import bar
 
+_POSITIVE = click.FloatRange(min=0, min_open=True)
 
-def measure(
-    path: Path,
-    *,
-    columns: str | None = None,
-    mass: float | None = None,
-    density: float | None = None,
-    scale: float = 1.0,
-    allow: bool = False,
-    scheduler: str | None = None,
-) -> tuple[Measured, str]:
-    """What a file holds as a body, and what was counted in it: particle or face.
 
-    Raises UsageError for options that are for the other of the two, BodyError and MissingExtra.
+@make("rigidsym inertia cloud.npy\n  rigidsym inertia part.stl --density 2700 --scale 0.001")
+@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.option("--columns", metavar="NAME,...", help="Column order of particles, such as x,y,z,m.")
+@click.option("--mass", type=_POSITIVE, metavar="KG", help="Mass of a uniform mesh.")
+@click.option("--density", type=_POSITIVE, metavar="KG/M3", help="Density of a uniform mesh.")
+@click.option(
+    "--scale", type=_POSITIVE, metavar="M", help="Length unit of a mesh in metres.  [default: 1]"
+)
+@click.option("--scheduler", metavar="ADDRESS", help="Use a Dask cluster that sees the NPY file.")
+@click.option("--allow", is_flag=True, help="Accept negative masses and open meshes.")
+@click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
+def command(
+    file: Path,
+    columns: str | None,
+    mass: float | None,
+    density: float | None,
+    scale: float | None,
+    scheduler: str | None,
+    allow: bool,
+    as_json: bool,
+) -> None:
+    """Mass, centre, inertia tensor and principal axes of particles or of a mesh.
+
+    FILE holds particles (NPY, CSV or Parquet, with the columns m, x, y, z, or x, y, z for 1 kg
+    each) or a closed mesh (STL, OBJ or PLY). NPY files are memory-mapped and read once.
     """
-    is_mesh = path.suffix.lower() in ENDINGS
-    of_mesh = {"--mass": mass, "--density": density, "--scale": None if scale == 1 else scale}
+    of_mesh = {"--mass": mass, "--density": density, "--scale": scale}
     of_particles = {"--columns": columns, "--scheduler": scheduler}
-    if is_mesh:
-        _refuse(of_particles, f"{path} holds a mesh", "particles")
+    if file.suffix.lower() in ENDINGS:
+        noun = "face"
+        _refuse(of_particles, f"{file} is a mesh", "particles")
         if mass is None and density is None:
-            raise click.UsageError(f"{path} holds a mesh: expected --mass or --density")
-        mesh = read_mesh_file(path, scale=scale)
-        return mesh_inertia(mesh, mass=mass, density=density, allow=allow), "face"
-    _refuse(of_mesh, f"{path} holds particles", "a mesh")
+            raise click.UsageError(f"{file} is a mesh: expected --mass or --density")
+        mesh = read_mesh_file(file, scale=1.0 if scale is None else scale)
+        found = mesh_inertia(mesh, mass=mass, density=density, allow=allow)
+    else:
+        noun = "particle"
+        _refuse(of_mesh, f"{file} is a file of particles", "meshes")
+        found = _of_particles(file, columns, scheduler, allow=allow)
+    click.echo(json.dumps(found.record(), indent=1) if as_json else found.text(noun))
+
+
+def _of_particles(
+    file: Path, columns: str | None, scheduler: str | None, *, allow: bool
+) -> Measured:
     names = None if columns is None else [name.strip() for name in columns.split(",")]
     if scheduler is not None:
         click.echo(f"rigidsym: connecting to {scheduler}", err=True)
-    with bar(path.name) as progress:
-        found = inertia_of(path, columns=names, allow=allow, scheduler=scheduler, progress=progress)
-    return found, "particle"
+    with bar(file.name) as progress:
+        return inertia_of(file, columns=names, allow=allow, scheduler=scheduler, progress=progress)
 
 
 def _refuse(options: Mapping[str, object], found: str, expected: str) -> None:

@@ -1,9 +1,12 @@
-"""What there is: rotations, quantities, targets, shipped derivations. `rigidsym list` prints it."""
+"""`rigidsym list`: rotations, quantities, targets and shipped derivations."""
 
 from __future__ import annotations
 
 import tomllib
 
+import click
+
+from rigidsym.commands.command import command as make
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import quantities
@@ -18,13 +21,19 @@ from rigidsym.system.resources import names, text
 _TURNS = 'such as "z(phi) x(theta) [1,1,0](psi) y(pi/4)"; a name such as alpha0 is a constant'
 
 
+@make("rigidsym list | grep -i quaternion")
+def command() -> None:
+    """List rotations, solids, quantities, targets and shipped derivations."""
+    click.echo(inventory())
+
+
 def inventory() -> str:
     """The whole list, as text."""
     sections = (
-        ("Rotations (upper case: about turning axes; lower case: about fixed axes)", _rotations()),
+        ("Rotations (upper case: about body axes, lower case: about fixed axes)", _rotations()),
         ("Other parametrisations", _parametrisations()),
         ("Presets", _presets()),
-        ("Turns of any number, about any axes", [_TURNS]),
+        ("Any number of turns about any axes", [_TURNS]),
         ("Solids (shape in [body])", _solids()),
         ("Quantities", _quantities()),
         ("Targets of the kernels (--target NAME,...)", _targets()),
@@ -75,7 +84,7 @@ def _padded(text: str, width: int) -> str:
 
 def _targets() -> list[str]:
     return [
-        f"{name:<12} {target.about}" + (f"; {lacking} is missing here" if lacking else "")
+        f"{name:<12} {target.about}" + (f"; {lacking} is not installed" if lacking else "")
         for name, target in TARGETS.items()
         for lacking in [target.missing]
     ]

@@ -1,194 +1,220 @@
-"""Options that several commands share, and what they change in a specification."""
+"""Options that several commands share: dataclasses whose fields are click options."""
+
+# ruff: noqa: RUF009 -- `option` makes a field, as `dataclasses.field` does
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields, replace
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
-if TYPE_CHECKING:
-    from rigidsym.spec.derivation_file import DerivationSpec
+from rigidsym.errors import KernelError, QuantityError
+from rigidsym.kernels.lowering.derivatives import read_requests
+from rigidsym.kernels.targets import check_target
+from rigidsym.motion import QUANTITIES
+from rigidsym.notes.formula.manner import CHOICES, DEFAULT
+from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
+from rigidsym.text.names import offer
+
+_OPTION = "click option"
 
 
-class OnceCommand(click.Command):
-    """A command that refuses an option given twice of which only the last would count."""
-
-    def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
-        _, _, given = self.make_parser(context).parse_args(list(args))
-        for parameter in given:
-            is_many = getattr(parameter, "multiple", False) or getattr(parameter, "is_flag", False)
-            if not is_many and given.count(parameter) > 1:
-                raise click.UsageError(f"{parameter.opts[0]} is given twice", context)
-        return super().parse_args(context, args)
+def option(*flags: str, **settings: Any) -> Any:
+    """A field of a dataclass that a command-line option sets."""
+    if settings.get("multiple"):
+        settings.setdefault("default", ())
+    default = settings.get("default", False if settings.get("is_flag") else None)
+    return field(default=default, metadata={_OPTION: (flags, settings)})
 
 
-OUT = click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    default=Path("out"),
-    show_default=True,
-    metavar="DIR",
-    help="The folder that receives DIR/NAME/.",
-)
-PDF = click.option("--pdf", is_flag=True, help="Typeset the note too; needs TeX.")
-JSON = click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
+def with_options(kind: type[Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Give a command the options of a dataclass; it receives them as the argument `options`."""
+
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        @wraps(command)
+        def run(*arguments: Any, **given: Any) -> None:
+            options = kind(**{f.name: given.pop(f.name) for f in fields(kind)})
+            command(*arguments, options=options, **given)
+
+        for each in reversed(fields(kind)):
+            flags, settings = each.metadata[_OPTION]
+            run = click.option(*flags, each.name, **settings)(run)
+        return run
+
+    return decorate
 
 
-def _use_templates(context: click.Context, _: click.Parameter, own: Path | None) -> None:
-    """Let the templates of a folder stand in for the shipped ones until the command is done."""
-    from rigidsym.system.resources import overridden_by
+@dataclass(frozen=True, kw_only=True)
+class TemplateOptions:
+    """Where templates are looked for first."""
 
-    if own is not None:
-        context.with_resource(overridden_by(own))
+    templates: Path | None = option(
+        "--templates",
+        type=click.Path(exists=True, file_okay=False, path_type=Path),
+        metavar="DIR",
+        help="Custom template directory; `rigidsym templates DIR` copies the shipped ones.",
+    )
 
+    def __post_init__(self) -> None:
+        """Use the templates of the directory until the command ends."""
+        from rigidsym.system.resources import overridden_by
 
-TEMPLATES = click.option(
-    "--templates",
-    type=click.Path(exists=True, file_okay=False, path_type=Path),
-    metavar="DIR",
-    expose_value=False,
-    callback=_use_templates,
-    help="Templates of your own; `rigidsym templates DIR` copies the shipped ones.",
-)
-
-
-_NOTATION = {  # written out here, so that --help loads nothing; a test compares
-    "rates": ("dot", "fraction"),
-    "vectors": ("bold", "arrow"),
-    "body": ("prime", "superscript"),
-    "angular_velocity": ("Omega", "omega"),
-}
+        if self.templates is not None:
+            click.get_current_context().with_resource(overridden_by(self.templates))
 
 
-def _keep_choice(context: click.Context, option: click.Parameter, value: str | None) -> None:
-    if value is not None:
-        context.meta.setdefault(__name__, {})[option.name] = value
+@dataclass(frozen=True, kw_only=True)
+class FolderOptions(TemplateOptions):
+    """Where files are written."""
 
-
-def in_notation(command: Callable[..., None]) -> Callable[..., None]:
-    """Options for the notation of the note and the terminal; they go before those of a file."""
-    for name, known in reversed(_NOTATION.items()):
-        command = click.option(
-            f"--{name.replace('_', '-')}",
-            type=click.Choice(known),
-            expose_value=False,
-            callback=_keep_choice,
-            help=f"Notation: {known[0]}, where nothing is said.",
-        )(command)
-    return click.option(
-        "--frames",
-        metavar="SPACE,BODY",
-        expose_value=False,
-        callback=_keep_frames,
-        help="Notation: names of the two frames, such as inertial,spacecraft.",
-    )(command)
-
-
-def _keep_frames(context: click.Context, _: click.Parameter, names: str | None) -> None:
-    if names is not None:
-        context.meta.setdefault(__name__, {})["frames"] = tuple(names_of(names))
-
-
-def _keep_conversions(context: click.Context, _: click.Parameter, is_wanted: bool) -> None:
-    context.meta[_CONVERSIONS] = is_wanted
-
-
-_CONVERSIONS = f"{__name__}.conversions"
-WITH_CONVERSIONS = click.option(
-    "--conversions",
-    is_flag=True,
-    expose_value=False,
-    callback=_keep_conversions,
-    help="Functions to and from the unit quaternion and the matrix, and unwrap.",
-)
-
-
-def _keep_derivatives(context: click.Context, _: click.Parameter, texts: tuple[str, ...]) -> None:
-    context.meta[_DERIVATIVES] = texts
-
-
-_DERIVATIVES = f"{__name__}.derivatives"
-WITH_DERIVATIVES = click.option(
-    "--derivative",
-    multiple=True,
-    metavar="QUANTITY:VECTOR",
-    expose_value=False,
-    callback=_keep_derivatives,
-    help="The Jacobian of a quantity by q, q_dot, ...; QUANTITY:VECTOR:jvp or :vjp for a product.",
-)
-
-
-def _keep_targets(context: click.Context, _: click.Parameter, targets: tuple[str, ...]) -> None:
-    if targets:
-        from rigidsym.kernels.targets import check_target
-
-        chosen = list(dict.fromkeys(names_of(",".join(targets))))
-        context.meta[_TARGETS] = chosen
-        for target in chosen:
-            check_target(target)
-
-
-_TARGETS = f"{__name__}.targets"
-FOR_TARGETS = click.option(
-    "--target",
-    multiple=True,
-    metavar="A,B",
-    expose_value=False,
-    callback=_keep_targets,
-    help="Languages of the functions, numpy where nothing is said; `rigidsym list` has them. May "
-    "be repeated.",
-)
-
-
-_OF_PRODUCTION = (
-    WITH_CONVERSIONS,
-    WITH_DERIVATIVES,
-    FOR_TARGETS,
-    in_notation,
-    TEMPLATES,
-    OUT,
-    PDF,
-    JSON,
-)
-
-
-def of_production(command: Callable[..., None]) -> Callable[..., None]:
-    """The options of `derive` and `run`: what is printed, how, and where it goes."""
-    for option in reversed(_OF_PRODUCTION):
-        command = option(command)
-    return command
-
-
-def as_chosen(spec: DerivationSpec) -> DerivationSpec:
-    """The specification with the choices of the command line in place of its own."""
-    kept = click.get_current_context().meta
-    chosen, converts = kept.get(__name__, {}), kept.get(_CONVERSIONS, False)
-    targets = kept.get(_TARGETS)
-    return replace(
-        spec,
-        manner=replace(spec.manner, **chosen),
-        conversions=spec.conversions or converts,
-        kernels=spec.kernels if targets is None else tuple(targets),
-        derivatives=_derivatives(spec, kept.get(_DERIVATIVES, ())),
+    out: Path = option(
+        "--out",
+        type=click.Path(file_okay=False, path_type=Path),
+        default=Path("out"),
+        show_default=True,
+        metavar="DIR",
+        help="Write to DIR/NAME/.",
     )
 
 
-def _derivatives(spec: DerivationSpec, texts: Iterable[str]) -> tuple[str, ...]:
-    """Those of the specification, then those of the command line, each once."""
-    from rigidsym.errors import QuantityError
-    from rigidsym.kernels.lowering.derivatives import read_requests
-    from rigidsym.spec.derivation_file import QUANTITIES
-    from rigidsym.text.names import offer
+@dataclass(frozen=True, kw_only=True)
+class RotationOptions:
+    """How the text of a rotation is read."""
 
-    for request in read_requests(texts := tuple(texts)):
-        if request.quantity not in QUANTITIES:
-            near = offer(request.quantity, QUANTITIES)
-            raise QuantityError(f"--derivative: no quantity {request.quantity!r}; {near}")
-    return tuple(map(str, read_requests([*spec.derivatives, *texts])))
+    angles: str | None = option(
+        "--angles", "--names", metavar="A,B,C", help="Names of the coordinates, in their order."
+    )
+    constants: str | None = option(
+        "--constants", metavar="A,B", help="Names in turns that are constants."
+    )
+    scalar_last: bool = option("--scalar-last", is_flag=True, help="Quaternions as (x, y, z, w).")
+    passive: bool = option(
+        "--passive", is_flag=True, help="Present the direction cosine matrix A = Rᵀ."
+    )
+
+    def spec(self, rotation: str) -> DerivationSpec:
+        """The specification of a rotation, read with these options."""
+        return spec_for(
+            rotation,
+            angles=None if self.angles is None else names_of(self.angles),
+            constants=names_of(self.constants) if self.constants else (),
+            scalar_last=self.scalar_last,
+            passive=self.passive,
+        )
+
+
+def _notation(name: str, about: str) -> Any:
+    known = CHOICES[name]
+    flag = f"--{name.replace('_', '-')}"
+    return option(flag, type=click.Choice(known), help=f"{about}  [default: {known[0]}]")
+
+
+@dataclass(frozen=True, kw_only=True)
+class NotationOptions:
+    """The notation of the note and the terminal; it takes precedence over that of a file."""
+
+    rates: str | None = _notation("rates", "Rates as φ̇ or as dφ/dt.")
+    vectors: str | None = _notation("vectors", "Vectors in bold or with arrows.")
+    body: str | None = _notation("body", "Body components as Ω′ or as Ωᴮ.")
+    angular_velocity: str | None = _notation("angular_velocity", "Angular velocity as Ω or ω.")
+    frames: str | None = option(
+        "--frames", metavar="SPACE,BODY", help="Names of the two frames: inertial,spacecraft."
+    )
+
+    def in_notation(self, spec: DerivationSpec) -> DerivationSpec:
+        """The specification with the notation chosen here."""
+        chosen: dict[str, Any] = {
+            name: getattr(self, name) for name in CHOICES if getattr(self, name) is not None
+        }
+        if self.frames is not None:
+            chosen["frames"] = tuple(names_of(self.frames))
+        if not chosen:
+            return spec
+        return replace(spec, notation=replace(spec.notation or DEFAULT, **chosen))
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputOptions:
+    """What is derived and printed."""
+
+    only: tuple[str, ...] = option(
+        "--only",
+        "--quantity",
+        multiple=True,
+        metavar="NAME,...",
+        help="Derive these quantities only; `rigidsym list` shows the names. May be repeated.",
+    )
+    target: tuple[str, ...] = option(
+        "--target",
+        multiple=True,
+        metavar="NAME,...",
+        help="Languages of the kernels; `rigidsym list` shows them. May be repeated.  "
+        "[default: numpy]",
+    )
+    conversions: bool = option(
+        "--conversions",
+        is_flag=True,
+        help="Add conversions to and from quaternion and matrix, and `unwrap`.",
+    )
+    derivative: tuple[str, ...] = option(
+        "--derivative",
+        multiple=True,
+        metavar="QUANTITY:VECTOR",
+        help="Add the Jacobian of a quantity with respect to q, q_dot, ...; QUANTITY:VECTOR:jvp "
+        "and :vjp add products with a vector. May be repeated.",
+    )
+    pdf: bool = option("--pdf", is_flag=True, help="Also typeset the note; needs TeX.")
+    as_json: bool = option("--json", is_flag=True, help="Print the results as JSON.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrintingOptions(FolderOptions, NotationOptions, OutputOptions):
+    """The options of `derive` and `run`: what is printed, how, and where it is written."""
+
+    def applied_to(self, spec: DerivationSpec) -> DerivationSpec:
+        """The specification with the choices of the command line."""
+        targets = split(self.target)
+        for target in targets:
+            check_target(target)
+        only = split(self.only)
+        for name in only:
+            _check_quantity(name, "--only")
+        note = tuple(dict.fromkeys((*spec.note, "pdf"))) if self.pdf else spec.note
+        return replace(
+            self.in_notation(spec),
+            note=note,
+            quantities=only or spec.quantities,
+            kernels=targets or spec.kernels,
+            conversions=spec.conversions or self.conversions,
+            derivatives=self._derivatives(spec),
+        )
+
+    def _derivatives(self, spec: DerivationSpec) -> tuple[str, ...]:
+        """Those of the specification, then those of the command line, each once."""
+        for text in self.derivative:
+            if ":" not in text:
+                raise KernelError(
+                    f"--derivative {text}: expected QUANTITY:VECTOR, such as "
+                    "angular_velocity_body:q"
+                )
+        for request in read_requests(self.derivative):
+            _check_quantity(request.quantity, "--derivative")
+        return tuple(map(str, read_requests([*spec.derivatives, *self.derivative])))
+
+
+def _check_quantity(name: str, flag: str) -> None:
+    if name not in QUANTITIES:
+        raise QuantityError(f"{flag}: no quantity {name!r}\n{offer(name, QUANTITIES)}")
 
 
 def names_of(text: str) -> list[str]:
     return [name.strip() for name in text.split(",")]
+
+
+def split(texts: tuple[str, ...]) -> tuple[str, ...]:
+    """The names in texts such as "a,b", each once."""
+    return tuple(dict.fromkeys(names_of(",".join(texts)))) if texts else ()

@@ -1,90 +1,81 @@
-"""The folder of a derivation: one record speaks for all the files in it."""
+"""The folder of a derivation: one record describes all files in it."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import click
 
+from rigidsym.errors import SpecError
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.pipeline import PAGE, PDF, Product, page_name
-from rigidsym.spec.derivation_file import NOTE_FORMATS, DerivationSpec
-
-_OUTPUTS = ("kernels", "note")  # of which a request may have more without being another
+from rigidsym.pipeline import NOTE_FORMATS, PAGE, PDF, Output, page_name, read_record
+from rigidsym.spec.derivation_spec import DerivationSpec
 
 
-def with_what_is_there(spec: DerivationSpec, out: Path) -> DerivationSpec:
-    """The specification of one rotation, with what out/NAME/ has of the same derivation already.
+def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
+    """The specification of one rotation, with what out/NAME/ already has of the same derivation.
 
-    What an earlier run printed for other targets, or as another note, is printed with the rest:
-    the record speaks for all of them, and `rigidsym check` sees them.
+    Other targets and notes of an earlier run are printed again with the rest, so that one record
+    describes all of them and `rigidsym check` sees them.
     """
     folder = out / spec.name
-    before = _request_there(folder)
-    now = json.loads(json.dumps(spec.to_data()))  # as it stands in a record
-    if before is None or not _is_same(before, now):
+    before = _spec_there(folder)
+    if before is None or not _is_same(before, spec):
         return spec
-    kernels, note = (tuple(_kept(before.get(key), now[key], folder)) for key in _OUTPUTS)
-    return replace(spec, kernels=spec.kernels + kernels, note=spec.note + note)
+    return replace(
+        spec,
+        kernels=(*spec.kernels, *_kept(before.kernels, spec.kernels, folder)),
+        note=(*spec.note, *_kept(before.note, spec.note, folder)),
+    )
 
 
-def say_what_was_there(made: Product, out: Path) -> None:
-    """A message on standard error where out/NAME/ holds another derivation.
+def report_other_files(output: Output, out: Path) -> None:
+    """A message on standard error if out/NAME/ holds another derivation.
 
-    To be called when all is derived, and before it is written: what is refused writes over nothing.
+    Called when everything is derived and nothing is written yet.
     """
-    folder = out / made.name
-    before = _request_there(folder)
-    if before is None:
+    folder = out / output.name
+    before, now = _spec_there(folder), output.spec
+    if before is None or _is_same(before, now):
         return
-    now = _request_in(made.record_text)
-    if now is None or _is_same(before, now):
-        return
-    if before.get("rotations") != now["rotations"]:
-        _say(f"{folder} held another rotation and is written over; --out keeps both")
-    left = [output for key in _OUTPUTS for output in _kept(before.get(key), now[key], folder)]
+    if before.models != now.models:
+        _say(f"overwriting {folder}, which held a different rotation (use --out to keep both)")
+    left = [*_kept(before.kernels, now.kernels, folder), *_kept(before.note, now.note, folder)]
     if left:
-        _say(f"{folder} keeps {', '.join(left)} of what was there, which check does not see")
+        _say(f"{folder} also holds older files that `check` does not see: {', '.join(left)}")
 
 
-def _is_same(before: Mapping[str, Any], now: Mapping[str, Any]) -> bool:
-    """Whether two requests are one, but for what is printed."""
-    return all(before.get(key) == now.get(key) for key in {*before, *now} - {*_OUTPUTS})
+def _is_same(before: DerivationSpec, now: DerivationSpec) -> bool:
+    """Whether two specifications differ at most in the files they print."""
+    return replace(before, kernels=now.kernels, note=now.note) == now
 
 
-def _request_there(folder: Path) -> dict[str, Any] | None:
+def _spec_there(folder: Path) -> DerivationSpec | None:
+    """The specification in the record of a folder; None without a record that can be read."""
     try:
-        return _request_in((folder / f"{folder.name}.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):  # none, or no text
+        content = json.loads((folder / f"{folder.name}.json").read_text(encoding="utf-8"))
+        return read_record(content["request"])
+    except (OSError, ValueError, KeyError, TypeError, SpecError, RecursionError):
         return None
 
 
-def _request_in(record: str) -> dict[str, Any] | None:
-    try:
-        request = json.loads(record)["request"]
-    except (ValueError, KeyError, TypeError):  # no record
-        return None
-    return request if isinstance(request, dict) else None
-
-
-def _kept(before: object, now: list[str], folder: Path) -> Iterator[str]:
-    """The outputs that are there and not asked for; a PDF takes seconds, and nobody compares it."""
-    for output in before if isinstance(before, list) else ():
-        if output not in (*now, PDF) and _is_there(output, folder):
+def _kept(before: tuple[str, ...], now: tuple[str, ...], folder: Path) -> Iterator[str]:
+    """Outputs that are there and not asked for; a PDF is slow to make and never compared."""
+    for output in before:
+        if output not in (*now, PDF) and _file(output, folder).is_file():
             yield output
 
 
-def _is_there(output: object, folder: Path) -> bool:
+def _file(output: str, folder: Path) -> Path:
+    """The main file of a target or a format."""
     name = folder.name
     if output in TARGETS:
-        return (folder / f"{name}{TARGETS[str(output)].ending}").is_file()
-    if output == PAGE:
-        return (folder / page_name(name)).is_file()
-    return output in NOTE_FORMATS and (folder / f"{name}.{output}").is_file()
+        return folder / f"{name}{TARGETS[output].ending}"
+    assert output in NOTE_FORMATS
+    return folder / (page_name(name) if output == PAGE else f"{name}.{output}")
 
 
 def _say(message: str) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, Self
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Literal, Protocol, Self
 
 import sympy as sp
 
-from rigidsym.errors import QuantityError
+from rigidsym.errors import DerivationError, QuantityError
 from rigidsym.models.rotation import Citation, RotationModel
+from rigidsym.text.names import offer
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
@@ -93,6 +94,14 @@ class VectorForm:
     proof: Proof
 
 
+class StepPrinter(Protocol):
+    """Prints the equation of a step."""
+
+    def latex(self, step: Step) -> str: ...
+
+    def text(self, step: Step) -> str: ...
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Step:
     """One quantity, derived: its textbook form, how it follows, and what was proved of it."""
@@ -103,6 +112,28 @@ class Step:
     because: str  # a sentence: how it follows from the steps before
     proofs: tuple[Proof, ...]
     vector_form: VectorForm | None = None  # where the coordinates form a vector
+    printer: StepPrinter | None = field(default=None, repr=False, compare=False)  # set by Motion
+
+    def latex(self) -> str:
+        """The equation in LaTeX, without its number."""
+        return self._printer().latex(self)
+
+    def text(self) -> str:
+        """The equation as the terminal shows it."""
+        return self._printer().text(self)
+
+    def _printer(self) -> StepPrinter:
+        if self.printer is None:
+            raise DerivationError("only a step of rs.derive(...) can print itself")
+        return self.printer
+
+    def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
+        """What Jupyter shows: the equation with its number, or plain text."""
+        equation = f"$$\n{self.latex()}\n\\tag{{{self.number}}}\n$$"
+        return {"text/latex": equation, "text/plain": self.text()}
+
+    def _repr_latex_(self) -> str:
+        return self._repr_mimebundle_()["text/latex"]
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -206,8 +237,8 @@ class Derivation:
         for step in self.steps:
             if step.quantity.name == quantity:
                 return step
-        names = ", ".join(step.quantity.name for step in self.steps)
-        raise QuantityError(f"{self.name} has no quantity {quantity!r}; it has {names}")
+        names = [step.quantity.name for step in self.steps]
+        raise QuantityError(f"{self.name} has no quantity {quantity!r}; {offer(quantity, names)}")
 
     def select(self, names: Sequence[str]) -> Self:
         """The derivation with these quantities alone, numbered anew in the order of the steps.
@@ -246,3 +277,6 @@ class Derivation:
             if step.quantity.name == name:
                 return step.expression[0] if step.quantity.is_scalar else step.expression
         raise AttributeError(f"{type(self).__name__} {self.name!r} has no quantity {name!r}")
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *(step.quantity.name for step in self.steps)})

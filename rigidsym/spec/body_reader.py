@@ -155,10 +155,6 @@ class BodyReader:
         """The reader of a table within this one."""
         return BodyReader(table, self.declared, self.folder, self.suffix + suffix, exact=exact)
 
-    def fresh(self, data: Mapping[str, object]) -> BodyReader:
-        """The reader of other data in this place, with parameters of its own."""
-        return BodyReader(self.table.instead(data), Declared(), self.folder)
-
     def expression(
         self, value: object, slot: str, *at: str | int, positive: bool = False
     ) -> sp.Expr | None:

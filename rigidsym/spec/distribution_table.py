@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.errors import BodyError, ExpressionError, RigidsymError
+from rigidsym.errors import ExpressionError, RigidsymError
 from rigidsym.models.distribution import (
     HERE,
     UPRIGHT,
@@ -21,7 +21,7 @@ from rigidsym.models.distribution import (
     Solid,
 )
 from rigidsym.models.placement import turned_by
-from rigidsym.models.solids import SHAPES, Length, shape_of, shaped
+from rigidsym.models.solids import SHAPES, Length, check_lengths, shape_of, shaped
 from rigidsym.spec.body_reader import BodyReader
 from rigidsym.spec.measured_table import read_cloud, read_known, read_mesh
 
@@ -73,7 +73,7 @@ def _read_shape(reader: BodyReader) -> Distribution | None:
     if None in values or mass is None:
         return None
     flat = [entry for value in values if value is not None for entry in value]
-    _check_order(reader, name, flat)
+    check_lengths(name, [reader.declared.number(value) for value in flat])
     return shaped(name, flat, **mass)
 
 
@@ -99,22 +99,6 @@ def _lengths(reader: BodyReader, length: Length) -> list[sp.Expr] | None:
     for entry in values or ():
         reader.declared.note(entry, length.about, "m")
     return values
-
-
-def _check_order(reader: BodyReader, name: str, values: list[sp.Expr]) -> None:
-    """Raises BodyError where a length that must be the larger one is a smaller number."""
-    shape = shape_of(name)
-    keys = [length.key for length in shape.lengths for _ in length.names]
-    known = dict(zip(keys, (reader.declared.number(v) for v in values), strict=True))
-    for key, value in known.items():
-        if value is not None and value <= 0 and key != "corners":
-            raise BodyError(f"{name}: {key} is {value:g} m; expected a positive length")
-    for larger, smaller in shape.larger:
-        first, second = known[larger], known[smaller]
-        if first is not None and second is not None and first < second:
-            raise BodyError(
-                f"{name}: {larger} is {first:g} m, less than {smaller} with {second:g} m"
-            )
 
 
 def _mass_or_density(reader: BodyReader) -> dict[str, sp.Expr] | None:

@@ -1,25 +1,24 @@
-"""Meshes and files of particles in a derivation file: bodies in numbers.
+"""Bodies in numbers: meshes, files of particles, inertia tensors.
 
-The derivation stays exact: what was measured becomes parameters that have a value.
+The derivation stays exact: measured numbers become parameters that have a value.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Known
-from rigidsym.spec.body_reader import BodyReader
+from rigidsym.spec.body_reader import BodyReader, Declared
 
 if TYPE_CHECKING:
     from rigidsym.data.mass.properties import Measured
 
-_DIGITS = 30  # with which exact sums are evaluated
-_ROUNDING = 1e-14  # of the largest moment: smaller numbers are what rounding leaves
+Numbers = dict[str, Any]  # mass, centre (3,), inertia (3, 3)
+
+_ROUNDING = 1e-14  # relative to the largest moment: smaller numbers are rounding errors
 _SLOTS = tuple(f"I_{min(i, j)}{max(i, j)}" for i in (1, 2, 3) for j in (1, 2, 3))
 _CENTRE = ("x_C", "y_C", "z_C")
 _MOMENT = "moment of inertia", "kg m^2"
@@ -37,7 +36,7 @@ def read_cloud(reader: BodyReader) -> Known | None:
     if path is None or (columns is not None and None in columns):
         return None
     names = None if columns is None else [name for name in columns if name is not None]
-    return known(reader, inertia_of(path, columns=names, allow=bool(table.flag("allow"))))
+    return _known(reader, inertia_of(path, columns=names, allow=bool(table.flag("allow"))))
 
 
 def read_mesh(reader: BodyReader) -> Known | None:
@@ -54,7 +53,7 @@ def read_mesh(reader: BodyReader) -> Known | None:
         return None
     mesh = read_mesh_file(path, scale=1.0 if scale is None else scale)
     allow = bool(table.flag("allow"))
-    return known(reader, mesh_inertia(mesh, mass=mass, density=density, allow=allow))
+    return _known(reader, mesh_inertia(mesh, mass=mass, density=density, allow=allow))
 
 
 def _path(reader: BodyReader, key: str) -> Path | None:
@@ -92,40 +91,44 @@ def read_known(reader: BodyReader) -> Known | None:
     )
 
 
-def known(reader: BodyReader, found: Measured) -> Known | None:
-    """The numbers of a file, as if the table had them itself.
+def _known(reader: BodyReader, found: Measured) -> Known:
+    """The numbers of a file as parameters.
 
-    The request keeps the numbers in place of the file, so that it can be repeated without it.
+    The record keeps the numbers in place of the file, so that it can be checked without the file.
     """
     numbers = _cleaned(found.mass, found.centre.tolist(), found.inertia.tolist())
-    table = reader.table.instead(numbers)
-    reader.declared.files[table.path] = numbers
-    return read_known(BodyReader(table, reader.declared, reader.folder, reader.suffix))
+    reader.declared.files[reader.table.path] = numbers
+    return _named(reader.declared, numbers, reader.suffix)
 
 
-def numbers_of(body: RigidBody) -> dict[str, object]:
-    """What [body] would say of a body whose parameters all have values.
+def _named(declared: Declared, numbers: Numbers, suffix: str = "") -> Known:
+    """Each number that is not zero becomes a parameter named after its place."""
 
-    The sums over its parts were made exactly; they are rounded once.
-    """
-    values = {
-        p.symbol: sp.Rational(*p.value.as_integer_ratio())
-        for p in body.parameters
-        if p.value is not None
-    }
+    def parameter(slot: str, value: float, about: str, unit: str) -> sp.Expr:
+        if value == 0:
+            return sp.S.Zero
+        symbol = declared.measured(slot + suffix, value, positive=about == "mass")
+        declared.note(symbol, about, unit)
+        return symbol
 
-    def rounded(entries: Iterable[sp.Expr]) -> list[float]:
-        return [float(entry.xreplace(values).evalf(_DIGITS)) for entry in entries]
+    entries = [value for row in numbers["inertia"] for value in row]
+    inertia = [
+        parameter(slot, value, *(_MOMENT if place in (0, 4, 8) else _PRODUCT))
+        for place, (slot, value) in enumerate(zip(_SLOTS, entries, strict=True))
+    ]
+    centre = [
+        parameter(slot, value, *_COORDINATE)
+        for slot, value in zip(_CENTRE, numbers["centre"], strict=True)
+    ]
+    return Known(
+        mass=parameter("M", numbers["mass"], "mass", "kg"),
+        centre=sp.ImmutableMatrix(centre),
+        inertia=sp.ImmutableMatrix(3, 3, inertia),
+    )
 
-    upper = (body.inertia[min(i, j), max(i, j)] for i in range(3) for j in range(3))
-    inertia = rounded(upper)
-    rows = [inertia[k : k + 3] for k in (0, 3, 6)]
-    (mass,) = rounded([body.mass])
-    return _cleaned(mass, rounded(body.centre), rows)
 
-
-def _cleaned(mass: float, centre: list[float], inertia: list[list[float]]) -> dict[str, object]:
-    """The values of [body]; what rounding left in the place of zero is zero."""
+def _cleaned(mass: float, centre: list[float], inertia: list[list[float]]) -> Numbers:
+    """The values of [body]; rounding errors in place of zeros are removed."""
     scale = max(abs(entry) for row in inertia for entry in row)
     size = max(map(abs, centre)) + (scale / mass) ** 0.5
     return {

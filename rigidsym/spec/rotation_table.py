@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
 from rigidsym.errors import ExpressionError, ModelError
 from rigidsym.models.euler_angles import DEFAULT_ANGLES, EULER_SEQUENCES
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import faults_in, rotation_from, rotation_given
+from rigidsym.spec.derivation_spec import repeated
 from rigidsym.spec.tables import Table
 from rigidsym.spec.toml_lines import Path as Place
 from rigidsym.text.names import check_name
@@ -53,20 +53,6 @@ def read_rotation(table: Table, name: str) -> list[RotationModel]:
     return list(models.values())
 
 
-def repeated(models: Iterable[RotationModel]) -> dict[int, str]:
-    """{place: fault} of the models whose folder an earlier one writes already.
-
-    A model's name has no capitals, so that names which differ are different folders everywhere.
-    """
-    first: dict[str, int] = {}
-    faults: dict[int, str] = {}
-    for place, model in enumerate(models):
-        earlier = first.setdefault(model.name, place)
-        if earlier != place:
-            faults[place] = f"writes the folder {model.name}, as entry {earlier} does"
-    return faults
-
-
 def _is_euler(text: str) -> bool:
     return text.translate(str.maketrans("123", "XYZ")) in EULER_SEQUENCES
 
@@ -79,7 +65,7 @@ def _read_matrix(table: Table, name: str) -> list[RotationModel]:
     coordinates = _read_names(table, "coordinates", _NAMES)
     if table.value("coordinates") is None:
         table.fault(f"missing; expected {_NAMES}", "coordinates")
-    constraints = table.texts("constraints", "a list of expressions that vanish") or []
+    constraints = table.texts("constraints", "a list of expressions that are zero") or []
     if rows is None or coordinates is None or None in constraints:
         return []
     conditions = [text for text in constraints if text is not None]

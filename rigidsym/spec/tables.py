@@ -1,48 +1,22 @@
-"""Tables of a derivation file, read key by key: what is wrong is noted, and reading goes on.
+"""Tables of a derivation file, read key by key: faults are noted, and reading goes on.
 
-Each fault knows its path in the file's own keys and its line. At the end all are raised together.
+Each fault has its line and its path in the keys of the file. At the end all are raised together.
 """
 
 from __future__ import annotations
 
-import json
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
 
 from rigidsym.errors import Fault, SpecError
+from rigidsym.spec.faults import Faults, Source, described, dotted, shortened
 from rigidsym.spec.toml_lines import Path, locate
 from rigidsym.text.names import offer
 
 MOST_CHARACTERS = 50_000
 _LONGEST_LINE = 1000  # tomllib's time grows with the square of the dots in a key
-_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
-_SHOWN = 40  # characters of a wrong text that a message repeats
-_LONG_NUMBER = 1e12  # one that a message does not repeat
-
-
-class Faults:
-    """The faults of one file, in the order in which they were found."""
-
-    def __init__(self, source: str, lines: Mapping[Path, int] | None = None) -> None:
-        self._source = source
-        self._lines = lines or {}
-        self._found: list[Fault] = []
-
-    def add(self, path: Path, message: str) -> None:
-        self._found.append(Fault(line=self._line(path), path=written(path), message=message))
-
-    def raise_if_any(self) -> None:
-        """Raise SpecError with all faults, if there are any."""
-        if self._found:
-            raise SpecError(self._source, self._found)
-
-    def _line(self, path: Path) -> int:
-        """The line of a key, or of the table that lacks it; 0 where neither is in the file."""
-        while path and path not in self._lines:
-            path = path[:-1]
-        return self._lines.get(path, 0)
 
 
 class Table:
@@ -64,10 +38,6 @@ class Table:
     @property
     def path(self) -> Path:
         return self._path
-
-    def instead(self, data: Mapping[str, object]) -> Table:
-        """A table with other data in this place."""
-        return Table(data, self._path, self._faults)
 
     def fault(self, message: str, *at: str | int) -> None:
         """Note a fault at a path below this table."""
@@ -110,7 +80,7 @@ class Table:
         if isinstance(value, Mapping):
             return Table(value, (*self._path, key), self._faults)
         if value is not None:
-            self.mistyped(value, f"a table [{written((*self._path, key))}]", key)
+            self.mistyped(value, f"a table [{dotted((*self._path, key))}]", key)
         return None
 
     def tables(self, key: str, expected: str) -> list[Table]:
@@ -162,7 +132,7 @@ def read_toml(text: str, source: str) -> tuple[Table, Faults]:
     _check_length(text, source)
     try:
         data = tomllib.loads(text)
-        faults = Faults(source, locate(text))
+        faults = Faults(Source(source, locate(text)))
     except tomllib.TOMLDecodeError as error:
         raise SpecError(source, [_syntax_fault(text, error)]) from None
     except RecursionError:
@@ -197,34 +167,3 @@ def _syntax_fault(text: str, error: tomllib.TOMLDecodeError) -> Fault:
     line = int(place[1] or text.rstrip().count("\n") + 1)
     where = f"column {place[2]}" if place[2] else "the end of the file"
     return Fault(line=line, path="", message=f"not TOML: {message[: place.start()]}, at {where}")
-
-
-def written(path: Path) -> str:
-    """A path as the file would write it: rotation.angles[1]."""
-    result = ""
-    for part in path:
-        if isinstance(part, int):
-            result += f"[{part}]"
-        else:
-            key = part if _BARE_KEY.fullmatch(part) else shortened(part)
-            result += f".{key}" if result else key
-    return result
-
-
-def described(value: object) -> str:
-    """A value in the words of a message: its kind, and itself where it is short."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return f"the text {shortened(value)}"
-    if isinstance(value, int | float):
-        return f"the number {value}" if abs(value) < _LONG_NUMBER else "a number"
-    if isinstance(value, list):
-        return "a list"
-    return "a table" if isinstance(value, Mapping) else "a date or a time"
-
-
-def shortened(text: str) -> str:
-    """The text in quotes, cut to what a message can hold, with nothing that moves a terminal."""
-    cut = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
-    return json.dumps(cut, ensure_ascii=not cut.isprintable())

@@ -148,7 +148,7 @@ def test_wrong_use_says_so(tmp_path, arguments, status, message):
 def test_check_finds_what_was_changed_and_what_is_missing(tmp_path):
     call("derive", "ZXZ", cwd=tmp_path)
     folder = tmp_path / "out" / NAME
-    assert "as derived" in call("check", "out", cwd=tmp_path).stdout
+    assert "up to date" in call("check", "out", cwd=tmp_path).stdout
     module = folder / f"{NAME}.py"
     module.write_text(module.read_text().replace("x0 = ", "x0 = 2 * ", 1))
     (folder / f"{NAME}.tex").unlink()

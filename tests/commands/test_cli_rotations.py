@@ -148,7 +148,7 @@ def test_one_folder_is_not_written_over_in_silence(tmp_path):
     call("derive", "ZXZ", cwd=tmp_path)
     assert call("derive", "ZXZ", "--conversions", cwd=tmp_path).stderr == ""
     done = call("derive", "ZXZ", "--angles", "a,b,c", cwd=tmp_path)
-    assert "held another rotation and is written over; --out keeps both" in done.stderr
+    assert "which held a different rotation (use --out to keep both)" in done.stderr
 
 
 def test_two_derivations_of_one_run_do_not_write_one_folder(tmp_path):

@@ -18,8 +18,7 @@ from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.document.document import Paragraph
-from rigidsym.pipeline import motion_of, product
-from rigidsym.spec.derivation_file import DerivationSpec, read_spec
+from rigidsym.pipeline import motion_of, output_of, read_record, read_spec
 
 FILE = """
 [rotation]
@@ -42,8 +41,8 @@ principal_moments = ["A", "A", "C"]
 def test_a_file_asks_for_them():
     spec = read_spec(FILE.format("ZXZ", "conversions = true"), source="a.toml", name="a")
     assert spec.conversions
-    assert DerivationSpec.from_data(spec.to_data()) == spec
-    files = product(spec).files
+    assert read_record(spec.to_data()) == spec
+    files = output_of(spec).files
     assert "def from_rotation_matrix(matrix, *, out=None, threads=1):" in files["a.py"]
     found = json.loads(files["a.json"])["conversions"]
     assert found["quaternion"]["shape"] == [4]
@@ -61,7 +60,7 @@ def test_without_a_word_there_are_none():
     spec = read_spec(FILE.format("ZXZ", ""), source="a.toml", name="a")
     assert not spec.conversions
     assert "conversions" not in spec.to_data()
-    files = product(spec).files
+    files = output_of(spec).files
     assert "conversions" not in json.loads(files["a.json"])
     assert "from_quaternion" not in files["a.py"]
 
@@ -81,7 +80,7 @@ def test_parameters_of_a_body_stand_beside_those_of_the_rotation(target):
 
 def test_what_is_not_offered_stands_in_the_record():
     text = FILE.format("z(phi) x(phi)", "conversions = true")
-    found = json.loads(product(read_spec(text, source="a.toml", name="a")).record_text)
+    found = json.loads(output_of(read_spec(text, source="a.toml", name="a")).record_text)
     assert found["conversions"]["coordinates"] is None
     assert "do not determine it one by one" in found["conversions"]["without"]
 
@@ -173,6 +172,6 @@ def test_formulas_in_its_sentences_are_formulas(text):
 @pytest.mark.parametrize("text", ["davenport", "gibbs_vector", "modified_rodrigues"])
 def test_all_vectors_of_a_note_are_in_one_manner(text):
     """Bold are the matrices and the coordinates alone, where vectors have arrows."""
-    motion = rs.derive(rotation_from(text), ["rotation_matrix"]).written(vectors="arrow")
+    motion = rs.derive(rotation_from(text), ["rotation_matrix"]).with_notation(vectors="arrow")
     bold = set(re.findall(r"\\mathbf\{(\w+)\}", motion.note(conversions=True).latex()))
     assert not {letter for letter in bold if letter.islower()} - {"q"}

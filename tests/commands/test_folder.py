@@ -24,7 +24,7 @@ def _checked(out: Path) -> set[str]:
     """The files that `check` finds as derived."""
     done = CliRunner().invoke(commands, ["check", str(out)])
     lines = [line.partition(": ") for line in done.output.splitlines()]
-    return {Path(name).name for name, _, finding in lines if finding == "as derived"}
+    return {Path(name).name for name, _, finding in lines if finding == "up to date"}
 
 
 def _files(out: Path) -> set[str]:
@@ -53,14 +53,15 @@ def test_files_of_another_derivation_are_named(tmp_path):
     _run("derive", "ZXZ", "--target", "numpy,javascript", *out)
     said = _run("derive", "ZXZ", "--angles", "a,b,c", *out).splitlines()
     assert said == [
-        f"rigidsym: {tmp_path / NAME} held another rotation and is written over; --out keeps both",
-        f"rigidsym: {tmp_path / NAME} keeps javascript of what was there, which check does not see",
+        f"rigidsym: overwriting {tmp_path / NAME}, which held a different rotation (use --out to "
+        "keep both)",
+        f"rigidsym: {tmp_path / NAME} also holds older files that `check` does not see: javascript",
     ]
     _run("derive", "ZXZ", "--target", "numpy,javascript", *out)
     said = _run("derive", "ZXZ", "--conversions", *out)
     assert (
-        said == f"rigidsym: {tmp_path / NAME} keeps javascript of what was there, which check "
-        "does not see\n"
+        said == f"rigidsym: {tmp_path / NAME} also holds older files that `check` does not see: "
+        "javascript\n"
     )
 
 
@@ -77,5 +78,5 @@ def test_what_is_refused_writes_over_nothing_and_does_not_say_so(tmp_path):
     wrong = "--derivative", "angular_velocity_body:z"
     done = CliRunner().invoke(commands, ["derive", "ZXZ", "--angles", "a,b,c", *wrong, *out])
     assert isinstance(done.exception, rs.RigidsymError), done.output
-    assert "written over" not in done.stderr
+    assert "overwriting" not in done.stderr
     assert (tmp_path / NAME / f"{NAME}.json").read_bytes() == before

@@ -13,7 +13,8 @@ from helpers.elements import odd_model
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN
-from rigidsym.spec.derivation_file import DerivationSpec, read_file
+from rigidsym.pipeline import read_file
+from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system import resources
 
 NAME = "euler_zxz_intrinsic"

@@ -20,8 +20,7 @@ from rigidsym.commands.cli import commands
 from rigidsym.errors import KernelError, QuantityError, SpecError
 from rigidsym.kernels.lowering.derivatives import read_request, read_requests
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.pipeline import product
-from rigidsym.spec.derivation_file import DerivationSpec, read_spec
+from rigidsym.pipeline import output_of, read_record, read_spec
 
 MODELS = ("ZXZ", "zyx", "rotation_vector", "modified_rodrigues", "quaternion")
 ALONE = ("z(phi) [a,b,c](beta)",)  # with parameters
@@ -254,8 +253,8 @@ derivatives = ["angular_velocity_body by q", "angular_velocity_body:q_dot:jvp"]
 def test_a_file_asks_for_them():
     spec = read_spec(FILE, source="a.toml", name="a")
     assert spec.derivatives == ("angular_velocity_body by q", "angular_velocity_body by q_dot jvp")
-    assert DerivationSpec.from_data(spec.to_data()) == spec
-    files = product(spec).files
+    assert read_record(spec.to_data()) == spec
+    files = output_of(spec).files
     assert "def angular_velocity_body_jvp_q_dot(" in files["a.py"]
     assert "function angular_velocity_body_jacobian_q(q, q_dot)" in files["a.mjs"]
 

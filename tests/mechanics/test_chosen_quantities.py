@@ -14,8 +14,8 @@ from rigidsym.models.rotation_text import rotation_from
 from rigidsym.motion import derive
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
-from rigidsym.pipeline import product
-from rigidsym.spec.derivation_file import spec_for
+from rigidsym.pipeline import output_of
+from rigidsym.spec.derivation_spec import spec_for
 
 CHOSEN = [
     ("rotation_matrix", "angular_velocity_body"),
@@ -52,7 +52,7 @@ def test_a_file_derives_what_it_asks_for_alone(monkeypatch):
 
     monkeypatch.setattr("rigidsym.pipeline.derive", watched)
     names = ["angular_velocity_space"]
-    made = product(replace(spec_for(CHAIN), quantities=tuple(names)))
+    made = output_of(replace(spec_for(CHAIN), quantities=tuple(names)))
     assert [list(only) for only in asked] == [names]
     assert [step.quantity.name for step in made.motion.steps] == names
 

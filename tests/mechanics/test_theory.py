@@ -23,8 +23,7 @@ from rigidsym.mechanics.lecture.theory import theory
 from rigidsym.notes.formats.pdf import missing_programs, typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
-from rigidsym.pipeline import product
-from rigidsym.spec.derivation_file import DerivationSpec, read_file, read_spec
+from rigidsym.pipeline import output_of, read_file, read_record, read_spec
 
 (PATH,) = paths(1, size=6, seed=7)
 SMALL = mp.mpf(10) ** -38
@@ -33,7 +32,7 @@ LECTURE = read_file("lecture")
 
 @cache
 def lecture() -> rs.Motion:
-    return product(LECTURE).motion
+    return output_of(LECTURE).motion
 
 
 def vector(*parts: Any) -> Any:
@@ -289,7 +288,7 @@ def test_the_terminal_and_the_record_hold_the_theory():
 
 
 def test_the_request_asks_for_the_theory_again():
-    again = DerivationSpec.from_data(LECTURE.to_data())
+    again = read_record(LECTURE.to_data())
     assert again.theory
     assert again == LECTURE
 
@@ -321,7 +320,7 @@ def test_its_note_through_tex_without_a_warning():
 )
 def test_its_note_in_every_notation(choices):
     """MathML takes what TeX takes: a body superscript and a transpose are two superscripts."""
-    note = lecture().written(**choices).note()
+    note = lecture().with_notation(**choices).note()
     assert "<math" in note.html()
     latex = note.latex()
     omega = r"\vec{\Omega}" if "vectors" in choices else r"\boldsymbol{\omega}"

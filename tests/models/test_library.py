@@ -25,7 +25,8 @@ from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.motion import derive
 from rigidsym.notes.formats.terminal import show
-from rigidsym.spec.derivation_file import DerivationSpec, spec_for
+from rigidsym.pipeline import read_record
+from rigidsym.spec.derivation_spec import spec_for
 
 
 def agree(first: Any, second: Any) -> bool:
@@ -123,7 +124,7 @@ def test_the_scalar_stands_last_on_request(name):
 @pytest.mark.parametrize("text", [*PARAMETRISATIONS, *PRESETS, *CHAINS])
 def test_what_was_asked_for_can_be_asked_for_again(text):
     spec = spec_for(text, passive=True)
-    assert DerivationSpec.from_data(spec.to_data()) == spec
+    assert read_record(spec.to_data()) == spec
 
 
 @pytest.mark.parametrize(

@@ -24,8 +24,8 @@ from rigidsym.notes.formats.html import _parts, escape
 from rigidsym.notes.formats.mathml import mathml
 from rigidsym.notes.formats.sanitize import cleaned
 from rigidsym.notes.note import note
-from rigidsym.pipeline import product
-from rigidsym.spec.derivation_file import DerivationSpec, read_file
+from rigidsym.pipeline import output_of, read_file
+from rigidsym.spec.derivation_spec import DerivationSpec
 
 NAME = "euler_zxz_intrinsic"
 WORDS = ("heading", "elevation", "bank")
@@ -44,7 +44,7 @@ def odd_note() -> str:
 
 
 def printed_page(single: DerivationSpec) -> str:
-    return product(replace(single, note=("html",))).files[f"{single.name}.html"]
+    return output_of(replace(single, note=("html",))).files[f"{single.name}.html"]
 
 
 def test_the_page_of_the_lectures_rotation(golden):

@@ -16,8 +16,7 @@ from helpers.typesetting import UNPACKED, bound_together, sheet_of
 from rigidsym.notes.document.boxed import RESULTS
 from rigidsym.notes.document.document import Document, EquationReference, EquationRow, Table
 from rigidsym.notes.formats.pdf import typeset
-from rigidsym.pipeline import product
-from rigidsym.spec.derivation_file import read_file
+from rigidsym.pipeline import output_of, read_file
 
 OTHERS = ("unit_quaternion", "rotation_vector", "z(a) x(b) z(c) y(d)")
 
@@ -25,7 +24,7 @@ OTHERS = ("unit_quaternion", "rotation_vector", "z(a) x(b) z(c) y(d)")
 @cache
 def documents() -> tuple[Document, ...]:
     """The lecture, then its theory with other rotations; no two of one name."""
-    motions = [product(read_file("lecture")).motion]
+    motions = [output_of(read_file("lecture")).motion]
     motions += [rs.derive(rotation, theory=True) for rotation in OTHERS]
     notes = [motion.note().document for motion in motions]
     return tuple(replace(note, name=f"lecture_{place}") for place, note in enumerate(notes))
@@ -70,7 +69,7 @@ def test_the_sheet_holds_the_boxed_results_of_the_theory():
     sheet = section(document, "Summary")
     assert sheet.on_own_page
     shown = [e.sides for b in sheet.blocks if isinstance(b, EquationRow) for e in b.equations]
-    motion = product(read_file("lecture")).motion
+    motion = output_of(read_file("lecture")).motion
     results = [s.sides for s in motion.theory if s.name in RESULTS]
     assert results
     assert all(sides in shown for sides in results)
@@ -85,5 +84,5 @@ def test_the_sheet_is_one_page():
 
 
 def test_the_mass_is_of_the_body_whatever_its_frame_is_called():
-    motion = rs.derive("ZXZ", theory=True).written(frames=("inertial", "spacecraft"))
+    motion = rs.derive("ZXZ", theory=True).with_notation(frames=("inertial", "spacecraft"))
     assert "mass of the body" in motion.note().markdown()

@@ -25,8 +25,7 @@ from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN
 from rigidsym.page.packing import pack
 from rigidsym.page.page import MOST_BYTES
-from rigidsym.pipeline import product
-from rigidsym.spec.derivation_file import read_spec
+from rigidsym.pipeline import output_of, read_spec
 
 SOME = ("unit_quaternion", "rotation_vector", "davenport", "x(alpha0) z(phi) y(pi/4) x(theta)")
 
@@ -37,7 +36,7 @@ SOME = ("unit_quaternion", "rotation_vector", "davenport", "x(alpha0) z(phi) y(p
 def products() -> dict[str, Mapping[str, str]]:
     """The files of every shipped derivation, a page and a note in HTML among them."""
     specs = shipped().items()
-    return {name: product(replace(spec, note=("html", "page"))).files for name, spec in specs}
+    return {name: output_of(replace(spec, note=("html", "page"))).files for name, spec in specs}
 
 
 def pages() -> list[str]:
@@ -123,7 +122,7 @@ def test_a_page_of_a_body_moves_what_turns_it():
         source="top.toml",
         name="top",
     )
-    page = product(replace(spec, note=("page",))).files["top_page.html"]
+    page = output_of(replace(spec, note=("page",))).files["top_page.html"]
     assert len(page.encode()) <= MOST_BYTES
     assert 'id="parameters-0"' in page
     assert 'id="parameters-1"' not in page  # the moment turns nothing
@@ -137,7 +136,7 @@ def test_markup_in_text_comes_out_as_text():
 
 
 def test_the_notation_is_that_of_the_motion():
-    motion = derive("ZXZ").written(
+    motion = derive("ZXZ").with_notation(
         angular_velocity="omega", body="superscript", frames=("inertial", "spacecraft")
     )
     page = motion.page()

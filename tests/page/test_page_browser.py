@@ -18,8 +18,7 @@ from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN
 from rigidsym.page.page import MOST_BYTES
-from rigidsym.pipeline import product
-from rigidsym.spec.derivation_file import read_spec
+from rigidsym.pipeline import output_of, read_spec
 
 DRAWN = ("ZXZ", "YZY", "xyz", "z(phi) x(theta) z(psi) y(delta)", "axis_angle")
 LIVE = ("ZXZ", "zyx", *OTHERS)
@@ -145,7 +144,7 @@ FILES = {
 @pytest.mark.parametrize("name", FILES)
 def test_pages_of_files_agree_with_numpy_on_a_phone(tab, name, tmp_path):
     spec = read_spec(FILES[name], source=f"{name}.toml", name=name)
-    made = product(replace(spec, note=("page",)))
+    made = output_of(replace(spec, note=("page",)))
     opened(tab, made.files[f"{name}_page.html"], tmp_path, 360)
     rng = np.random.default_rng(7)
     values = {key: float(rng.uniform(-1, 1)) for key in tab.run(STATE)}

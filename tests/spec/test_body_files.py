@@ -18,14 +18,15 @@ import rigidsym as rs
 from rigidsym.commands.cli import commands
 from rigidsym.errors import BodyError, KernelError, SpecError
 from rigidsym.models.body import RigidBody, general_inertia, principal_moments
-from rigidsym.pipeline import motion_of, product
-from rigidsym.spec.derivation_file import DerivationSpec, read_file, read_spec
+from rigidsym.pipeline import integrated, motion_of, output_of, read_file, read_record, read_spec
+from rigidsym.spec.derivation_spec import DerivationSpec
 
 A, B, C, M = sp.symbols("A B C M")
 
 
 def read(text: str) -> DerivationSpec:
-    return read_spec(dedent(text), source="top.toml", name="top")
+    """The specification in a text, with its body integrated."""
+    return integrated(read_spec(dedent(text), source="top.toml", name="top"))
 
 
 def faults_of(text: str) -> list[str]:
@@ -108,7 +109,7 @@ def test_parameters_are_described_by_the_file():
 )
 def test_a_body_comes_back_from_its_data(text):
     spec = read(text)
-    assert DerivationSpec.from_data(spec.to_data()) == spec
+    assert integrated(read_record(spec.to_data())) == integrated(spec)
 
 
 @pytest.mark.parametrize(
@@ -123,7 +124,7 @@ def test_a_body_comes_back_from_its_data(text):
         ("[body]\nprincipal_moments = [-1, 1, 1]", "smallest principal moment is -1 kg m²"),
         ('[body]\ninertia = [[1, "b", 0], [0, 1, 0], [0, 0, 1]]', "I_xy − I_yx = b"),
         ("[body]\ninertia = [[1, 0, 0], [0, 1, 0]]", "three rows of three expressions"),
-        ('[body]\nprincipal_moments = ["phi", 1, 1]', "is in the rotation too"),
+        ('[body]\nprincipal_moments = ["phi", 1, 1]', "also appears in the rotation"),
         ('[rotation]\nsequence = "ZXZ"\n[parameters]\nA = {}', "parameters go with a [body]"),
         ('[body]\nprincipal_moments = ["A*", 1, 1]', "column 3: expected a number"),
     ],
@@ -277,7 +278,7 @@ def test_one_command_from_a_file_to_energies_kernels_and_note(folder, name):
     module = load(made / f"{name}.py")
     tensor = module.inertia_tensor(values)
     assert np.allclose(tensor, record["body"]["in_numbers"]["inertia_tensor"], rtol=1e-13)
-    again = DerivationSpec.from_data(record["request"]).body
+    again = integrated(read_record(record["request"])).body
     assert again is not None
     assert [p.value for p in again.parameters] == pytest.approx(values, rel=1e-15)
 
@@ -292,7 +293,7 @@ def load(path: Path) -> ModuleType:
 
 
 def test_a_mesh_from_a_file_is_that_of_trimesh(folder):
-    body = read_file(str(folder / "mesh.toml")).body
+    body = integrated(read_file(str(folder / "mesh.toml"))).body
     assert body is not None
     inertia = np.array(body.in_numbers(body.inertia).tolist(), dtype=float)
     assert np.allclose(inertia, 2 * BOX.moment_inertia, atol=1e-6)
@@ -330,7 +331,7 @@ def test_the_shipped_bodies_are_proved(name, also):
     spec = read_file(name)
     steps = (*also, "centre_of_mass", "inertia_tensor", "principal_moments", "rotational_energy")
     assert rs.derive(spec.models[0], steps, body=spec.body).is_proved
-    assert DerivationSpec.from_data(spec.to_data()) == spec
+    assert integrated(read_record(spec.to_data())) == integrated(spec)
 
 
 CONSTANT = """
@@ -348,9 +349,9 @@ quantities = ["inertia_tensor"]
 def test_what_depends_on_nothing_has_no_function():
     spec = read_spec(CONSTANT.format(""), source="a.toml", name="a")
     with pytest.raises(KernelError, match=r"a: no function to write.*: inertia_tensor; expected"):
-        product(spec)
+        output_of(spec)
     spec = read_spec(CONSTANT.format("kernels = []"), source="a.toml", name="a")
-    assert list(product(spec).files) == ["a.tex", "a.json"]
+    assert list(output_of(spec).files) == ["a.tex", "a.json"]
 
 
 ROOTS = """
@@ -369,7 +370,7 @@ quantities = ["rotation_matrix", "inertia_tensor", "inertia_tensor_space", "radi
 @pytest.mark.parametrize("rotation", ["rotation_vector", "zyx", "z(phi) [1,1,1](theta)"])
 def test_roots_of_numbers_in_a_body_stand_beside_any_rotation(rotation):
     """√415 of the radii of gyration, √3 of a part that is turned."""
-    spec = read_spec(ROOTS.format(rotation), source="a.toml", name="a")
+    spec = integrated(read_spec(ROOTS.format(rotation), source="a.toml", name="a"))
     motion = motion_of(spec)
     assert motion.is_proved
     module = motion.kernels().load()

@@ -6,6 +6,7 @@ Jupyter asks an object for its `_repr_mimebundle_` and shows the richest form th
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
@@ -24,30 +25,26 @@ _WIDTH = 44.0  # ems
 
 def bundle_of(derivation: Derivation, note: Note, manner: Manner) -> dict[str, str]:
     """The whole derivation: as the note, as one display of its equations, as plain text."""
-    arguments, model = derivation.arguments, derivation.model
-    steps = (latex_of(step, arguments, manner, model) for step in derivation.steps)
     return {
         "text/markdown": note.markdown(),
-        "text/latex": "\n\n".join(steps),
+        "text/latex": "\n\n".join(step._repr_latex_() for step in derivation.steps),
         "text/plain": show(derivation, manner=manner),
     }
 
 
-def step_bundle_of(
-    step: Step, arguments: Sequence[Argument], manner: Manner, model: RotationModel | None = None
-) -> dict[str, str]:
-    """One step: its equation, and the lines that a terminal shows of it."""
-    return {
-        "text/latex": latex_of(step, arguments, manner, model),
-        "text/plain": show_step(step, arguments, manner=manner, model=model),
-    }
+@dataclass(frozen=True, kw_only=True, slots=True)
+class EquationPrinter:
+    """Prints the equations of one derivation in one notation."""
 
+    arguments: Sequence[Argument]
+    model: RotationModel
+    manner: Manner
 
-def latex_of(
-    step: Step, arguments: Sequence[Argument], manner: Manner, model: RotationModel | None = None
-) -> str:
-    """The equation of a step between dollar signs, with its number."""
-    notation = notation_of(arguments, manner, model)
-    equation = as_vectors(equation_of(step, arguments), step, notation)
-    shown = display(equation_in_manner(equation, manner), notation, _WIDTH)
-    return f"$$\n{formula(shown.latex)}\n\\tag{{{step.number}}}\n$$"
+    def latex(self, step: Step) -> str:
+        notation = notation_of(self.arguments, self.manner, self.model)
+        equation = as_vectors(equation_of(step, self.arguments), step, notation)
+        shown = display(equation_in_manner(equation, self.manner), notation, _WIDTH)
+        return formula(shown.latex)
+
+    def text(self, step: Step) -> str:
+        return show_step(step, self.arguments, manner=self.manner, model=self.model)

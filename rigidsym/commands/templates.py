@@ -1,0 +1,23 @@
+"""`rigidsym templates`: the shipped templates, copied."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rigidsym.commands.command import command as make
+from rigidsym.system import resources
+from rigidsym.system.files import write_text
+
+
+@make("rigidsym templates mine && rigidsym derive ZXZ --templates mine")
+@click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
+def command(folder: Path) -> None:
+    """Copy the shipped templates into DIR, to change them there; see --templates of `derive`."""
+    shipped = [f"{name}.jinja" for name in resources.names("templates", ".jinja")]
+    taken = [name for name in shipped if (folder / name).exists()]
+    if taken:
+        raise click.ClickException(f"{folder} already has {', '.join(taken)}; nothing was copied")
+    for name in shipped:
+        click.echo(write_text(folder / name, resources.text("templates", name)))

@@ -1,0 +1,170 @@
+"""What to derive and what to print of it: checked data, valid once it is constructed."""
+
+from __future__ import annotations
+
+import keyword
+import re
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
+
+from rigidsym.errors import ModelError
+from rigidsym.models.body import BodyDescription, RigidBody
+from rigidsym.models.rotation import RotationModel
+from rigidsym.models.rotation_text import request_of, rotation_from
+from rigidsym.spec.faults import Faults, Source, shortened
+from rigidsym.spec.vocabulary import NotationChoice
+
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+_DEVICES = re.compile(r"con|prn|aux|nul|com[1-9]|lpt[1-9]")  # not allowed as file names on Windows
+_LONGEST_TITLE = 200
+
+
+Body = RigidBody | BodyDescription
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class DerivationSpec:
+    """What to derive and what to print.
+
+    With one rotation, `name` names the derivation: its folder, its files and its module. With
+    several, each derivation takes the name of its rotation; `singles` separates them. The names of
+    quantities, targets and formats are checked by the reader and by whoever uses them.
+    """
+
+    name: str
+    title: str | None = None  # None: the rotation's own
+    models: tuple[RotationModel, ...]
+    body: Body | None = None
+    theory: bool = False  # whether the theory for every body and rotation comes first
+    quantities: tuple[str, ...] = ()  # empty: all
+    kernels: tuple[str, ...] = ("numpy",)
+    note: tuple[str, ...] = ("tex", "html")
+    conversions: bool = False  # to and from quaternion and matrix
+    derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
+    notation: NotationChoice | None = None  # of notes and terminal; None: the default
+    source: Source | None = field(default=None, compare=False, repr=False)  # where it was read
+
+    def __post_init__(self) -> None:
+        faults = Faults(self.source or Source(self.name))
+        if not self.models:
+            faults.add(("models",), "expected at least one rotation")
+        for place, message in repeated(self.models).items():
+            faults.add(("models", place), message)
+        for place, model in enumerate(self.models):
+            for message in (*_clashes(model, self.body), *_in_notation(model, self.notation)):
+                faults.add(("models", place), message)
+        if len(self.models) == 1 and (message := fault_of_name(self.name)):
+            faults.add(("name",), message)
+        if message := fault_of_title(self.title):
+            faults.add(("title",), message)
+        faults.raise_if_any()
+
+    def singles(self) -> tuple[DerivationSpec, ...]:
+        """One specification per rotation; a title given to several rotations is dropped."""
+        if len(self.models) == 1:
+            return (self,)
+        return tuple(
+            replace(self, name=model.name, title=None, models=(model,)) for model in self.models
+        )
+
+    def to_data(self) -> dict[str, Any]:
+        """The specification as plain data, which `derivation_file.from_data` reads back.
+
+        Raises ModelError for a rotation that was made in Python and cannot be written as text.
+        """
+        optional: dict[str, Any] = {
+            "theory": self.theory,
+            "conversions": self.conversions,
+            "derivatives": list(self.derivatives),
+            "notation": self._notation_data(),
+        }
+        return {
+            "name": self.name,
+            "title": self.title,
+            "rotations": [dict(request_of(model)) for model in self.models],
+            "quantities": list(self.quantities) or None,
+            "kernels": list(self.kernels),
+            "note": list(self.note),
+            **(self.body.request if self.body else {}),
+            **{key: value for key, value in optional.items() if value},
+        }
+
+    def _notation_data(self) -> dict[str, Any]:
+        if self.notation is None or self.notation == type(self.notation)():
+            return {}
+        return asdict(self.notation)
+
+
+def spec_for(
+    rotation: str,
+    *,
+    angles: Sequence[str] | None = None,
+    constants: Sequence[str] = (),
+    scalar_last: bool = False,
+    passive: bool = False,
+) -> DerivationSpec:
+    """The specification of one rotation, named after it, with all its quantities.
+
+    Raises ModelError and ExpressionError as `rotation_from` does.
+    """
+    model = rotation_from(
+        rotation, names=angles, constants=constants, scalar_last=scalar_last, passive=passive
+    )
+    return DerivationSpec(name=model.name, models=(model,))
+
+
+def repeated(models: Iterable[RotationModel]) -> dict[int, str]:
+    """{position: fault} of the models whose folder an earlier one already writes.
+
+    A model's name is lower case, so that different names are different folders on every system.
+    """
+    first: dict[str, int] = {}
+    faults: dict[int, str] = {}
+    for place, model in enumerate(models):
+        earlier = first.setdefault(model.name, place)
+        if earlier != place:
+            faults[place] = f"writes the folder {model.name}, as entry {earlier} does"
+    return faults
+
+
+def fault_of_name(name: str) -> str:
+    """Why a derivation, its folder and its Python module cannot have a name; "" if they can."""
+    if not _NAME.fullmatch(name):
+        return (
+            "expected a lower-case letter, then lower-case letters, digits or underscores, "
+            f"got {shortened(name)}"
+        )
+    if keyword.iskeyword(name) or _DEVICES.fullmatch(name):
+        return f"{name} is a reserved word of Python or Windows"
+    if name in sys.stdlib_module_names or name in ("numpy", "sympy", "rigidsym"):
+        return f"{name}.py would hide the Python module of this name"
+    return ""
+
+
+def fault_of_title(title: str | None) -> str:
+    """Why a text cannot be a title; "" if it can."""
+    if title is None:
+        return ""
+    if not title.strip():
+        return "the title is empty; write one, or leave this key out"
+    if not title.isprintable() or len(title) > _LONGEST_TITLE:
+        return f"expected one line of at most {_LONGEST_TITLE} printable characters"
+    return ""
+
+
+def _clashes(model: RotationModel, body: Body | None) -> Iterator[str]:
+    """Names that both a rotation and its body use."""
+    used = {coordinate.func.__name__ for coordinate in model.coordinates}
+    used |= {symbol.name for symbol in model.constants}
+    for name in sorted(used & {p.symbol.name for p in (body.parameters if body else ())}):
+        yield f"{name} is a parameter of the body and also appears in the rotation"
+
+
+def _in_notation(model: RotationModel, notation: NotationChoice | None) -> Iterator[str]:
+    try:
+        if notation is not None:
+            notation.check(model)
+    except ModelError as error:
+        yield str(error)
