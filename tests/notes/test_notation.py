@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from itertools import product
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from click.testing import CliRunner
 import rigidsym as rs
 from helpers.motions import derived
 from rigidsym import pipeline
-from rigidsym.commands import cli, options
+from rigidsym.commands import cli
 from rigidsym.errors import ModelError, SpecError
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.euler_angles import EulerAngles
