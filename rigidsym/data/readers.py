@@ -1,24 +1,25 @@
-"""Files of numbers, a row at a time on paper and many at a time here: NPY, Parquet, text.
-
-Every source can begin again at a place where a piece ended, so that long work can be resumed.
-"""
+"""Files of numbers: NPY, Parquet, text."""
 
 from __future__ import annotations
 
 import mmap
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rigidsym.data.chunk import ROWS, Piece, Rows
-from rigidsym.data.npy import mapped
-from rigidsym.data.text import TextRows
+from rigidsym.data.chunk import ROWS, Chunk, Table, TableReader
+from rigidsym.data.text import TextReader
 from rigidsym.errors import DataError, MissingExtra
 
+_MAGIC = b"\x93NUMPY"
+_FORGET = 32 << 20  # bytes after which pages that were read are given back
 
-def rows_of(path: Path) -> Rows:
-    """The rows of a file, by its ending: NPY, Parquet, or else text with separators.
+
+def reader_of(path: Path) -> TableReader:
+    """The reader of a file, by its ending: NPY, Parquet, or else text with separators.
 
     Raises DataError for a file that holds no table of numbers.
     """
@@ -26,44 +27,138 @@ def rows_of(path: Path) -> Rows:
         raise DataError(f"{path}: no such file")
     ending = path.suffix.lower()
     if ending == ".npy":
-        return NpyRows(path)
+        return npy_reader(path)
     if ending in (".parquet", ".pq"):
-        return ParquetRows(path)
-    return TextRows(path)
+        return ParquetReader(path)
+    return TextReader(path)
 
 
-class NpyRows:
-    """An NPY file, mapped into memory; pages that were read are given back."""
+def npy_reader(path: Path) -> ArrayReader:
+    """An NPY file, mapped into memory; the fields of a structured array are its columns.
+
+    Raises DataError for another file, for one that is cut short, and for other shapes and types.
+    """
+    with path.open("rb") as file:
+        begins = file.read(len(_MAGIC))
+    if begins != _MAGIC:
+        found = "another kind of file" if begins else "an empty file"
+        raise DataError(f"{path}: not an NPY file of numbers, but {found}")
+    try:
+        array: NDArray[Any] = np.load(path, mmap_mode="r", allow_pickle=False)
+    except (ValueError, EOFError) as error:
+        raise DataError(f"{path}: not an NPY file of numbers ({error})") from None
+    try:
+        return ArrayReader(array)
+    except DataError as error:
+        raise DataError(f"{path}: {error}") from None
+
+
+class ArrayReader:
+    """An array (rows, columns), a structured array (rows,), or several arrays side by side.
+
+    Nothing is copied but the rows that are asked for; pages of a memory map are given back.
+    Raises DataError for other shapes and for types that are not numbers.
+    """
 
     names: tuple[str, ...] | None = None
 
-    def __init__(self, path: Path) -> None:
-        array = mapped(path)
-        if array.ndim != 2 or array.dtype.kind not in "fiu":
-            found = f"{array.dtype} {array.shape}"
-            raise DataError(f"{path}: expected numbers of shape (rows, columns), got {found}")
-        self._array = array
-        self._map: mmap.mmap | None = getattr(array, "_mmap", None)
-        self.width = array.shape[1]
-        is_single = array.dtype.kind == "f" and array.dtype.itemsize == 4
+    def __init__(self, *arrays: NDArray[Any]) -> None:
+        self._maps = [
+            found for a in arrays if (found := getattr(a, "_mmap", None)) is not None
+        ]
+        if len(arrays) == 1 and arrays[0].dtype.names is not None:
+            self.names, arrays = _fields(arrays[0])
+        for array in arrays:
+            if array.ndim != 2 or array.dtype.kind not in "fiub":
+                found = f"{array.dtype} of shape {array.shape}"
+                raise DataError(f"expected numbers of shape (rows, columns), got {found}")
+        self._arrays = arrays
+        self.width = sum(array.shape[1] for array in arrays)
+        floats = [a.dtype for a in arrays if a.dtype.kind == "f"]
+        is_single = len(floats) == len(arrays) and all(kind.itemsize == 4 for kind in floats)
         self.dtype = np.dtype(np.float32 if is_single else np.float64)
+        self.eps = max((float(np.finfo(k).eps) for k in floats if k.itemsize < 8), default=0.0)
+        self._row_bytes = sum(array.shape[1] * array.itemsize for array in arrays)
 
-    def pieces(self, columns: Sequence[int], start: int = 0, rows: int = ROWS) -> Iterator[Piece]:
-        """As `Rows.pieces`; `start` counts rows."""
-        count = len(self._array)
-        for first in range(start, count, rows):
-            end = min(first + rows, count)
-            table = np.asarray(self._array[first:end][:, list(columns)], self.dtype)
-            self._forget()
-            yield Piece(table, end, end / count)
+    def __len__(self) -> int:
+        return len(self._arrays[0])
+
+    def place(self, row: int) -> str:
+        """How messages name a row."""
+        return f"row {row + 1}"
+
+    def chunks(
+        self,
+        columns: Sequence[int],
+        rows: int = ROWS,
+        kept: Sequence[int] = (),
+        start: int = 0,
+        stop: int | None = None,
+    ) -> Iterator[Chunk]:
+        """As `TableReader.chunks`, from a row on and to another."""
+        last = len(self) if stop is None else min(stop, len(self))
+        unread = 0
+        for first in range(start, last, rows):
+            end = min(first + rows, last)
+            passed = tuple(self._column(column)[first:end].copy() for column in kept)
+            yield Chunk(
+                self._rows(slice(first, end), columns), np.arange(first, end), end / last, passed
+            )
+            unread += (end - first) * self._row_bytes
+            if unread > _FORGET or end == last:
+                self._forget()
+                unread = 0
+
+    def spread(self, columns: Sequence[int], rows: int) -> Chunk:
+        """As `TableReader.spread`: evenly spaced."""
+        which = np.unique(np.linspace(0, len(self) - 1, rows).round().astype(np.intp))
+        return Chunk(self._rows(which, columns), which, 1.0)
+
+    def _rows(self, which: slice | NDArray[np.intp], columns: Sequence[int]) -> Table:
+        if len(self._arrays) == 1:
+            rows = self._arrays[0][which]
+            first = columns[0] if columns else 0
+            if list(columns) == list(range(first, first + len(columns))):
+                return np.asarray(rows[:, first : first + len(columns)], self.dtype)
+            return np.asarray(rows[:, list(columns)], self.dtype)
+        table = np.empty((len(self._column(0)[which]), len(columns)), self.dtype)
+        for place, column in enumerate(columns):
+            table[:, place] = self._column(column)[which]
+        return table
+
+    def _column(self, column: int) -> NDArray[Any]:
+        for array in self._arrays:
+            if column < array.shape[1]:
+                return array[:, column]
+            column -= array.shape[1]
+        raise IndexError(column)
 
     def _forget(self) -> None:
-        if self._map is not None and hasattr(mmap, "MADV_DONTNEED"):
-            self._map.madvise(mmap.MADV_DONTNEED)
+        if hasattr(mmap, "MADV_DONTNEED"):
+            for each in self._maps:
+                each.madvise(mmap.MADV_DONTNEED)
 
 
-class ParquetRows:
+def _fields(array: NDArray[Any]) -> tuple[tuple[str, ...], tuple[NDArray[Any], ...]]:
+    """The names and columns of a structured array; a field of several numbers is q[0], q[1], ..."""
+    names: list[str] = []
+    arrays: list[NDArray[Any]] = []
+    for name in array.dtype.names or ():
+        field = array[name].reshape(len(array), -1) if array.ndim == 1 else array[name]
+        if field.dtype.kind not in "fiub":
+            continue
+        count = field.shape[-1]
+        names += [name] if count == 1 else [f"{name}[{k}]" for k in range(count)]
+        arrays.append(field)
+    if not arrays:
+        raise DataError("no field of the structured array holds numbers")
+    return tuple(names), tuple(arrays)
+
+
+class ParquetReader:
     """A Parquet file; numbers that are missing are NaN."""
+
+    eps = 0.0
 
     def __init__(self, path: Path) -> None:
         try:
@@ -73,44 +168,44 @@ class ParquetRows:
             raise MissingExtra("Parquet", "parquet") from None
         try:
             self._file = ParquetFile(path, memory_map=True)
-        except arrow.ArrowInvalid as error:
+        except arrow.ArrowException as error:
             raise DataError(f"{path}: not a Parquet file ({error})") from None
-        schema = self._file.schema_arrow
-        own = tuple(schema.names)
-        self.names: tuple[str, ...] | None = own
-        self.width = len(own)
-        self._names = own
-        self._is_number = [
-            arrow.types.is_floating(kind) or arrow.types.is_integer(kind) for kind in schema.types
-        ]
-        single = all(kind == arrow.float32() for kind in schema.types)
-        self.dtype = np.dtype(np.float32 if single else np.float64)
         self._path = path
+        schema = self._file.schema_arrow
+        self._names: tuple[str, ...] = tuple(schema.names)
+        self.names: tuple[str, ...] | None = self._names
+        self.width = len(self._names)
+        is_number = arrow.types.is_floating, arrow.types.is_integer
+        self._is_number = [any(test(kind) for test in is_number) for kind in schema.types]
+        is_single = all(kind == arrow.float32() for kind in schema.types)
+        self.dtype = np.dtype(np.float32 if is_single else np.float64)
 
-    def pieces(self, columns: Sequence[int], start: int = 0, rows: int = ROWS) -> Iterator[Piece]:
-        """As `Rows.pieces`; `start` counts rows."""
+    def place(self, row: int) -> str:
+        """How messages name a row."""
+        return f"{self._path}, row {row + 1}"
+
+    def chunks(
+        self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
+    ) -> Iterator[Chunk]:
+        """As `TableReader.chunks`."""
         wrong = [self._names[place] for place in columns if not self._is_number[place]]
         if wrong:
             raise DataError(f"{self._path}: no numbers in the columns {', '.join(wrong)}")
-        count = self._file.metadata.num_rows
-        groups, end = self._groups_from(start)
-        chosen = [self._names[place] for place in dict.fromkeys(columns)]
-        for batch in self._file.iter_batches(batch_size=rows, row_groups=groups, columns=chosen):
-            first, end = end, end + batch.num_rows
-            if end <= start:
-                continue
-            fresh = batch.slice(max(0, start - first))
-            read = {name: fresh.column(name).to_numpy(zero_copy_only=False) for name in chosen}
-            table = np.stack([read[self._names[place]] for place in columns], axis=1)
-            yield Piece(np.asarray(table, self.dtype), end, end / count)
+        count, start = self._file.metadata.num_rows, 0
+        chosen = [self._names[place] for place in dict.fromkeys([*columns, *kept])]
+        for batch in self._file.iter_batches(batch_size=rows, columns=chosen):
+            end = start + batch.num_rows
+            read = {name: batch.column(name).to_numpy(zero_copy_only=False) for name in chosen}
+            table = np.empty((batch.num_rows, len(columns)), self.dtype)
+            for place, column in enumerate(columns):
+                table[:, place] = read[self._names[column]]
+            passed = tuple(read[self._names[column]] for column in kept)
+            yield Chunk(table, np.arange(start, end), end / count, passed)
+            start = end
 
-    def _groups_from(self, start: int) -> tuple[list[int], int]:
-        """The row groups that reach beyond a row, and the row at which they begin."""
-        metadata = self._file.metadata
-        first = 0
-        for group in range(metadata.num_row_groups):
-            length = metadata.row_group(group).num_rows
-            if first + length > start:
-                return list(range(group, metadata.num_row_groups)), first
-            first += length
-        return [], first
+    def spread(self, columns: Sequence[int], rows: int) -> Chunk:
+        """As `TableReader.spread`: the first rows of as many row groups."""
+        return next(self.chunks(columns, rows), Chunk(np.empty((0, len(columns))), _NO_ROWS, 1.0))
+
+
+_NO_ROWS = np.empty(0, np.intp)

@@ -1,19 +1,35 @@
-"""Text with one row a line, between commas, semicolons, tabs or blanks."""
+"""Text with one row a line, between commas, semicolons, tabs or blanks.
+
+NumPy reads the numbers. A chunk that it refuses, for one with gaps say, is read again by the csv
+module, field by field, so that a fault is named with its line and field.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from itertools import islice
+import csv
+import io
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from functools import partial
+from itertools import chain, islice
 from pathlib import Path
+from typing import Any, BinaryIO
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rigidsym.data.chunk import ROWS, Piece, Table
-from rigidsym.data.column_names import counted
+from rigidsym.data.chunk import ROWS, Chunk, Table
+from rigidsym.data.columns import counted, is_unit, unit_in
 from rigidsym.errors import DataError
 
+MOST_SHOWN = 10
 _PROBED = 4096  # bytes at the beginning that tell text from other files
+_LONGEST = 1 << 20  # bytes in a line
+_WIDEST = 10_000  # columns
+_COMMENTS = ("#", "%")
+_MISSING = frozenset({"", "-", "na", "n/a", "nan", "null", "none", "#n/a"})
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _KINDS = {
     b"\x1f\x8b": "data compressed by gzip (gunzip unpacks them)",
     b"PK": "a ZIP archive or a spreadsheet",
@@ -22,105 +38,246 @@ _KINDS = {
     b"\x93NUMPY": "NPY, but its name does not end in .npy",
     b"PAR1": "Parquet, but its name does not end in .parquet",
     b"\x89HDF": "HDF5",
+    b"ULog": "a log of PX4 (ulog2csv converts it)",
+    b"\xa3\x95": "a log of ArduPilot (mavlogdump.py --format csv converts it)",
+    b"#ROSBAG": "a ROS bag (rostopic echo -p converts it)",
 }
-_SEPARATORS = (",", ";", "\t", None)  # None: blanks
 
 
-@dataclass(frozen=True, slots=True)
-class Lines:
-    """Some lines that hold rows, and how far they reach."""
+class TextReader:
+    """A text file, or standard input; the first line that is no comment may name the columns.
 
-    numbers: tuple[int, ...]  # of the lines, the first that was read being 1
-    texts: tuple[str, ...]
-    end: int  # byte at which the next ones begin
-
-
-class TextRows:
-    """A text file; its first line names the columns, unless it holds numbers.
-
-    Empty lines, and those that begin with #, are left out.
+    Comments begin with # or %; the last one before the numbers names them if no other line does. A
+    second line may hold the units. Quoted fields, a byte-order mark and, unless commas separate
+    the columns, decimal commas are read. Raises DataError for what is not such a table.
     """
 
     dtype = np.dtype(np.float64)
+    eps = 0.0
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, stream: BinaryIO | None = None) -> None:
         self.path = path
-        self.size = path.stat().st_size
-        with path.open("rb") as file:
-            check_text(path, file.read(_PROBED))
-            file.seek(0)
-            first = next((line for line in map(text_of, file) if line), "")
-        if not first:
-            raise DataError(f"{path}: no rows")
-        self.separator = next(s for s in _SEPARATORS if s is None or s in first)
-        fields = first.lstrip("#").split(self.separator)
+        self._stream = stream and io.BufferedReader(stream)  # type: ignore[type-var]
+        self._size = 0 if stream else path.stat().st_size
+        self._ahead: list[bytes] = []  # lines that were read to find the header
+        with self._opened() as file:
+            check_text(path, file.peek(_PROBED)[:_PROBED])
+            lines = self._bounded(file)
+            comments, first = self._first_line(lines)
+            self.separator = _separator(first)
+            fields = self._fields(first)
+            if len(fields) > _WIDEST:
+                raise DataError(f"{path}: {len(fields)} columns; at most {_WIDEST} are read")
+            self.names = self._header(fields, comments, lines)
         self.width = len(fields)
-        has_header = not all(map(is_number, fields))
-        self.names = tuple(field.strip().strip('"') for field in fields) if has_header else None
+        begin = sum(map(len, self._ahead[: self._skipped]))
+        self._starts = [(0, self._skipped, begin)]  # row, line and byte where each chunk begins
 
-    def lines(self, start: int = 0, rows: int = ROWS) -> Iterator[Lines]:
-        """The lines from a byte on at which one begins, at most `rows` at a time."""
-        end, count = start, 0
-        is_header = start == 0 and self.names is not None
-        with self.path.open("rb") as file:
-            file.seek(start)
-            while lines := list(islice(file, rows)):
-                end += sum(map(len, lines))
-                numbered = [(count + k, text) for k, text in enumerate(map(text_of, lines), 1)]
-                count += len(lines)
-                kept = [(number, text) for number, text in numbered if text]
-                if is_header and kept:
-                    kept, is_header = kept[1:], False
-                kept = [(number, text) for number, text in kept if not text.startswith("#")]
-                if kept:
-                    numbers, texts = zip(*kept, strict=True)
-                    yield Lines(numbers, texts, end)
+    def _opened(self) -> AbstractContextManager[io.BufferedReader]:
+        return nullcontext(self._stream) if self._stream else self.path.open("rb")
 
-    def pieces(self, columns: Sequence[int], start: int = 0, rows: int = ROWS) -> Iterator[Piece]:
-        """As `Rows.pieces`; `start` counts bytes."""
-        for lines in self.lines(start, rows):
-            try:
-                table = self.table(lines.texts, columns)
-            except ValueError as error:
-                raise DataError(self._fault(columns) or f"{self.path}: {error}") from None
-            yield Piece(table, lines.end, lines.end / self.size)
+    def _bounded(self, file: io.BufferedReader, before: int = 0) -> Iterator[bytes]:
+        """The lines of a file; raises DataError for one that is too long."""
+        for number, line in enumerate(iter(partial(file.readline, _LONGEST), b""), before + 1):
+            if len(line) == _LONGEST:
+                raise DataError(
+                    f"{self.path}, line {number}: longer than {_LONGEST >> 20} MB; "
+                    "expected one row a line"
+                )
+            yield line
 
-    def table(self, texts: Sequence[str], columns: Sequence[int]) -> Table:
-        """The numbers of some columns; raises ValueError where one does not read."""
-        return np.loadtxt(
-            texts, delimiter=self.separator, comments=None, ndmin=2, usecols=list(columns)
+    def _first_line(self, lines: Iterable[bytes]) -> tuple[list[str], str]:
+        """The comments before the first line that is none, and that line."""
+        comments: list[str] = []
+        for line in lines:
+            self._ahead.append(line)
+            text = _decoded(line).strip()
+            if text.startswith(_COMMENTS):
+                comments.append(text.lstrip("#% "))
+            elif text:
+                self._skipped = len(self._ahead) - 1  # lines before the rows
+                return comments, text
+        if not comments:
+            raise DataError(f"{self.path}: no rows")
+        self._skipped = len(self._ahead)
+        return comments[:-1], comments[-1]  # a header, and no rows
+
+    def _header(
+        self, fields: Sequence[str], comments: Sequence[str], lines: Iterable[bytes]
+    ) -> tuple[str, ...] | None:
+        """The names of the columns, with the units of a second line in brackets."""
+        if any(map(self._is_number, fields)):
+            named = self._fields(comments[-1]) if comments else []
+            is_header = len(named) == len(fields) and not any(map(is_number, named))
+            return tuple(named) if is_header else None
+        self._skipped = len(self._ahead)
+        second = next(lines, b"")  # type: ignore[call-overload]
+        self._ahead.append(second)
+        units = [field.strip("[]() ") for field in self._fields(_decoded(second).lstrip("#% "))]
+        if len(units) != len(fields) or not any(units) or any(map(is_number, units)):
+            return tuple(fields)
+        if not all(map(is_unit, units)):
+            return tuple(fields)
+        self._skipped += 1
+        return tuple(
+            name if unit in ("", "-") or unit_in(name) else f"{name} [{unit}]"
+            for name, unit in zip(fields, units, strict=True)
         )
 
-    def wrong_with(self, line: str, columns: Sequence[int]) -> list[str]:
-        """Which fields of a line are missing or no numbers."""
-        fields = line.split(self.separator)
-        if len(fields) <= max(columns):
-            return [f"{counted(len(fields), 'field')}, expected {self.width}"]
-        return [
-            f"field {place + 1}: {fields[place].strip()!r} is not a number{_hint(fields[place])}"
-            for place in columns
-            if not is_number(fields[place])
-        ]
+    def _fields(self, text: str) -> list[str]:
+        return [field.strip() for fields in self._split([text]) for field in fields]
 
-    def line_of(self, row: int) -> int:
-        """The number of the line in which a row stands, rows counted from 0."""
-        for lines in self.lines():
-            if row < len(lines.numbers):
-                return lines.numbers[row]
-            row -= len(lines.numbers)
-        raise IndexError(f"{self.path} has fewer rows")
+    def _split(self, lines: Iterable[str]) -> Iterator[list[str]]:
+        """The fields of each line that is not empty."""
+        if self.separator is None:
+            lines = map(str.strip, lines)
+        separator = self.separator or " "
+        try:
+            yield from filter(None, csv.reader(lines, delimiter=separator, skipinitialspace=True))
+        except csv.Error as error:
+            raise DataError(f"{self.path}: {error}") from None
 
-    def _fault(self, columns: Sequence[int]) -> str:
-        """The first line of the file that does not read, and why."""
-        for lines in self.lines():
-            for number, line in zip(lines.numbers, lines.texts, strict=True):
-                for why in self.wrong_with(line, columns):
-                    return f"{self.path}, line {number}: {why}"
-        return ""
+    def _is_number(self, field: str) -> bool:
+        return is_number(self._with_point(field))
+
+    def _with_point(self, field: str) -> str:
+        """A field with a decimal point if it has a decimal comma."""
+        has_comma = self.separator != "," and _DECIMAL_COMMA.fullmatch(field)
+        return field.replace(",", ".") if has_comma else field
+
+    def place(self, row: int) -> str:
+        """How messages name a row: by its line."""
+        if self._stream:
+            return f"{self.path}, row {row + 1}"
+        first, number, begin = max(start for start in self._starts if start[0] <= row)
+        with self.path.open("rb") as file:
+            file.seek(begin)
+            rows = (number for number, line in enumerate(file, number + 1) if _is_row(line))
+            return f"{self.path}, line {next(islice(rows, row - first, None))}"
+
+    def chunks(
+        self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
+    ) -> Iterator[Chunk]:
+        """As `TableReader.chunks`; columns that are kept are texts."""
+        row, number, byte = self._starts[0]
+        del self._starts[1:]
+        with self._opened() as file:
+            lines = islice(self._bounded(file), number, None)
+            if self._stream:
+                lines = chain(self._ahead[number:], self._bounded(file, len(self._ahead)))
+            while some := list(islice(lines, rows)):
+                table, passed = self._table(some, number, columns, kept)
+                self._starts.append((row, number, byte))
+                number, byte = number + len(some), byte + sum(map(len, some))
+                if len(table):
+                    found = np.arange(row, row + len(table))
+                    row += len(table)
+                    yield Chunk(table, found, byte / self._size if self._size else 1.0, passed)
+
+    def spread(self, columns: Sequence[int], rows: int) -> Chunk:
+        """As `TableReader.spread`: found by seeking; those that do not read are left out."""
+        begin = self._starts[0][2]
+        with self.path.open("rb") as file:
+            file.seek(begin)
+            lines = [line for line in islice(self._bounded(file), rows) if _is_row(line)]
+            for offset in np.linspace(file.tell(), self._size, rows, endpoint=False).astype(int):
+                file.seek(int(offset))
+                next(self._bounded(file), b"")  # the rest of a line
+                lines.append(next(self._bounded(file), b""))
+        good: list[Table] = []
+        for line in filter(_is_row, lines):
+            try:
+                good.append(self._by_field([_decoded(line)], 0, columns))
+            except DataError:
+                continue
+        if not good:
+            return next(self.chunks(columns, rows), Chunk(np.empty((0, len(columns))), _NONE, 1.0))
+        return Chunk(np.concatenate(good), np.zeros(len(good), np.intp), 0.0)
+
+    def _table(
+        self, lines: Sequence[bytes], before: int, columns: Sequence[int], kept: Sequence[int]
+    ) -> tuple[Table, tuple[NDArray[Any], ...]]:
+        """The numbers of some lines, and the texts of the columns that are kept."""
+        text = _decoded(b"".join(lines))
+        rows = text.split("\n")
+        if any(mark in text for mark in _COMMENTS):
+            rows = ["" if row.lstrip().startswith(_COMMENTS) else row for row in rows]
+            text = "\n".join(rows)
+        table = self._at_once(text, rows, columns)
+        if table is None:
+            table = self._by_field(rows, before, columns)
+        if not kept:
+            return table, ()
+        fields = [row for row in self._split(rows) if any(row)]
+        return table, tuple(np.array([row[k] for row in fields], object) for k in kept)
+
+    def _at_once(self, text: str, rows: Sequence[str], columns: Sequence[int]) -> Table | None:
+        """The numbers as NumPy reads them; None for text with gaps, quotes or faults."""
+        if '"' in text or not text.strip():
+            return None
+        if self.separator != "," and "," in text:
+            if "." in text:
+                return None
+            rows = text.replace(",", ".").split("\n")
+        try:
+            table: Table = np.loadtxt(
+                rows, delimiter=self.separator, comments=None, ndmin=2, usecols=list(columns)
+            )
+        except ValueError:
+            return None
+        if self.separator is None:
+            return table if len(text.split()) == self.width * len(table) else None
+        return table if text.count(self.separator) == (self.width - 1) * len(table) else None
+
+    def _by_field(self, rows: Sequence[str], before: int, columns: Sequence[int]) -> Table:
+        """The numbers of each line, NaN for those that are missing.
+
+        Raises DataError, with the lines, for fields that are not numbers.
+        """
+        faults: list[str] = []
+        table: list[list[float]] = []
+        numbered = [(number, row) for number, row in enumerate(rows, before + 1) if row.strip()]
+        marks: set[str] = set()
+        split = self._split(row for _, row in numbered)
+        for (number, _), fields in zip(numbered, split, strict=True):
+            extra = fields[self.width :]
+            if len(fields) < self.width or any(extra):
+                faults.append(
+                    f"line {number}: {counted(len(fields), 'field')}, expected {self.width}"
+                )
+                continue
+            found = [fields[column].strip() for column in columns]
+            points = [self._with_point(field) for field in found]
+            marks |= {"," if a != b else "." for a, b in zip(found, points, strict=True) if "." in b}
+            if len(marks) > 1:
+                faults.append(f"line {number}: decimal commas and decimal points in one file")
+                marks.clear()
+            values = [_number(point) for point in points]
+            faults += [
+                f"line {number}: field {column + 1}: {field!r} is not a number{_hint(field)}"
+                for column, field, value in zip(columns, found, values, strict=True)
+                if value is None
+            ]
+            table.append([value for value in values if value is not None])
+        if faults:
+            raise DataError(listed(self.path, faults))
+        return np.array(table, float).reshape(-1, len(columns))
+
+
+_NONE = np.empty(0, np.intp)
+
+
+def listed(path: Path | str, faults: Sequence[str], count: int | None = None) -> str:
+    """What is wrong with a file: one fault in a line, or the first ten in a list."""
+    if len(faults) == 1:
+        return f"{path}, {faults[0]}"
+    count = count or len(faults)
+    more = [f"and {count - MOST_SHOWN} more"] if count > MOST_SHOWN else []
+    return "\n  ".join([f"{path}: {count} faults", *faults[:MOST_SHOWN], *more])
 
 
 def check_text(path: Path, begin: bytes) -> None:
-    """Raise DataError where a file begins as no text in UTF-8 does."""
+    """Raise DataError for a file whose first bytes are not text in UTF-8, naming its kind."""
     kind = next((kind for magic, kind in _KINDS.items() if begin.startswith(magic)), None)
     if kind is None and b"\0" in begin:
         kind = "no text"
@@ -128,17 +285,35 @@ def check_text(path: Path, begin: bytes) -> None:
         raise DataError(f"{path} holds {kind}; expected text in UTF-8, or an NPY or Parquet file")
 
 
-def text_of(line: bytes) -> str:
-    return line.decode(errors="replace").removeprefix("\ufeff").strip()
-
-
 def is_number(field: str) -> bool:
     """Whether NumPy reads it too, which takes neither 1_000 nor digits beyond ASCII."""
+    return bool(field.strip()) and _number(field) is not None
+
+
+def _number(field: str) -> float | None:
+    """NaN for a number that is missing; None for what is not a number."""
+    if field.lower() in _MISSING:
+        return float("nan")
     try:
-        float(field)
+        return float(field) if field.isascii() and "_" not in field else None
     except ValueError:
-        return False
-    return field.isascii() and "_" not in field
+        return None
+
+
+def _decoded(line: bytes) -> str:
+    text = line.decode(errors="replace").removeprefix("\ufeff")
+    return text.replace("\r\n", "\n") if "\r" in text else text
+
+
+def _is_row(line: bytes) -> bool:
+    text = line.strip()
+    return bool(text) and not text.startswith((b"#", b"%"))
+
+
+def _separator(line: str) -> str | None:
+    """What separates the columns; None for blanks."""
+    bare = re.sub(r'"[^"]*"', "", line)
+    return next((mark for mark in (";", "\t", ",") if mark in bare), None)
 
 
 def _hint(field: str) -> str:

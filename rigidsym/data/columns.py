@@ -1,0 +1,111 @@
+"""Names of columns, however they are written: `Roll [deg]`, `roll`, `imu.ROLL` are one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+
+from rigidsym.data.units import conversion, is_angular, unit_of
+from rigidsym.errors import DataError
+
+_BRACKETS = re.compile(r"\s*[\[(]\s*([^\])]*?)\s*[\])]")
+_TAIL = re.compile(r"(.+?)(?:\s*[,/:]\s*|[_ ])([^,:_ ]+)")
+_INDEX = re.compile(r"[\[(](\d+)[\])]")
+_GREEK = str.maketrans(
+    {"φ": "phi", "θ": "theta", "ψ": "psi", "α": "alpha", "β": "beta", "γ": "gamma", "ω": "omega"}
+)
+
+
+def plain(name: str) -> str:
+    """A name without its unit, quotes, case, spaces, hyphens and underscores."""
+    bare = _BRACKETS.sub("", _INDEX.sub(r"\1", name)).strip("\"' ").translate(_GREEK).lower()
+    return re.sub(r"[_\s./-]", "", bare)
+
+
+def unit_in(name: str) -> str:
+    """The unit in the brackets of a name, as written: deg of `Roll [deg]`; empty without one."""
+    found = _BRACKETS.search(_INDEX.sub(r"\1", name))
+    return found[1] if found else ""
+
+
+def counted(count: int, noun: str) -> str:
+    """1 column, 2 columns."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def names_for(names: Sequence[str], width: int) -> tuple[str, ...]:
+    """Names that a user gives for all columns; raises DataError for too few or too many."""
+    if len(names) != width:
+        raise DataError(f"{counted(width, 'column')}, but {counted(len(names), 'name')}")
+    return tuple(names)
+
+
+class ColumnNames:
+    """The header of a table: where a name is, and in which unit its numbers are.
+
+    Units are in brackets, or of angles at the end of a name: `yaw [deg]`, `yaw_deg`, `"yaw, deg"`.
+    A path as in logs of ROS and ArduPilot may precede a name: `field.orientation.x`, `ATT.Roll`.
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = tuple(name.strip() for name in names)
+        self.plain = tuple(map(plain, self.names))
+        self._others = [dict(_other_keys(name)) for name in self.names]
+
+    def find(self, spellings: Iterable[str]) -> int | None:
+        """The column with one of these names, the first of which is preferred.
+
+        Raises DataError for two columns of one name.
+        """
+        keys = [plain(spelling) for spelling in spellings]
+        for key in keys:
+            exact = [k for k, name in enumerate(self.plain) if name == key]
+            found = exact or [k for k, others in enumerate(self._others) if key in others]
+            if len(found) > 1:
+                same = ", ".join(self.names[k] for k in found)
+                raise DataError(f"two columns are named {key}: {same}; --columns renames them")
+            if found:
+                return found[0]
+        return None
+
+    def unit(self, column: int) -> str:
+        """The unit that the name of a column states; empty without one."""
+        stated = unit_in(self.names[column])
+        return stated or next(filter(None, self._others[column].values()), "")
+
+    def factor(self, column: int, expected: str) -> float | None:
+        """By what its numbers are multiplied for a unit; None if its name states no unit.
+
+        Raises DataError for a unit that is unknown or of another quantity.
+        """
+        stated = self.unit(column)
+        if not stated:
+            return None
+        try:
+            return conversion(stated, expected)
+        except DataError as error:
+            raise DataError(
+                f"column {self.names[column]}: {error}; --columns gives it another name"
+            ) from None
+
+
+def _other_keys(name: str) -> Iterator[tuple[str, str]]:
+    """The name without a unit at its end, and without the path before it, with the unit."""
+    unit = unit_in(name)
+    if not unit and (tail := _TAIL.fullmatch(name.strip("\"' "))) and is_angular(tail[2]):
+        name, unit = tail[1], tail[2]
+        yield plain(name), unit
+    segments = re.split(r"[./]", _BRACKETS.sub("", _INDEX.sub(r"_\1", name)))
+    for start in range(1, len(segments)):
+        key = plain("".join(segments[start:]))
+        if start < len(segments) - 1 or len(key) > 2:  # x and w are too short to stand for much
+            yield key, unit
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text, perhaps in brackets, is a known unit."""
+    try:
+        unit_of(text.strip().strip("[]()"))
+    except DataError:
+        return False
+    return True
