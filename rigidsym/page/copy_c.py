@@ -17,9 +17,9 @@ from rigidsym.kernels.ir import (
     names_in,
 )
 from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.targets import singular
-from rigidsym.kernels.targets.infix import infix
-from rigidsym.kernels.targets.layout import WIDTH, bracketed, filled
+from rigidsym.kernels.targets.text import statements
+from rigidsym.kernels.targets.text.infix import infix
+from rigidsym.kernels.targets.text.layout import WIDTH, bracketed, filled
 from rigidsym.page.copy_series import orders_of
 
 _show = partial(infix, functions={name: name for name in FUNCTIONS})
@@ -46,7 +46,7 @@ def _function(kernel: Kernel) -> Iterator[str]:
     used = {name for value in _expressions(kernel) for name in names_in(value)}
     for argument in kernel.arguments:
         yield from _taken(argument, used)
-    for name, value in singular.grouped(kernel):
+    for name, value in statements.grouped(kernel):
         yield from _assigned(name, value)
     for place, output in enumerate(kernel.outputs):
         yield f"    out[{place}] = {_show(output)};"
@@ -78,7 +78,7 @@ def _taken(argument: Argument, used: set[str]) -> Iterator[str]:
     yield from (f"    const double {line.removesuffix(',')};" for line in lines)
 
 
-def _assigned(name: str, value: singular.Value) -> Iterator[str]:
+def _assigned(name: str, value: statements.Value) -> Iterator[str]:
     match value:
         case dict():
             for called, call in value.items():

@@ -7,9 +7,15 @@ from functools import partial
 
 from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Name, Number
 from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.targets import singular
-from rigidsym.kernels.targets.infix import infix
-from rigidsym.kernels.targets.layout import WIDTH, assignment_lines, bracketed, docstring, exploded
+from rigidsym.kernels.targets.text import python, statements
+from rigidsym.kernels.targets.text.infix import infix
+from rigidsym.kernels.targets.text.layout import (
+    WIDTH,
+    assignment_lines,
+    bracketed,
+    docstring,
+    exploded,
+)
 from rigidsym.page.copy_series import orders_of
 
 _show = partial(infix, functions={name: name for name in FUNCTIONS})
@@ -25,9 +31,9 @@ def python_of(kernel: Kernel, series: Mapping[str, str]) -> str:
 
 
 def _imports(kernel: Kernel) -> set[str]:
-    calls = {call.function for call in singular.calls_of(kernel).values()}
+    calls = {call.function for call in statements.calls_of(kernel).values()}
     named = calls.intersection(FUNCTIONS) - {"abs"}
-    guards = {"nan"} if singular.guards_of(kernel) else set()
+    guards = {"nan"} if statements.guards_of(kernel) else set()
     return named | guards | ({"sqrt", "tan"} if calls.difference(FUNCTIONS) else set())
 
 
@@ -37,12 +43,12 @@ def _function(kernel: Kernel) -> Iterator[str]:
     yield f'    """{docstring([_about(kernel)], indent=4)}"""'
     for argument in kernel.arguments:
         yield bracketed(4, "(", argument.components, f",) = {argument.name}")
-    for name, value in singular.grouped(kernel):
+    for name, value in statements.grouped(kernel):
         match value:
             case Guarded():
                 yield from _guard(name, value)
             case dict():
-                yield singular.entire_line(4, value, "_entire")
+                yield python.entire_line(4, value, "_entire")
             case Call(function, angle):
                 yield f"    {name} = {function}({angle.text})"
             case _:

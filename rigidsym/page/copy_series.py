@@ -7,8 +7,8 @@ from textwrap import fill
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import Kernel
-from rigidsym.kernels.targets import singular
-from rigidsym.kernels.targets.layout import WIDTH
+from rigidsym.kernels.targets.text import statements
+from rigidsym.kernels.targets.text.layout import WIDTH
 from rigidsym.system import resources
 
 _TEMPLATES = {"python": "page_series.py.jinja", "c": "page_series.c.jinja"}
@@ -16,7 +16,7 @@ _TEMPLATES = {"python": "page_series.py.jinja", "c": "page_series.c.jinja"}
 
 def orders_of(kernel: Kernel) -> list[int]:
     """The k of the functions c_k that a kernel calls."""
-    orders = (call.order for call in singular.calls_of(kernel).values())
+    orders = (call.order for call in statements.calls_of(kernel).values())
     return [order for order in orders if order is not None]
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 _PACKAGE = Path(__file__).resolve().parent.parent
+_DEPTH = 2  # a template is named by its file, or by its folder and file
 _OWN: ContextVar[Path | None] = ContextVar("own templates", default=None)
 _HOMES = (_PACKAGE / "_data", _PACKAGE.parent)
 
@@ -62,12 +63,6 @@ def overridden_by(own: Path) -> Iterator[None]:
         _OWN.reset(token)
 
 
-def is_overridden(start: str) -> bool:
-    """Whether templates of the user's own stand in for some whose names start so."""
-    own = _OWN.get()
-    return own is not None and any(own.glob(f"{start}*.jinja"))
-
-
 def environment(**options: Any) -> Environment:
     """A Jinja2 environment over the templates; `options` are Jinja2's, delimiters for instance.
 
@@ -81,13 +76,15 @@ def environment(**options: Any) -> Environment:
 
 
 def template(name: str) -> tuple[str, str]:
-    """(text, file) of one template: the user's own, or else the shipped one.
+    """(text, file) of one template: "note.tex.jinja", the user's own if there is one, or one of a
+    target of kernels, "numpy/module.py.jinja", which is always the shipped one.
 
-    Raises FileNotFoundError where there is none, and for a name that leads out of the folder;
-    UnicodeDecodeError where it is no text.
+    Raises FileNotFoundError if there is none and for a name that leads out of the folder, and
+    UnicodeDecodeError if it is not text.
     """
-    if Path(name).name != name:
-        raise FileNotFoundError(f"{name} is not the name of a file beside the templates")
-    own = _OWN.get()
+    path = Path(name)
+    if path.is_absolute() or ".." in path.parts or len(path.parts) > _DEPTH:
+        raise FileNotFoundError(f"{name} is not the name of a file among the templates")
+    own = _OWN.get() if len(path.parts) == 1 else None
     path = own / name if own is not None and (own / name).is_file() else folder("templates") / name
     return path.read_text(encoding="utf-8"), str(path)

@@ -18,12 +18,19 @@ from rigidsym import __version__
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.kernels.module import KernelModule, generate
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.motion import derive
 
+FEW = ("rotation_matrix", "angular_velocity_body", "rates_from_angular_velocity_body")
 
-def test_the_module_of_the_lecture(golden):
-    source = generate(derived("ZXZ")).source
-    golden("euler_zxz_intrinsic.py.txt", source.replace(f"rigidsym {__version__};", "rigidsym *;"))
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_the_files_of_the_lecture(target, golden):
+    """All quantities for NumPy, and those with and without a divisor for the others."""
+    motion = derived("ZXZ") if target == "numpy" else derive("ZXZ", only=FEW)
+    for name, text in generate(motion, target).files.items():
+        text = text.replace(f"rigidsym {__version__};", "rigidsym *;")
+        golden(f"kernels/{name}.txt", text)
 
 
 @pytest.fixture(scope="module")

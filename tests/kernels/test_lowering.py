@@ -18,8 +18,8 @@ from rigidsym.kernels.lowering.lower import MARGIN, _Reader, lower
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.schedule import write
 from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.targets.infix import infix
-from rigidsym.kernels.targets.layout import assignment_lines, bracketed
+from rigidsym.kernels.targets.text.infix import infix
+from rigidsym.kernels.targets.text.layout import assignment_lines, bracketed
 
 A, B, C, D = sp.symbols("a b c d")
 INPUTS = {symbol: symbol.name for symbol in (A, B, C, D)}

@@ -1,40 +1,50 @@
-"""The targets that kernels can be printed for: one file and one template each.
+"""The languages that kernels can be printed in: one folder each.
 
-The file defines `RESERVED`, the words of its language that no name may be, `render(program,
-conversions)`, the texts of its files by their names, the main one first, and `load(name, files)`,
-a Python module of the functions. It is imported when it is asked for.
+The folder LANGUAGE/ holds
+
+- `__init__.py` with `TARGET`, which describes the language and what loading its modules needs;
+- `printer.py` with `RESERVED`, the names that no variable may have, `render(program,
+  conversions)`, which gives the texts of the files by name, the main one first, and `load(name,
+  files)`, which makes a Python module of them. It is imported when the target is asked for.
+
+The folders here are those of the package, their templates are in templates/LANGUAGE/; `register`
+adds a folder from anywhere.
 """
 
 from __future__ import annotations
 
 import shutil
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.util import find_spec
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from pathlib import Path
 from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, Protocol, cast
 
 from rigidsym.errors import KernelError
-from rigidsym.kernels.ir import Program
 
 if TYPE_CHECKING:
     from rigidsym.kernels.conversions.conversions import ConversionProgram
+    from rigidsym.kernels.ir import Program
+
+_DEFAULT = "numpy"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Target:
-    """One language that kernels are printed in, and what loading them needs, printing not."""
+    """One language that kernels are printed in; printing needs nothing, loading may."""
 
     about: str
-    ending: str  # of the main file, behind the name of the derivation
-    package: str = ""  # of Python, which the extra of the target's name brings
-    programs: tuple[str, ...] = ()  # of which one will do
-    has_single: bool = True  # whether its functions know single precision
+    ending: str  # of the main file, after the name of the derivation
+    package: str = ""  # of Python, which the extra of the target's name installs
+    programs: tuple[str, ...] = ()  # one of these is enough
+    has_single: bool = True  # whether its functions also compute in single precision
 
     @property
     def missing(self) -> str:
-        """What is not installed here of what loading needs; empty where nothing is."""
+        """What loading needs and is not installed here; empty if nothing is missing."""
         if self.package and find_spec(self.package) is None:
             return f"the package {self.package}"
         if self.programs and not any(map(shutil.which, self.programs)):
@@ -42,36 +52,8 @@ class Target:
         return ""
 
 
-TARGETS: Mapping[str, Target] = MappingProxyType(
-    {
-        "numpy": Target(about="NAME.py: a Python module that needs NumPy alone", ending=".py"),
-        "c": Target(
-            about="NAME.h, NAME.c: C99; rigidsym build makes the Python module NAME_c.py",
-            ending=".c",
-            programs=("cc", "gcc", "clang"),
-        ),
-        "numba": Target(
-            about="NAME_numba.py: a Python module that Numba compiles",
-            ending="_numba.py",
-            package="numba",
-        ),
-        "javascript": Target(
-            about="NAME.mjs: an ES module without dependencies",
-            ending=".mjs",
-            programs=("node",),
-            has_single=False,
-        ),
-        "jax": Target(
-            about="NAME_jax.py: a Python module for JAX; jit, vmap, grad",
-            ending="_jax.py",
-            package="jax",
-        ),
-    }
-)
-
-
 class Printer(Protocol):
-    """What the file of a target defines."""
+    """The contents of a target's printer.py."""
 
     RESERVED: frozenset[str]
 
@@ -82,13 +64,49 @@ class Printer(Protocol):
     def load(self, name: str, files: Mapping[str, str]) -> ModuleType: ...
 
 
+_KNOWN: dict[str, Target] = {}
+TARGETS: Mapping[str, Target] = MappingProxyType(_KNOWN)  # the default first
+
+
+def register(folder: Path) -> None:
+    """Add the language of a folder such as /home/me/fortran, under the folder's name.
+
+    Raises KernelError if there is a target of this name or if the folder is not one of a target.
+    """
+    name = folder.name
+    if name in TARGETS:
+        raise KernelError(f"there is a target {name} already")
+    if missing := [f for f in ("__init__.py", "printer.py") if not (folder / f).is_file()]:
+        raise KernelError(f"{folder} is not the folder of a target: no {' and no '.join(missing)}")
+    spec = spec_from_file_location(
+        f"{__name__}.{name}", folder / "__init__.py", submodule_search_locations=[str(folder)]
+    )
+    if spec is None or spec.loader is None:
+        raise KernelError(f"{folder / '__init__.py'} cannot be imported")
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    if not isinstance(getattr(module, "TARGET", None), Target):
+        raise KernelError(f"{folder / '__init__.py'} defines no TARGET of the class Target")
+    sys.modules[spec.name] = module
+    _KNOWN[name] = module.TARGET
+
+
 def check_target(target: str) -> None:
-    """Raises KernelError, naming the targets that there are, where this is none of them."""
+    """Raises KernelError, naming the known targets, if this is none of them."""
     if target not in TARGETS:
         raise KernelError(f"no target {target!r}; there is {', '.join(TARGETS)}")
 
 
 def printer(target: str) -> Printer:
-    """The file of a target; raises KernelError where there is none of this name."""
+    """The printer of a target; raises KernelError if there is none of this name."""
     check_target(target)
     return cast(Printer, import_module(f"{__name__}.{target}.printer"))
+
+
+def _register_shipped() -> None:
+    names = (path.parent.name for path in Path(__file__).parent.glob("*/printer.py"))
+    for name in sorted(names, key=lambda name: (name != _DEFAULT, name)):
+        _KNOWN[name] = import_module(f"{__name__}.{name}").TARGET
+
+
+_register_shipped()

@@ -12,7 +12,7 @@ from string import Template
 from rigidsym.kernels.conversions.conversions import Formula
 from rigidsym.kernels.conversions.formulas import MATRIX, Line
 from rigidsym.kernels.ir import Argument, Kernel, Number
-from rigidsym.kernels.targets.c.c_function import Function, function, listed
+from rigidsym.kernels.targets.c.function import Function, function, listed
 from rigidsym.kernels.targets.c.precision import PRECISIONS, Precision
 
 _NUMBER = re.compile(r"(?<![\w.])\d+\.\d+(?:e[-+]?\d+)?")

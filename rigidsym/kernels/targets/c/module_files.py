@@ -21,14 +21,14 @@ def module_files(
     environment = resources.environment(trim_blocks=True, lstrip_blocks=True)
     name = program.name
     functions = [_ufunc(kernel) for kernel in kernels]
-    glue = environment.get_template("kernels_c_module.c.jinja").render(
+    glue = environment.get_template("c/module.c.jinja").render(
         name=name,
         functions=functions,
         types=[(p.real, p.suffix) for p in PRECISIONS],
         most_types=max(len(function["types"].split(",")) for function in functions),
     )
     face = numpy.module_text(
-        program, conversions, "kernels_c.py.jinja", fill="_fill_compiled", name=name
+        program, conversions, "c/module.py.jinja", fill="_fill_compiled", name=name
     )
     return {f"{name}_c.py": face, f"{name}_module.c": glue}
 

@@ -1,0 +1,10 @@
+"""ES modules without dependencies."""
+
+from rigidsym.kernels.targets import Target
+
+TARGET = Target(
+    about="NAME.mjs: an ES module without dependencies",
+    ending=".mjs",
+    programs=("node",),
+    has_single=False,
+)

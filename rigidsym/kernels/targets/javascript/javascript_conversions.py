@@ -11,7 +11,7 @@ from textwrap import wrap
 from rigidsym.kernels.conversions.conversions import ConversionProgram, Formula
 from rigidsym.kernels.conversions.formulas import MATRIX, Line
 from rigidsym.kernels.conversions.unwrap import ChainUnwrapping, Unwrapping
-from rigidsym.kernels.targets.javascript.javascript_function import (
+from rigidsym.kernels.targets.javascript.function import (
     WIDTH,
     Function,
     Paragraph,

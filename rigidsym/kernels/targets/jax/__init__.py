@@ -1,0 +1,9 @@
+"""Python modules for JAX."""
+
+from rigidsym.kernels.targets import Target
+
+TARGET = Target(
+    about="NAME_jax.py: a Python module for JAX: jit, vmap, grad",
+    ending="_jax.py",
+    package="jax",
+)

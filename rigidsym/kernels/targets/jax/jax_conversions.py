@@ -6,8 +6,6 @@ from collections.abc import Iterator
 
 from rigidsym.kernels.conversions.conversions import ConversionProgram, Formula
 from rigidsym.kernels.conversions.formulas import MATRIX
-from rigidsym.kernels.targets.layout import bracketed, docstring, exploded
-from rigidsym.kernels.targets.numpy import printer as python
 from rigidsym.kernels.targets.numpy.numpy_conversions import (
     about_formula,
     assigned,
@@ -16,6 +14,8 @@ from rigidsym.kernels.targets.numpy.numpy_conversions import (
     ufunc,
     unwrap_text,
 )
+from rigidsym.kernels.targets.text import python
+from rigidsym.kernels.targets.text.layout import bracketed, docstring, exploded
 
 LIBRARY = {
     "np": "jnp",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import keyword
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -13,17 +12,13 @@ from rigidsym.errors import MissingExtra
 from rigidsym.kernels.conversions.conversions import ConversionProgram
 from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Program, names_in
 from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.targets import singular
-from rigidsym.kernels.targets.infix import infix
-from rigidsym.kernels.targets.layout import WIDTH, assignment_lines, bracketed, docstring
-from rigidsym.kernels.targets.numpy import printer as python
+from rigidsym.kernels.targets.text import python, remarks, statements
+from rigidsym.kernels.targets.text.infix import infix
+from rigidsym.kernels.targets.text.layout import WIDTH, assignment_lines, bracketed, docstring
 from rigidsym.system import resources
-from rigidsym.version import __version__
 
-TEMPLATE = "kernels_jax.py.jinja"
-RESERVED = frozenset(
-    {*keyword.kwlist, *FUNCTIONS, "jax", "jnp", "like", "parts", "both", "l", "O", "I"}
-)
+TEMPLATE = "jax/module.py.jinja"
+RESERVED = python.RESERVED | {"jax", "jnp", "like", "parts", "both"}
 _DERIVATIVES = 2  # that functions of n = |v| have: each takes two functions c_k more
 
 _show = partial(infix, functions={name: f"jnp.{name}" for name in FUNCTIONS})
@@ -33,7 +28,7 @@ def render(program: Program, conversions: ConversionProgram | None = None) -> di
     """The module, with the conversions where they are asked for."""
     converting = conversions.kernels if conversions else ()
     kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
-    last = singular.last_order(kernels)
+    last = statements.last_order(kernels)
     has_parts = any(kernel.parts for kernel in kernels)
     orders = range(FIRST_SERIES, last + 2 * _DERIVATIVES + 1) if last >= 0 else ()
     added = _converted(program, conversions)
@@ -53,8 +48,8 @@ def render(program: Program, conversions: ConversionProgram | None = None) -> di
             ),
             functions=functions,
             has_parts=has_parts,
-            has_divisors=any(map(singular.guards_of, kernels)),
-            series="\n".join(map(singular.entry, orders)),
+            has_divisors=any(map(statements.guards_of, kernels)),
+            series="\n".join(map(python.series_entry, orders)),
             has_formulas=bool(added.functions),
             unwrap=added.unwrap,
             np="jnp",
@@ -91,7 +86,7 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
     """The module itself; raises MissingExtra where JAX is not installed."""
     (source,) = files.values()
     try:
-        return python.python_module(f"{name}_jax", source)
+        return python.module_from(f"{name}_jax", source)
     except ModuleNotFoundError as error:
         raise MissingExtra("the target jax", "jax") from error
 
@@ -146,14 +141,14 @@ def _taken(kernel: Kernel) -> Iterator[str]:
 
 
 def _lines(kernel: Kernel) -> Iterator[str]:
-    for name, value in singular.grouped(kernel):
+    for name, value in statements.grouped(kernel):
         match value:
             case Guarded():
-                yield singular.guard_line(4, name, value, "_or_nan")
+                yield python.guard_line(4, name, value, "_or_nan")
             case dict():
-                yield singular.entire_line(4, value, "_entire")
-            case Call(function, argument):
-                yield bracketed(4, f"{name} = jnp.{function}(", [argument.text], ")")
+                yield python.entire_line(4, value, "_entire")
+            case Call(function):
+                yield python.call_line(4, name, f"jnp.{function}", value)
             case _:
                 yield assignment_lines(4, name, _show(value))
 
@@ -164,18 +159,14 @@ def _about(program: Program) -> Iterator[str | Sequence[str]]:
     yield " ".join(program.convention)
     yield f"Source: {program.source}."
     yield "Arguments, with the components on the last axis, in radians and SI units:"
-    yield python.arguments_table(program)
+    yield python.about_arguments(program)
     yield (
-        "All other axes broadcast. The functions are pure: jax.jit, vmap, grad, jvp and vjp "
-        "apply. Types are those of JAX: float32, or float64 where jax_enable_x64 is set and an "
-        "argument is float64. They run where JAX does, on a GPU too; tested on processors alone. "
-        "What the NumPy module has beside is not here: `out` and `threads`, since arrays of JAX "
-        "do not change and it shares work by itself, and scalar twins, since jax.jit of one "
-        "orientation is that."
+        "Leading axes broadcast. The functions are pure, so jax.jit, vmap, grad, jvp and vjp "
+        "apply. Types follow JAX: float32, or float64 if jax_enable_x64 is set and an argument is "
+        "float64. They run on every device of JAX; they are tested on CPUs only. JAX arrays are "
+        "immutable, so there is no `out`; there are no `threads`, since JAX parallelises by "
+        "itself, and no scalar twins."
     )
-    yield from singular.errors(program.kernels)
-    yield from singular.remarks(program.kernels)
-    yield (
-        f"Generated by rigidsym {__version__}; do not edit. The equations are those of the note "
-        "of the same name."
-    )
+    yield from remarks.errors(program.kernels)
+    yield from remarks.remarks(program.kernels)
+    yield remarks.GENERATED

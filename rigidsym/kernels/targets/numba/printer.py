@@ -13,11 +13,12 @@ from rigidsym.errors import MissingExtra
 from rigidsym.kernels.conversions.conversions import ConversionProgram
 from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Name, Number, Program
 from rigidsym.kernels.lowering.sincos import reduction
-from rigidsym.kernels.targets import TARGETS, singular
-from rigidsym.kernels.targets.infix import infix, literal
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.kernels.targets.numpy import printer as numpy
+from rigidsym.kernels.targets.text import python, statements
+from rigidsym.kernels.targets.text.infix import infix, literal
 
-TEMPLATE = "kernels_numba.py.jinja"
+TEMPLATE = "numba/module.py.jinja"
 RESERVED = numpy.RESERVED | {"njit"}
 _FUNCTIONS = {name: name for name in FUNCTIONS} | {"sqrt": "np.sqrt"}
 
@@ -25,7 +26,7 @@ _FUNCTIONS = {name: name for name in FUNCTIONS} | {"sqrt": "np.sqrt"}
 def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
     """The module; of the conversions, those that are no kernels stay with NumPy."""
     kernels = [*program.kernels, *(conversions.kernels if conversions else ())]
-    calls = [call for kernel in kernels for call in singular.calls_of(kernel).values()]
+    calls = [call for kernel in kernels for call in statements.calls_of(kernel).values()]
     last = max((call.order for call in calls if call.order is not None), default=-1)
     found = reduction(53)
     polynomials = list(zip(_falling(found.sine), _falling(found.cosine), strict=True))
@@ -52,7 +53,7 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
     if TARGETS["numba"].missing:
         raise MissingExtra("a module that Numba compiles", "numba")
     (source,) = files.values()
-    return numpy.python_module(f"{name}_numba", source)
+    return python.module_from(f"{name}_numba", source)
 
 
 def _falling(coefficients: Sequence[Fraction]) -> list[str]:
@@ -90,9 +91,9 @@ def _show(expression: Any) -> str:
 
 
 def _lines(kernel: Kernel) -> Iterator[str]:
-    calls = {call: name for name, call in singular.calls_of(kernel).items()}
+    calls = {call: name for name, call in statements.calls_of(kernel).items()}
     written: set[Call] = set()
-    for name, value in singular.grouped(kernel):
+    for name, value in statements.grouped(kernel):
         match value:
             case dict():
                 yield from _entire(value)

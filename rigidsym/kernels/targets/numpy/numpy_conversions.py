@@ -9,8 +9,8 @@ from string import Template
 from rigidsym.kernels.conversions.conversions import ConversionProgram, Formula
 from rigidsym.kernels.conversions.formulas import MATRIX, QUATERNION
 from rigidsym.kernels.conversions.unwrap import ChainUnwrapping, Unwrapping
-from rigidsym.kernels.targets.layout import WIDTH, bracketed, docstring, exploded
-from rigidsym.kernels.targets.numpy.numpy_function import OPTIONS, Additions, Function
+from rigidsym.kernels.targets.numpy.function import OPTIONS, Additions, Function
+from rigidsym.kernels.targets.text.layout import WIDTH, bracketed, docstring, exploded
 from rigidsym.system import resources
 
 _HELPERS = "kernels_numpy_conversions.jinja"

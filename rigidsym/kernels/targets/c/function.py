@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 
 from rigidsym.kernels.ir import FUNCTIONS, Call, Expression, Guarded, Kernel, Name, Number, names_in
-from rigidsym.kernels.targets import singular
 from rigidsym.kernels.targets.c.precision import PRECISIONS, Precision
-from rigidsym.kernels.targets.infix import infix, literal
-from rigidsym.kernels.targets.layout import bracketed
+from rigidsym.kernels.targets.text import statements
+from rigidsym.kernels.targets.text.infix import infix, literal
+from rigidsym.kernels.targets.text.layout import bracketed
 
 _FUNCTIONS = {name: name for name in FUNCTIONS}
 show = partial(infix, functions=_FUNCTIONS)
@@ -125,7 +125,7 @@ def _unused(kernel: Kernel) -> Iterator[str]:
     """What C is told of the parameters that this kernel has no use for."""
     wholes = [*(assignment.value for assignment in kernel.assignments), *kernel.outputs]
     used = {name for whole in wholes for name in names_in(whole)}
-    if all(call.function in ("sqrt", "abs") for call in singular.calls_of(kernel).values()):
+    if all(call.function in ("sqrt", "abs") for call in statements.calls_of(kernel).values()):
         yield "    (void)far;"
     yield from (f"    (void){name};" for name in kernel.components if name not in used)
 
@@ -133,8 +133,8 @@ def _unused(kernel: Kernel) -> Iterator[str]:
 def _lines(kernel: Kernel, precision: Precision) -> Iterator[str]:
     real, suffix = precision.real, precision.suffix
     written: set[Call] = set()
-    calls = {call: name for name, call in singular.calls_of(kernel).items()}
-    for name, value in singular.grouped(kernel):
+    calls = {call: name for name, call in statements.calls_of(kernel).items()}
+    for name, value in statements.grouped(kernel):
         match value:
             case dict():
                 yield from _entire(value, precision)

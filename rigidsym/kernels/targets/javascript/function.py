@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from rigidsym.kernels.targets.layout import filled
+from rigidsym.kernels.targets.text.layout import filled
 
 WIDTH = 88
 

@@ -1,9 +1,3 @@
-# What follows serves functions of n = |v|.
-
-# k: n^2 at the switch, c_(k-2)(0), and the Taylor coefficients of c_k in n^2.
-_SERIES = {{ series }}
-
-
 def _entire(square, *orders):
     """c_k of n² for each order k: c0 = cos n, c1 = sin n/n, c_(k+2) = (c_k(0) - c_k)/n².
 

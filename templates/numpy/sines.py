@@ -1,0 +1,56 @@
+def _exceptional(block, shape, *components):
+    """One orientation where Python's floats raise an error and arrays give inf or NaN."""
+    points = np.array(components, np.float64)[:, np.newaxis]
+    with np.errstate(all="ignore"):
+        values = block(*points)
+    flat = np.array([np.ravel(value)[0] for value in values])
+    return _tuples(flat.reshape(shape).tolist())
+
+
+def _tuples(value):
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+
+
+def _sin_cos(angle):
+    """Sine and cosine of an angle in radians, within 1.1 eps.
+
+    In double precision both follow from one tangent t of half the angle, as 2t/(1 + t²)
+    and (1 - t²)/(1 + t²): NumPy's tan costs no more than its sin, and on processors with
+    AVX-512 a sixth of it. The sine keeps its relative accuracy at multiples of pi. In
+    single precision NumPy's own sin and cos are the fastest.
+    """
+    if angle.dtype == np.float32:
+        return np.sin(angle), np.cos(angle)
+    t = np.multiply(0.5, angle)
+    np.tan(t, out=t)
+    cosine = t * t
+    scale = 1.0 + cosine
+    np.subtract(1.0, cosine, out=cosine)
+    t += t
+    t /= scale
+    cosine /= scale
+    return t, cosine
+
+
+def _sin(angle):
+    """The sine alone, as in `_sin_cos`."""
+    if angle.dtype == np.float32:
+        return np.sin(angle)
+    t = np.tan(0.5 * angle)
+    return (t + t) / (1.0 + t * t)
+
+
+def _cos(angle):
+    """The cosine alone, as in `_sin_cos`."""
+    if angle.dtype == np.float32:
+        return np.cos(angle)
+    t = np.tan(0.5 * angle)
+    square = t * t
+    return (1.0 - square) / (1.0 + square)
+
+
+def _sharp(cosine, angle):
+    """The cosine for a divisor: within 5 eps of its own size, however small, by np.cos."""
+    if angle.dtype == np.float32:
+        return cosine
+    return np.cos(angle, out=cosine, where=np.abs(cosine) < 0.25)
