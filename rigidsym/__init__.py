@@ -10,110 +10,86 @@
 Names are loaded on first use, so that `rigidsym --help` imports neither SymPy nor NumPy.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+import importlib as _importlib
+import typing as _typing
 
-from rigidsym.version import __version__
+from rigidsym.version import __version__ as __version__
 
-_HOMES = {
-    "derive": "rigidsym.motion",
-    "identify": "rigidsym.tools.identify.identify",
-    "inertia_of": "rigidsym.data.mass.inertia",
-    "principal_axes_of": "rigidsym.data.mass.principal_axes",
-    "RigidBody": "rigidsym.models.body",
-    "principal_moments": "rigidsym.models.body",
-    "general_inertia": "rigidsym.models.body",
-    "solid": "rigidsym.mechanics.mass.bodies",
-    "body_of": "rigidsym.mechanics.mass.bodies",
-    "Particle": "rigidsym.models.distribution",
-    "Particles": "rigidsym.models.distribution",
-    "Composite": "rigidsym.models.distribution",
-    "Part": "rigidsym.models.distribution",
-    "Identification": "rigidsym.tools.identify.identify",
-    "Motion": "rigidsym.motion",
-    "EulerAngles": "rigidsym.models.euler_angles",
-    "EULER_SEQUENCES": "rigidsym.models.euler_angles",
-    "RotationModel": "rigidsym.models.rotation",
-    "Turn": "rigidsym.models.rotation",
-    "chain": "rigidsym.models.chain",
-    "Quaternion": "rigidsym.models.quaternions",
-    "UnitQuaternion": "rigidsym.models.quaternions",
-    "CayleyKlein": "rigidsym.models.quaternions",
-    "AxisAngle": "rigidsym.models.quaternions",
-    "RotationVector": "rigidsym.models.vectors",
-    "GibbsVector": "rigidsym.models.vectors",
-    "ModifiedRodrigues": "rigidsym.models.vectors",
-    "DirectionCosines": "rigidsym.models.matrices",
-    "given": "rigidsym.models.matrices",
-    "rotation_from": "rigidsym.models.rotation_text",
-    "Citation": "rigidsym.models.rotation",
-    "Derivation": "rigidsym.mechanics.derivation",
-    "RigidsymError": "rigidsym.errors",
-    "NotARotation": "rigidsym.errors",
+_NAMES = {
+    "data.mass.inertia": "inertia_of",
+    "data.mass.principal_axes": "principal_axes_of",
+    "errors": "NotARotation RigidsymError",
+    "mechanics.derivation": "Derivation",
+    "mechanics.mass.bodies": "body_of solid",
+    "models.body": "RigidBody general_inertia principal_moments",
+    "models.chain": "chain",
+    "models.distribution": "Composite Part Particle Particles",
+    "models.euler_angles": "EULER_SEQUENCES EulerAngles",
+    "models.matrices": "DirectionCosines given",
+    "models.quaternions": "AxisAngle CayleyKlein Quaternion UnitQuaternion",
+    "models.rotation": "Citation RotationModel Turn",
+    "models.rotation_text": "rotation_from",
+    "models.vectors": "GibbsVector ModifiedRodrigues RotationVector",
+    "motion": "Motion derive",
+    "tools.identify.identify": "Identification identify",
 }
+_HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
+__all__ = sorted([*_HOMES, "__version__", "kernels"])
 
-__all__ = [
-    "EULER_SEQUENCES",
-    "AxisAngle",
-    "CayleyKlein",
-    "Citation",
-    "Composite",
-    "Derivation",
-    "DirectionCosines",
-    "EulerAngles",
-    "GibbsVector",
-    "Identification",
-    "ModifiedRodrigues",
-    "Motion",
-    "NotARotation",
-    "Part",
-    "Particle",
-    "Particles",
-    "Quaternion",
-    "RigidBody",
-    "RigidsymError",
-    "RotationModel",
-    "RotationVector",
-    "Turn",
-    "UnitQuaternion",
-    "__version__",
-    "body_of",
-    "chain",
-    "derive",
-    "general_inertia",
-    "given",
-    "identify",
-    "inertia_of",
-    "principal_axes_of",
-    "principal_moments",
-    "rotation_from",
-    "solid",
-]
-
-if TYPE_CHECKING:
-    from rigidsym.data.mass.inertia import inertia_of
-    from rigidsym.data.mass.principal_axes import principal_axes_of
-    from rigidsym.errors import NotARotation, RigidsymError
-    from rigidsym.mechanics.derivation import Derivation
-    from rigidsym.mechanics.mass.bodies import body_of, solid
-    from rigidsym.models.body import RigidBody, general_inertia, principal_moments
-    from rigidsym.models.chain import chain
-    from rigidsym.models.distribution import Composite, Part, Particle, Particles
-    from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
-    from rigidsym.models.matrices import DirectionCosines, given
-    from rigidsym.models.quaternions import AxisAngle, CayleyKlein, Quaternion, UnitQuaternion
-    from rigidsym.models.rotation import Citation, RotationModel, Turn
-    from rigidsym.models.rotation_text import rotation_from
-    from rigidsym.models.vectors import GibbsVector, ModifiedRodrigues, RotationVector
-    from rigidsym.motion import Motion, derive
-    from rigidsym.tools.identify.identify import Identification, identify
+if _typing.TYPE_CHECKING:
+    from rigidsym.data.mass.inertia import inertia_of as inertia_of
+    from rigidsym.data.mass.principal_axes import principal_axes_of as principal_axes_of
+    from rigidsym.errors import NotARotation as NotARotation, RigidsymError as RigidsymError
+    from rigidsym.mechanics.derivation import Derivation as Derivation
+    from rigidsym.mechanics.mass.bodies import body_of as body_of, solid as solid
+    from rigidsym.models.body import (
+        RigidBody as RigidBody,
+        general_inertia as general_inertia,
+        principal_moments as principal_moments,
+    )
+    from rigidsym.models.chain import chain as chain
+    from rigidsym.models.distribution import (
+        Composite as Composite,
+        Part as Part,
+        Particle as Particle,
+        Particles as Particles,
+    )
+    from rigidsym.models.euler_angles import (
+        EULER_SEQUENCES as EULER_SEQUENCES,
+        EulerAngles as EulerAngles,
+    )
+    from rigidsym.models.matrices import DirectionCosines as DirectionCosines, given as given
+    from rigidsym.models.quaternions import (
+        AxisAngle as AxisAngle,
+        CayleyKlein as CayleyKlein,
+        Quaternion as Quaternion,
+        UnitQuaternion as UnitQuaternion,
+    )
+    from rigidsym.models.rotation import (
+        Citation as Citation,
+        RotationModel as RotationModel,
+        Turn as Turn,
+    )
+    from rigidsym.models.rotation_text import rotation_from as rotation_from
+    from rigidsym.models.vectors import (
+        GibbsVector as GibbsVector,
+        ModifiedRodrigues as ModifiedRodrigues,
+        RotationVector as RotationVector,
+    )
+    from rigidsym.motion import Motion as Motion, derive as derive, kernels as kernels
+    from rigidsym.tools.identify.identify import (
+        Identification as Identification,
+        identify as identify,
+    )
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> _typing.Any:
+    if name == "kernels":  # the room, which is callable
+        return _importlib.import_module("rigidsym.kernels")
     if name not in _HOMES:
         raise AttributeError(f"module 'rigidsym' has no attribute {name!r}")
-    return getattr(import_module(_HOMES[name]), name)
+    return getattr(_importlib.import_module(f"rigidsym.{_HOMES[name]}"), name)
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_HOMES])
+    return __all__

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Collection
 from dataclasses import dataclass, fields, replace
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from rigidsym.errors import QuantityError
@@ -167,6 +168,23 @@ def derive(
             raise QuantityError(f"no quantity {name!r}; {offer(name, QUANTITIES)}")
     derivation = _derivation(rotation, wanted, body, has_theory=theory)
     return Motion(**{f.name: getattr(derivation, f.name) for f in fields(Derivation)})
+
+
+def kernels(
+    model: RotationModel | str,
+    target: str = "numpy",
+    *,
+    only: str | Collection[str] = (),
+    body: Body | None = None,
+    conversions: bool = False,
+    derivatives: Asked = (),
+) -> ModuleType:
+    """The functions of a rotation, loaded: `rs.kernels("ZYX").angular_velocity_body(q, q_dot)`.
+
+    `derive`, `Motion.kernels` and `load` in one step; raises what they raise.
+    """
+    motion = derive(model, only, body=body)
+    return motion.kernels(target, conversions=conversions, derivatives=derivatives).load()
 
 
 def _derivation(

@@ -15,7 +15,7 @@ import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from rigidsym.errors import BodyError, SpecError
 from rigidsym.kernels.lowering.derivatives import read_request
@@ -83,23 +83,24 @@ def read(source: str) -> DerivationSpec:
 
 def read_file(file: str) -> DerivationSpec:
     """A derivation file, by path or shipped name. Raises SpecError with all its faults."""
-    from rigidsym.spec import derivation_file
-
-    return derivation_file.read_file(file, vocabulary())
+    return _reader().read_file(file, vocabulary())
 
 
 def read_spec(text: str, *, source: str, name: str, folder: Path | None = None) -> DerivationSpec:
     """The text of a derivation file; see `derivation_file.read_spec`."""
-    from rigidsym.spec import derivation_file
-
-    return derivation_file.read_spec(text, vocabulary(), source=source, name=name, folder=folder)
+    return _reader().read_spec(text, vocabulary(), source=source, name=name, folder=folder)
 
 
 def read_record(request: object, *, source: str = "request") -> DerivationSpec:
     """The specification that a record (NAME.json) was made from. Raises SpecError."""
+    return _reader().from_data(request, vocabulary(), source=source)
+
+
+def _reader() -> Any:
+    """The reader of files, which a rotation named on the command line does not need."""
     from rigidsym.spec import derivation_file
 
-    return derivation_file.from_data(request, vocabulary(), source=source)
+    return derivation_file
 
 
 def vocabulary() -> Vocabulary:

@@ -14,6 +14,7 @@ from rigidsym.commands.command import command as make
 from rigidsym.commands.options import PrintingOptions, RotationOptions, with_options
 from rigidsym.commands.output_folder import report_other_files, with_existing_files
 from rigidsym.errors import RigidsymError
+from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import PDF, Output, integrated, output_of
 from rigidsym.spec.derivation_spec import DerivationSpec
@@ -87,8 +88,6 @@ def _write(output: Output, out: Path) -> tuple[list[Path], RigidsymError | None]
     written = [write_text(folder / name, text) for name, text in output.files.items()]
     if PDF not in output.spec.note:
         return written, None
-    from rigidsym.notes.formats.pdf import typeset
-
     try:
         paper = typeset(output.files[f"{output.name}.tex"])
     except RigidsymError as error:

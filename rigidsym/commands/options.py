@@ -18,6 +18,7 @@ from rigidsym.kernels.targets import check_target
 from rigidsym.motion import QUANTITIES
 from rigidsym.notes.formula.manner import CHOICES, DEFAULT
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
+from rigidsym.system.resources import overridden_by
 from rigidsym.text.names import offer
 
 _OPTION = "click option"
@@ -61,8 +62,6 @@ class TemplateOptions:
 
     def __post_init__(self) -> None:
         """Use the templates of the directory until the command ends."""
-        from rigidsym.system.resources import overridden_by
-
         if self.templates is not None:
             click.get_current_context().with_resource(overridden_by(self.templates))
 

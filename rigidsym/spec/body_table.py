@@ -18,8 +18,7 @@ from rigidsym.models.body import (
 from rigidsym.models.distribution import Distribution
 from rigidsym.spec.body_reader import BodyReader, Declared
 from rigidsym.spec.derivation_spec import Body
-from rigidsym.spec.distribution_table import KINDS as DISTRIBUTIONS
-from rigidsym.spec.distribution_table import keys_of, read_distribution
+from rigidsym.spec.distribution_table import KINDS as DISTRIBUTIONS, keys_of, read_distribution
 from rigidsym.spec.measured_table import read_known
 from rigidsym.spec.tables import Table
 

@@ -26,8 +26,13 @@ from rigidsym.kernels.lowering.derivatives import Derivative
 from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.schedule import write
-from rigidsym.mechanics.derivation import Argument as Vector
-from rigidsym.mechanics.derivation import Derivation, Measure, Singularities, Step
+from rigidsym.mechanics.derivation import (
+    Argument as Vector,
+    Derivation,
+    Measure,
+    Singularities,
+    Step,
+)
 from rigidsym.mechanics.quantities.energy import body_in_words
 from rigidsym.models.rotation import RotationModel
 

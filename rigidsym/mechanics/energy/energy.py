@@ -22,8 +22,7 @@ from rigidsym.errors import QuantityError
 from rigidsym.mechanics import particles
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.derivation import Derivation, Step
-from rigidsym.mechanics.energy import energy_claims as claims
-from rigidsym.mechanics.energy import momentum_forms
+from rigidsym.mechanics.energy import energy_claims as claims, momentum_forms
 from rigidsym.mechanics.kinematics import derive as kinematics
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass import inertia
