@@ -63,9 +63,7 @@ class ArrayReader:
     names: tuple[str, ...] | None = None
 
     def __init__(self, *arrays: NDArray[Any]) -> None:
-        self._maps = [
-            found for a in arrays if (found := getattr(a, "_mmap", None)) is not None
-        ]
+        self._maps = [found for a in arrays if (found := getattr(a, "_mmap", None)) is not None]
         if len(arrays) == 1 and arrays[0].dtype.names is not None:
             self.names, arrays = _fields(arrays[0])
         for array in arrays:

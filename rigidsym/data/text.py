@@ -248,7 +248,9 @@ class TextReader:
                 continue
             found = [fields[column].strip() for column in columns]
             points = [self._with_point(field) for field in found]
-            marks |= {"," if a != b else "." for a, b in zip(found, points, strict=True) if "." in b}
+            marks |= {
+                "," if a != b else "." for a, b in zip(found, points, strict=True) if "." in b
+            }
             if len(marks) > 1:
                 faults.append(f"line {number}: decimal commas and decimal points in one file")
                 marks.clear()

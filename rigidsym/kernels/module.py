@@ -71,27 +71,37 @@ def generate(
 ) -> KernelModule:
     """The kernels of all quantities of a derivation, for one target.
 
+    1. The printer of the target, with the names that its language reserves.
+    2. The derivatives that are asked for, as expressions.
+    3. All expressions lowered to kernels: single assignment, shared subexpressions, guards.
+    4. The conversions, lowered likewise.
+    5. The files, printed.
+
     `conversions` adds those between the coordinates, the unit quaternion and the matrix,
     `derivatives` those that are asked for: ["angular_velocity_body by q"]. Raises KernelError for
     an unknown target or derivative, for an expression that kernels cannot hold, and if no derived
     quantity depends on any input.
     """
-    chosen = printer(target)
-    wanted = derivatives_of(derivation, read_requests(derivatives))
-    program = lower(derivation, chosen.RESERVED, wanted)
-    if not (program.kernels or conversions):
-        derived = ", ".join(step.quantity.name for step in derivation.steps)
-        raise KernelError(
-            f"{derivation.name}: no function to write, since what is derived depends on nothing: "
-            f"{derived}; expected kernels = [], or another quantity"
-        )
-    converting: ConversionProgram | None = None
-    if conversions:
-        from rigidsym.kernels.conversions.conversions import lower_conversions
-        from rigidsym.mechanics.conversions.conversions import conversions_of
-
-        converting = lower_conversions(
-            derivation, conversions_of(derivation.model), chosen.RESERVED
-        )
-    files = chosen.render(program, converting)
+    language = printer(target)
+    asked = derivatives_of(derivation, read_requests(derivatives))
+    program = lower(derivation, language.RESERVED, asked)
+    converting = _converting(derivation, language.RESERVED) if conversions else None
+    if not (program.kernels or converting):
+        raise _nothing_to_write(derivation)
+    files = language.render(program, converting)
     return KernelModule(name=derivation.name, target=target, files=files)
+
+
+def _converting(derivation: Derivation, reserved: frozenset[str]) -> ConversionProgram:
+    from rigidsym.kernels.conversions.conversions import lower_conversions
+    from rigidsym.mechanics.conversions.conversions import conversions_of
+
+    return lower_conversions(derivation, conversions_of(derivation.model), reserved)
+
+
+def _nothing_to_write(derivation: Derivation) -> KernelError:
+    derived = ", ".join(step.quantity.name for step in derivation.steps)
+    return KernelError(
+        f"{derivation.name}: no function to write, since no quantity depends on an input: "
+        f"{derived}; expected kernels = [], or another quantity"
+    )

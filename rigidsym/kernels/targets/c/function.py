@@ -41,6 +41,10 @@ class Function:
     tile_call: Texts
     far_call: Texts
 
+    @property
+    def entries(self) -> range:
+        return range(self.outputs)
+
     def declared(self) -> dict[str, Texts]:
         return {"signature": self.signature, "array_signature": self.array_signature}
 

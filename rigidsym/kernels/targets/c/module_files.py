@@ -40,6 +40,7 @@ def _ufunc(kernel: Kernel) -> dict[str, Any]:
     return {
         "name": kernel.name,
         "arguments": len(kernel.arguments),
+        "places": range(len(kernel.arguments) + 1),  # of the arguments and the result
         "signature": f"{inputs}->({len(kernel.outputs)})",
         "types": ", ".join(t for t in each for _ in range(len(kernel.arguments) + 1)),
     }

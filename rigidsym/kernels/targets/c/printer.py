@@ -86,6 +86,7 @@ def _source(
     calls = [call for kernel in kernels for call in statements.calls_of(kernel).values()]
     orders = [call.order for call in calls if call.order is not None]
     called = {call.function for call in calls}
+    taken = sorted({len(a.components) for kernel in kernels for a in kernel.arguments})
     given = sorted({len(kernel.outputs) for kernel in kernels})
     formulas = conversions.formulas if conversions else ()
     texts = [v for f in formulas for v in (*(value for _, value in f.lines), *f.outputs)]
@@ -103,12 +104,18 @@ def _source(
         precisions=[precision.filled(max(orders, default=0)) for precision in PRECISIONS],
         two_over_pi=_words(),
         half_pi=repr(pi / 2),
-        counts=sorted({len(a.components) for kernel in kernels for a in kernel.arguments}),
-        given=given,
-        whole=_WHOLE,
+        takes=[(count, range(count)) for count in taken],
+        gives=[_columns(count) for count in given],
         has_fours=not _WHOLE.issuperset(given),
         functions=functions,
     )
+
+
+def _columns(count: int) -> tuple[int, range, range]:
+    """A length of rows, the columns written one by one, and the first of each four others."""
+    if count in _WHOLE:
+        return count, range(count), range(0)
+    return count, range(count - count % 4, count), range(0, count - 3, 4)
 
 
 def _words() -> str:
