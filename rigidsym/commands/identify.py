@@ -42,6 +42,13 @@ _BRACKETS = str.maketrans("[](){};", "      ,")
     metavar="RADIANS",
     help="Largest angle between data and reading.  [default: from the digits given]",
 )
+@click.option(
+    "--missing",
+    type=click.Choice(["error", "drop"]),
+    default="error",
+    show_default=True,
+    help="Samples in which a number is missing.",
+)
 @click.option("--all", "everything", is_flag=True, help="Show all readings, with all calls.")
 @click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
 @click.pass_context
@@ -51,19 +58,21 @@ def command(
     file: Path | None,
     columns: str | None,
     tolerance: float | None,
+    missing: str,
     everything: bool,
     as_json: bool,
     **texts: tuple[str, ...],
 ) -> None:
     """Name the convention that angles and a matrix or quaternion follow.
 
-    Give samples as options, each option once per sample, or in FILE. FILE is NPY, with 3 angles
-    and 9 or 4 numbers a row (then 3 rates and 3 components of the angular velocity), or text with
-    named columns: roll,pitch,yaw or phi,theta,psi or a1,a2,a3; r11,...,r33 or q1,...,q4 or
-    qw,qx,qy,qz; a1_dot,... or rate1,...; omega1,omega2,omega3. The exit code is 1 if no
-    convention fits.
+    Give samples as options, each option once per sample, or in FILE. FILE is NPY or Parquet, with
+    3 angles and 9 or 4 numbers a row (then 3 rates and 3 components of the angular velocity), or
+    text with named columns: roll,pitch,yaw or phi,theta,psi or a1,a2,a3; r11,...,r33 or q1,...,q4
+    or qw,qx,qy,qz; a1_dot,... or rate1,...; omega1,omega2,omega3. Units in names, such as
+    "yaw [mrad]", are converted. The exit code is 1 if no convention fits.
     """
-    found = _identified(file, texts, columns=columns, tolerance=tolerance)
+    drops = missing == "drop"
+    found = _identified(file, texts, columns=columns, tolerance=tolerance, drops_missing=drops)
     if as_json:
         click.echo(json.dumps(found.record(), indent=1, ensure_ascii=False))
     else:
@@ -79,6 +88,7 @@ def _identified(
     *,
     columns: str | None,
     tolerance: float | None,
+    drops_missing: bool,
 ) -> Identification:
     """The finding for a file, or for the samples in the texts of the options.
 
@@ -92,7 +102,7 @@ def _identified(
             raise OptionError(error.faults, count=error.count) from None
     if path is None or any(texts.values()):
         raise OptionError(["expected a file, or --angles with --matrix or --quaternion"])
-    return _from_path(path, columns, tolerance)
+    return _from_path(path, columns, tolerance, drops_missing)
 
 
 def _from_options(texts: Mapping[str, Sequence[str]], tolerance: float | None) -> Identification:
@@ -126,11 +136,19 @@ def _numbers(name: str, text: str, faults: list[str]) -> tuple[list[str], list[f
     return [label for label, _, _ in pairs if label], numbers
 
 
-def _from_path(path: Path, columns: str | None, tolerance: float | None) -> Identification:
+def _from_path(
+    path: Path, columns: str | None, tolerance: float | None, drops_missing: bool
+) -> Identification:
     """Samples from a file, with a bar if standard error is a terminal."""
     names = None if columns is None else [name.strip() for name in columns.split(",")]
     with bar(path.name) as progress:
         try:
-            return identify_file(path, columns=names, tolerance=tolerance, progress=progress)
+            return identify_file(
+                path,
+                columns=names,
+                tolerance=tolerance,
+                drops_missing=drops_missing,
+                progress=progress,
+            )
         except SampleError as error:
             raise error.of(path) from None

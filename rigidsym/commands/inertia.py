@@ -11,7 +11,7 @@ import click
 from rigidsym.commands.command import command as make
 from rigidsym.data.mass.inertia import inertia_of
 from rigidsym.data.mass.mesh import ENDINGS, mesh_inertia, read_mesh_file
-from rigidsym.data.mass.properties import Measured
+from rigidsym.data.mass.properties import MassProperties
 from rigidsym.system.progress import bar
 
 _POSITIVE = click.FloatRange(min=0, min_open=True)
@@ -61,7 +61,7 @@ def command(
 
 def _of_particles(
     file: Path, columns: str | None, scheduler: str | None, *, allow: bool
-) -> Measured:
+) -> MassProperties:
     names = None if columns is None else [name.strip() for name in columns.split(",")]
     if scheduler is not None:
         click.echo(f"rigidsym: connecting to {scheduler}", err=True)

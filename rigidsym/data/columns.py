@@ -68,6 +68,11 @@ class ColumnNames:
                 return found[0]
         return None
 
+    def has(self, name: str) -> bool:
+        """Whether a column has this name."""
+        key = plain(name)
+        return key in self.plain or any(key in others for others in self._others)
+
     def unit(self, column: int) -> str:
         """The unit that the name of a column states; empty without one."""
         stated = unit_in(self.names[column])

@@ -48,9 +48,11 @@ def npy_reader(path: Path) -> ArrayReader:
     except (ValueError, EOFError) as error:
         raise DataError(f"{path}: not an NPY file of numbers ({error})") from None
     try:
-        return ArrayReader(array)
+        reader = ArrayReader(array)
     except DataError as error:
         raise DataError(f"{path}: {error}") from None
+    reader.source = str(path)
+    return reader
 
 
 class ArrayReader:
@@ -61,6 +63,7 @@ class ArrayReader:
     """
 
     names: tuple[str, ...] | None = None
+    source = ""
 
     def __init__(self, *arrays: NDArray[Any]) -> None:
         self._maps = [found for a in arrays if (found := getattr(a, "_mmap", None)) is not None]
@@ -168,7 +171,7 @@ class ParquetReader:
             self._file = ParquetFile(path, memory_map=True)
         except arrow.ArrowException as error:
             raise DataError(f"{path}: not a Parquet file ({error})") from None
-        self._path = path
+        self.source = str(path)
         schema = self._file.schema_arrow
         self._names: tuple[str, ...] = tuple(schema.names)
         self.names: tuple[str, ...] | None = self._names
@@ -180,7 +183,7 @@ class ParquetReader:
 
     def place(self, row: int) -> str:
         """How messages name a row."""
-        return f"{self._path}, row {row + 1}"
+        return f"row {row + 1}"
 
     def chunks(
         self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
@@ -188,7 +191,7 @@ class ParquetReader:
         """As `TableReader.chunks`."""
         wrong = [self._names[place] for place in columns if not self._is_number[place]]
         if wrong:
-            raise DataError(f"{self._path}: no numbers in the columns {', '.join(wrong)}")
+            raise DataError(f"{self.source}: no numbers in the columns {', '.join(wrong)}")
         count, start = self._file.metadata.num_rows, 0
         chosen = [self._names[place] for place in dict.fromkeys([*columns, *kept])]
         for batch in self._file.iter_batches(batch_size=rows, columns=chosen):
@@ -202,7 +205,7 @@ class ParquetReader:
             start = end
 
     def spread(self, columns: Sequence[int], rows: int) -> Chunk:
-        """As `TableReader.spread`: the first rows of as many row groups."""
+        """As `TableReader.spread`: its first rows."""
         return next(self.chunks(columns, rows), Chunk(np.empty((0, len(columns))), _NO_ROWS, 1.0))
 
 

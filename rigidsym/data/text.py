@@ -56,7 +56,7 @@ class TextReader:
     eps = 0.0
 
     def __init__(self, path: Path, stream: BinaryIO | None = None) -> None:
-        self.path = path
+        self.path, self.source = path, str(path)
         self._stream = stream and io.BufferedReader(stream)  # type: ignore[type-var]
         self._size = 0 if stream else path.stat().st_size
         self._ahead: list[bytes] = []  # lines that were read to find the header
@@ -73,7 +73,7 @@ class TextReader:
         begin = sum(map(len, self._ahead[: self._skipped]))
         self._starts = [(0, self._skipped, begin)]  # row, line and byte where each chunk begins
 
-    def _opened(self) -> AbstractContextManager[io.BufferedReader]:
+    def _opened(self) -> AbstractContextManager[Any]:
         return nullcontext(self._stream) if self._stream else self.path.open("rb")
 
     def _bounded(self, file: io.BufferedReader, before: int = 0) -> Iterator[bytes]:
@@ -107,9 +107,9 @@ class TextReader:
     ) -> tuple[str, ...] | None:
         """The names of the columns, with the units of a second line in brackets."""
         if any(map(self._is_number, fields)):
-            named = self._fields(comments[-1]) if comments else []
-            is_header = len(named) == len(fields) and not any(map(is_number, named))
-            return tuple(named) if is_header else None
+            named = [self._fields(comment) for comment in reversed(comments)]
+            alike = (names for names in named if len(names) == len(fields))
+            return next((tuple(n) for n in alike if not any(map(is_number, n))), None)
         self._skipped = len(self._ahead)
         second = next(lines, b"")  # type: ignore[call-overload]
         self._ahead.append(second)
@@ -146,14 +146,14 @@ class TextReader:
         return field.replace(",", ".") if has_comma else field
 
     def place(self, row: int) -> str:
-        """How messages name a row: by its line."""
+        """How messages name a row: by its line, or else by its number."""
         if self._stream:
-            return f"{self.path}, row {row + 1}"
+            return f"row {row + 1}"
         first, number, begin = max(start for start in self._starts if start[0] <= row)
         with self.path.open("rb") as file:
             file.seek(begin)
             rows = (number for number, line in enumerate(file, number + 1) if _is_row(line))
-            return f"{self.path}, line {next(islice(rows, row - first, None))}"
+            return f"line {next(islice(rows, row - first, None))}"
 
     def chunks(
         self, columns: Sequence[int], rows: int = ROWS, kept: Sequence[int] = ()
@@ -162,7 +162,7 @@ class TextReader:
         row, number, byte = self._starts[0]
         del self._starts[1:]
         with self._opened() as file:
-            lines = islice(self._bounded(file), number, None)
+            lines: Iterator[bytes] = islice(self._bounded(file), number, None)
             if self._stream:
                 lines = chain(self._ahead[number:], self._bounded(file, len(self._ahead)))
             while some := list(islice(lines, rows)):

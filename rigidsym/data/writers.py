@@ -6,7 +6,7 @@ import csv
 import io
 import os
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, BinaryIO, Protocol
 
@@ -53,7 +53,12 @@ def table_writer(
         return
     with whole_file(path) as file:
         writer = _WRITERS[path.suffix.lower()](file, names, dtype)
-        yield writer
+        try:
+            yield writer
+        except BaseException:
+            with suppress(OSError):  # of a full disk, which was reported when rows were written
+                writer.finish()  # pyarrow would do it later, into a closed file
+            raise
         writer.finish()
         file.flush()
         os.fsync(file.fileno())

@@ -14,7 +14,7 @@ from rigidsym.models.distribution import Known
 from rigidsym.spec.body_reader import BodyReader, Declared
 
 if TYPE_CHECKING:
-    from rigidsym.data.mass.properties import Measured
+    from rigidsym.data.mass.properties import MassProperties
 
 Numbers = dict[str, Any]  # mass, centre (3,), inertia (3, 3)
 
@@ -91,7 +91,7 @@ def read_known(reader: BodyReader) -> Known | None:
     )
 
 
-def _known(reader: BodyReader, found: Measured) -> Known:
+def _known(reader: BodyReader, found: MassProperties) -> Known:
     """The numbers of a file as parameters.
 
     The record keeps the numbers in place of the file, so that it can be checked without the file.

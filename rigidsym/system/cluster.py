@@ -1,23 +1,55 @@
-"""A Dask cluster that is there already."""
+"""Work on the workers of a Dask cluster that is there already."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 from rigidsym.errors import ClusterError, MissingExtra
 
+T = TypeVar("T")
+R = TypeVar("R")
 PATIENCE = 10  # seconds for a scheduler to answer
+_AHEAD = 2  # tasks under way for each thread of a worker, so that none waits
+
+
+def on_cluster(
+    address: str, function: Callable[[Any], R], items: Iterable[T], argument: Callable[[T], Any]
+) -> Iterator[tuple[T, R]]:
+    """Each item with the function of its argument, in order; workers need rigidsym.
+
+    The function is sent once, and items are taken as workers become free. Raises MissingExtra
+    without Dask, and ClusterError if `address`, such as tcp://host:8786, is no address, if nobody
+    answers there, and if the cluster has no workers.
+    """
+    with _connected(address) as client:
+        most = _AHEAD * sum(client.nthreads().values())
+        waiting: deque[tuple[T, Any]] = deque()
+        sent = client.scatter(_Called(function), broadcast=True)
+        for item in items:
+            if len(waiting) == most:
+                first, future = waiting.popleft()
+                yield first, future.result()
+            waiting.append((item, client.submit(_call, sent, argument(item), pure=False)))
+        for first, future in waiting:
+            yield first, future.result()
+
+
+class _Called:
+    """A function as data, so that Dask does not take it for a task."""
+
+    def __init__(self, function: Callable[[Any], Any]) -> None:
+        self.function = function
+
+
+def _call(sent: _Called, argument: Any) -> Any:
+    return sent.function(argument)
 
 
 @contextmanager
-def connected(address: str) -> Iterator[Any]:
-    """A client of the scheduler at an address such as tcp://host:8786.
-
-    Raises MissingExtra without Dask, and ClusterError for an address that is none, where nobody
-    answers, and for a cluster without workers, which would never be done.
-    """
+def _connected(address: str) -> Iterator[Any]:
     try:
         from distributed import Client
     except ImportError:

@@ -154,7 +154,10 @@ def with_entry(row: int, column: int, value: float) -> np.ndarray:
         (rows(20)[:0], r"expected at least one particle, got none"),
         (rows(20)[:, :2], r"expected 3 columns \(x, y, z\) or 4 \(m, x, y, z\), got 2"),
         (rows(20) * (1, 1e200, 1, 1), r"too large for double precision"),
-        (rows(20).ravel(), r"expected real numbers of shape \(n, 3\) or \(n, 4\)"),
+        (
+            rows(20).ravel(),
+            r"expected numbers of shape \(rows, columns\), got float64 of",
+        ),
     ],
 )
 def test_what_is_no_cloud_is_refused(table, fault):
@@ -361,10 +364,10 @@ def test_the_command_shows_and_prints_as_json(tmp_path):
 @pytest.mark.parametrize(
     ("file", "options", "message"),
     [
-        ("cloud.csv", ["--density", "3"], "holds particles; --density is for a mesh"),
-        ("cloud.csv", ["--scale", "0.001"], "holds particles; --scale is for a mesh"),
-        ("ball.stl", ["--columns", "x,y,z"], "holds a mesh; --columns is for particles"),
-        ("ball.stl", [], "holds a mesh: expected --mass or --density"),
+        ("cloud.csv", ["--density", "3"], "is a file of particles; --density is for meshes"),
+        ("cloud.csv", ["--scale", "0.001"], "is a file of particles; --scale is for meshes"),
+        ("ball.stl", ["--columns", "x,y,z"], "is a mesh; --columns is for particles"),
+        ("ball.stl", [], "is a mesh: expected --mass or --density"),
         ("ball.stl", ["--mass", "-2"], "'--mass': -2.0 is not in the range x>0"),
     ],
 )

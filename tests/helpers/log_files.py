@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from helpers.command import RIGIDSYM
-from rigidsym.data.readers import rows_of
+from rigidsym.data.readers import reader_of
 
 COUNT = 1000
 VELOCITY = ("angular_velocity_body",)
@@ -49,5 +49,5 @@ WRITERS = {".npy": _as_npy, ".csv": _as_text, ".parquet": _as_parquet}
 
 
 def read(path: Path) -> np.ndarray:
-    rows = rows_of(path)
-    return np.concatenate([p.table for p in rows.pieces(range(rows.width))])
+    reader = reader_of(path)
+    return np.concatenate([chunk.table for chunk in reader.chunks(range(reader.width))])

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from helpers.log_files import COUNT, NAMES, VELOCITY, WRITERS, logged, read, run
-from rigidsym.data.readers import rows_of
+from rigidsym.data.readers import reader_of
 from rigidsym.errors import DataError
 from rigidsym.tools.evaluate.evaluate import evaluation
 
@@ -36,7 +36,7 @@ def expected(motion, table):
 def test_each_kind_of_file_to_each(motion, table, expected, tmp_path, source, target):
     given, result = tmp_path / f"given{source}", tmp_path / f"result{target}"
     WRITERS[source](given, table)
-    made = evaluation(motion, VELOCITY, given, result, piece=137).run()
+    made = evaluation(motion, VELOCITY, given, result, rows=137).run()
     assert made.rows == COUNT
     assert_array_equal(read(result), expected)
     assert sorted(tmp_path.iterdir()) == sorted([given, result])  # no draft, no marks
@@ -106,19 +106,6 @@ def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
 
 
-@pytest.mark.parametrize(
-    ("unit", "degrees", "message"),
-    [("deg", False, "--degrees is missing"), ("rad", True, "--degrees is given")],
-)
-def test_the_unit_in_a_name_is_the_oneread(motion, tmp_path, unit, degrees, message):
-    names = f"phi [{unit}],theta,psi,phi_dot,theta_dot,psi_dot"
-    (tmp_path / "log.csv").write_text(f"{names}\n1,2,3,4,5,6\n", encoding="utf-8")
-    place = tmp_path / "log.csv", tmp_path / "result.npy"
-    with pytest.raises(DataError, match=rf"column phi \[{unit}\]: {message}"):
-        evaluation(motion, VELOCITY, *place, degrees=degrees)
-    evaluation(motion, VELOCITY, *place, degrees=not degrees).run()
-
-
 def test_a_given_that_is_no_number_is_exit_code_2(tmp_path):
     (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
     files = tmp_path / "log.csv", "--out", tmp_path / "result.npy"
@@ -142,7 +129,7 @@ def test_what_is_no_table_of_numbers_is_refused(tmp_path):
     (tmp_path / "broken.parquet").write_bytes(b"nothing")
     for path in sorted(tmp_path.iterdir()):
         with pytest.raises(DataError, match=path.name):
-            rows_of(path)
+            reader_of(path)
 
 
 @pytest.mark.parametrize(
@@ -158,19 +145,19 @@ def test_what_is_no_table_of_numbers_is_refused(tmp_path):
 def test_a_file_that_is_no_text_is_named_for_what_it_is(tmp_path, content, found):
     (tmp_path / "log.csv").write_bytes(content)
     with pytest.raises(DataError, match=rf"log\.csv holds .*{found}; expected text in UTF-8"):
-        rows_of(tmp_path / "log.csv")
+        reader_of(tmp_path / "log.csv")
 
 
 @pytest.mark.parametrize(("content", "found"), [(b"x", "another kind of file"), (b"", "an empty")])
 def test_a_file_that_is_no_npy_is_named_without_advice_on_pickles(tmp_path, content, found):
     (tmp_path / "log.npy").write_bytes(content)
     with pytest.raises(DataError, match=rf"log\.npy: not an NPY file of numbers, but {found}"):
-        rows_of(tmp_path / "log.npy")
+        reader_of(tmp_path / "log.npy")
 
 
-def test_the_result_does_not_replace_what_isread(motion, table, tmp_path):
+def test_the_result_does_not_replace_the_file_that_is_read(motion, table, tmp_path):
     np.save(tmp_path / "given.npy", table)
-    with pytest.raises(DataError, match="what is read"):
+    with pytest.raises(DataError, match="the file that is read"):
         evaluation(motion, VELOCITY, tmp_path / "given.npy", tmp_path / "given.npy")
 
 
@@ -239,6 +226,6 @@ def test_a_cluster_gives_the_same(motion, table, expected, tmp_path):
     ) as cluster:
         address = cluster.scheduler_address
         evaluation(
-            motion, VELOCITY, tmp_path / "given.npy", result, piece=50, scheduler=address
+            motion, VELOCITY, tmp_path / "given.npy", result, rows=50, scheduler=address
         ).run()
     assert_array_equal(np.load(result), expected)

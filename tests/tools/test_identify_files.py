@@ -10,11 +10,12 @@ from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from helpers.conventions import GENERIC, holds, omega, rotation, sample
+from rigidsym.errors import DataError
 from rigidsym.tools.identify.columns import by_name, by_width
 from rigidsym.tools.identify.identify import identify_file
 from rigidsym.tools.identify.readings import VELOCITIES, Reading
 from rigidsym.tools.identify.samples import SampleError
-from rigidsym.tools.identify.sources import BLOCK, TextSource
+from rigidsym.tools.identify.sources import BLOCK, from_file
 from rigidsym.tools.identify.tolerance import rounding_of
 
 AEROSPACE = Reading(sequence="ZYX", passive=True, degrees=True, velocity=VELOCITIES[1])
@@ -170,7 +171,7 @@ def test_text_is_read_in_pieces_and_its_last_line_counts(tmp_path):
 def test_the_lines_looked_at_first_are_whole_and_from_all_over_the_file(tmp_path):
     table = rows(1009)
     path = written(tmp_path / "log.csv", table, HEADERS["named"])
-    found = TextSource(path).spread().angles
+    found = from_file(path).spread().angles
     known = {tuple(row): place for place, row in enumerate(table[:, :3].round(9).tolist())}
     places = [known[tuple(row)] for row in found.round(9).tolist()]
     assert set(range(60)) <= set(places)
@@ -201,11 +202,11 @@ def test_all_bad_samples_are_named_with_their_amounts():
     assert error.value.exit_code == 3
     assert str(error.value).splitlines() == [
         "bad samples",
-        "  sample 2: angles: a number that is not finite",
+        "  sample 2: angles: a number that is missing or not finite",
         "  sample 3: matrix: not a rotation, an entry of M Mᵀ is 0.21 off that of the unit matrix "
         "(det M = 1.331)",
         "  sample 4: matrix: not a rotation but a reflection, its determinant is -1",
-        "  sample 5: matrix: a number that is not finite",
+        "  sample 5: matrix: a number that is missing or not finite",
     ]
 
 
@@ -273,19 +274,23 @@ def test_missing_columns_are_named_with_the_nearest_that_are_there():
         ("HEADER\n1,2,3\n", ["line 2: 3 fields, expected 12"]),
         ("HEADER\nx,0,0,1,0,0,0,1,0,0,0,1\n", ["line 2: field 1: 'x' is not a number"]),
         (
-            "HEADER\n0,0,0,1,0,0,0,1,0,0,0,1\n\n0,,0,1,0,0,0,1,0,0,0,y\n0,0,0\n",
-            ["line 4: field 2: '' is", "line 4: field 12: 'y' is", "line 5: 3 fields"],
+            "HEADER\n0,0,0,1,0,0,0,1,0,0,0,1\n\n0,z,0,1,0,0,0,1,0,0,0,y\n0,0,0\n",
+            ["line 4: field 2: 'z' is", "line 4: field 12: 'y' is", "line 5: 3 fields"],
         ),
-        ("HEADER\n0,0,0,1,0,0,0,1,0,0,0,nan\n", ["line 2: matrix: a number that is not finite"]),
+        ("HEADER\n0,,0,1,0,0,0,1,0,0,0,1\n", ["line 2: angles: a number that is missing"]),
+        (
+            "HEADER\n0,0,0,1,0,0,0,1,0,0,0,nan\n",
+            ["line 2: matrix: a number that is miss"],
+        ),
         ("HEADER\n0,0,1_0,1,0,0,0,1,0,0,0,1\n", ["line 2: field 3: '1_0' is not a number"]),
         ("HEADER\n0,0,1°,1,0,0,0,1,0,0,0,1\n", ["'1°' is not a number; degrees are written"]),
-        ("a1;a2;a3;w;x;y;z\n0;0,5;0;1;0;0;0\n", ["'0,5' is not a number; a decimal takes a p"]),
+        ("a1;a2;a3;w;x;y;z\n0;0,5;0;1.0;0;0;0\n", ["line 2: decimal commas and decimal points"]),
     ],
 )
 def test_texts_that_do_not_read(tmp_path, text, messages):
     path = tmp_path / "bad.csv"
     path.write_text(text.replace("HEADER", "a1,a2,a3," + ",".join(MATRIX)))
-    with pytest.raises(SampleError) as error:
+    with pytest.raises(DataError) as error:
         identify_file(path)
     for message in messages:
         assert message in str(error.value)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rigidsym.data.mass.blocks import inertia_from
 from rigidsym.data.mass.principal_axes import principal_axes_of
-from rigidsym.data.mass.properties import Measured
+from rigidsym.data.mass.properties import MassProperties
 from rigidsym.errors import BodyError, MissingExtra
 
 Array = NDArray[np.float64]
@@ -58,7 +58,7 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
 
 def mesh_inertia(
     mesh: Mesh, *, mass: float | None = None, density: float | None = None, allow: bool = False
-) -> Measured:
+) -> MassProperties:
     """Mass, centre, inertia tensor and principal axes of a mesh that is filled uniformly.
 
     `mass` in kg or `density` in kg/m³. Raises BodyError for a surface that is open, whose faces
@@ -90,7 +90,7 @@ def mesh_inertia(
     assert factor is not None
     second = (second + second.T) * (factor / 2)
     inertia = inertia_from(second)
-    return Measured(
+    return MassProperties(
         count=len(mesh.faces),
         mass=volume * factor,
         centre=inside + first / volume,

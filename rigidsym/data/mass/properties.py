@@ -1,4 +1,4 @@
-"""What was measured of a body, and how it is shown."""
+"""Mass, centre and inertia tensor of a body in numbers, and how they are shown."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidsym.data.column_names import counted
+from rigidsym.data.columns import counted
 from rigidsym.data.mass.principal_axes import PrincipalAxes
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Measured:
+class MassProperties:
     """A body in numbers, SI units."""
 
     count: int  # particles, or faces of a mesh

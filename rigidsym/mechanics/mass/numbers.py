@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from rigidsym.data.mass.properties import Measured
+from rigidsym.data.mass.properties import MassProperties
 from rigidsym.models.body import Parameter, RigidBody, given_inertia
 
 _DIGITS = 30  # with which exact sums are evaluated
@@ -15,7 +15,7 @@ _ROUNDING = 1e-14  # of the largest moment: smaller numbers are what rounding le
 _LONGEST = 10**6  # a larger denominator is a measured number's
 
 
-def in_numbers(body: RigidBody) -> Measured | None:
+def in_numbers(body: RigidBody) -> MassProperties | None:
     """Mass, centre, inertia tensor, principal moments and axes; None where a symbol is left."""
     import numpy as np  # which no derivation needs
 
@@ -25,7 +25,7 @@ def in_numbers(body: RigidBody) -> Measured | None:
     if not all(entry.is_number for entry in (mass, *centre, *inertia)):
         return None
     tensor = np.array(inertia.tolist(), dtype=float)
-    return Measured(
+    return MassProperties(
         count=0,
         mass=float(mass),
         centre=np.array(list(centre), dtype=float),

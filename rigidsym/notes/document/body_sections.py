@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from rigidsym.data.mass.properties import Measured
+from rigidsym.data.mass.properties import MassProperties
 from rigidsym.mechanics.derivation import Derivation, Markup
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.mechanics.mass.numbers import in_numbers
@@ -198,7 +198,7 @@ def _numbers(body: RigidBody, notation: Notation) -> Iterator[Block]:
             yield Paragraph((found.principal.repeated,))
 
 
-def _principal(found: Measured) -> Table:
+def _principal(found: MassProperties) -> Table:
     """The principal moments in ascending order, each with its axis."""
     principal = found.principal
     return Table(

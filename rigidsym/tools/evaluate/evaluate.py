@@ -1,25 +1,23 @@
-"""A generated function over a file of any length, in bounded memory."""
+"""Generated functions over a file of any length, in bounded memory."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from time import monotonic
+from typing import BinaryIO
 
-from rigidsym.data.chunk import ROWS, Piece, Rows, Table
-from rigidsym.data.column_names import misnumbered
-from rigidsym.data.readers import rows_of
-from rigidsym.data.writers import Sink, check_ending, sink_for
+from rigidsym.data.chunk import ROWS, Chunk, Missing, Table, TableReader, without_missing
+from rigidsym.data.columns import ColumnNames, names_for
+from rigidsym.data.readers import reader_of
+from rigidsym.data.text import TextReader
+from rigidsym.data.writers import check_ending, table_writer
 from rigidsym.errors import DataError, RequestError
 from rigidsym.motion import Motion
-from rigidsym.system.files import naming
+from rigidsym.system.cluster import on_cluster
 from rigidsym.system.progress import Progress
-from rigidsym.tools.evaluate.claim import claimed
-from rigidsym.tools.evaluate.draft import Draft, Marks, asked_of
+from rigidsym.tools.evaluate.functions import functions_of
 from rigidsym.tools.evaluate.inputs import inputs_of
-from rigidsym.tools.evaluate.outputs import columns_of
 from rigidsym.tools.evaluate.work import Work
 
 
@@ -29,7 +27,6 @@ class Evaluated:
 
     path: Path
     rows: int
-    resumed: int  # rows that an earlier run had done
     columns: tuple[str, ...]
 
 
@@ -37,135 +34,120 @@ class Evaluated:
 class Evaluation:
     """One file to be read, what is computed of each row, and the file to be written."""
 
-    source: Path
-    rows: Rows
+    reader: TableReader
+    columns: tuple[int, ...]  # that are read
+    names: tuple[str, ...]  # of these
+    kept: tuple[int, ...]  # columns that are passed through
+    kept_names: tuple[str, ...]
     work: Work
     path: Path
-    piece: int = ROWS  # rows in memory at once
+    rows: int = ROWS  # in memory at once
+    missing: Missing = "error"
     scheduler: str | None = None
-    settle: float = 1.0  # seconds between the marks from which a killed run goes on
+    output: BinaryIO | None = None  # in place of the path
 
     def run(self, progress: Progress | None = None) -> Evaluated:
-        """Go through the file, from where an earlier run of the same stopped.
+        """Go through the file; the result is in place when all of it is there, or not at all.
 
-        Rows go to a draft beside the result, PATH.part, which becomes the result when all are
-        there. Raises DataError, and then leaves no draft, for rows that are no numbers, and
-        DraftInUse while another process writes the same result. Stopped otherwise, it leaves a
-        draft with marks to go on from, unless nothing was done.
+        Raises DataError for rows that are not numbers.
         """
-        with naming(self.path), claimed(self.path):
-            return self._run(progress)
-
-    def _run(self, progress: Progress | None) -> Evaluated:
-        draft = Draft(self.path, asked_of(self.source, self.work))
-        marks = draft.marks()
-        begun = marks.rows
-        try:
-            marks = self._filled(draft, marks, progress)
-        except BaseException as error:
-            if isinstance(error, DataError) or not draft.marks().rows:
-                draft.remove()
-            raise
-        names = tuple(map(str, self.work.columns))
-        return Evaluated(path=self.path, rows=marks.rows, resumed=begun, columns=names)
-
-    def _filled(self, draft: Draft, marks: Marks, progress: Progress | None) -> Marks:
-        names = list(map(str, self.work.columns))
-        sink = sink_for(self.path, names, self.rows.dtype, marks.sink)
-        try:
-            marks = self._appended(sink, draft, marks, progress)
-            draft.save(marks, sink)
-            sink.finish(marks.rows)
-        finally:
-            sink.close()
-        draft.forget()
-        return marks
-
-    def _appended(self, sink: Sink, draft: Draft, marks: Marks, progress: Progress | None) -> Marks:
-        """All rows; marks are kept now and then, for a disk takes its time, and on the way out."""
-        saved = monotonic()
-        try:
-            pieces = self.rows.pieces(self.work.inputs.columns, marks.source, self.piece)
-            for piece, table in self._computed(pieces):
-                place = sink.append(table)
-                marks = Marks(source=piece.end, sink=place, rows=marks.rows + len(table))
-                if monotonic() - saved >= self.settle:
-                    draft.save(marks, sink)
-                    saved = monotonic()
+        names = (*self.kept_names, *map(str, self.work.outputs))
+        count = 0
+        with table_writer(self.path, names, self.reader.dtype, self.output) as writer:
+            for chunk, table in self._computed(self._chunks()):
+                writer.append(table, chunk.kept)
+                count += len(table)
                 if progress is not None:
-                    progress(piece.share)
-        except BaseException:
-            if marks.rows:
-                with suppress(OSError):  # where the disk is full, the marks before these hold
-                    draft.save(marks, sink)
-            raise
-        return marks
+                    progress(chunk.share)
+        return Evaluated(path=self.path, rows=count, columns=names)
 
-    def _computed(self, pieces: Iterable[Piece]) -> Iterator[tuple[Piece, Table]]:
+    def _chunks(self) -> Iterator[Chunk]:
+        chunks = self.reader.chunks(self.columns, self.rows, self.kept)
+        return without_missing(self.reader, chunks, self.names, self.missing)
+
+    def _computed(self, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Table]]:
         if self.scheduler is None:
-            return ((piece, self.work.of(piece.table)) for piece in pieces)
-        from rigidsym.tools.evaluate.dask_work import on_cluster
-
-        return on_cluster(self.scheduler, self.work, pieces)
+            return ((chunk, self.work.of(chunk.table)) for chunk in chunks)
+        return on_cluster(self.scheduler, self.work.of, chunks, lambda chunk: chunk.table)
 
 
 def evaluation(
     motion: Motion,
     quantities: Sequence[str],
-    source: Path,
-    path: Path,
+    source: Path | BinaryIO,
+    path: Path | BinaryIO,
     *,
     columns: Sequence[str] | None = None,
     given: Mapping[str, float] | None = None,
+    keep: Sequence[str] = (),
+    missing: Missing = "error",
     degrees: bool = False,
     threads: int = 1,
     target: str = "numpy",
-    piece: int = ROWS,
+    rows: int = ROWS,
     scheduler: str | None = None,
 ) -> Evaluation:
-    """The quantities of a motion for each row of a file: NPY, Parquet, or text with separators.
+    """Functions of a motion for each row of a file: NPY, Parquet, or text with separators.
 
-    Columns are found by their names, or by `columns`; without either they are the arguments in
-    the order of the functions. `given` has numbers for arguments that are in no column.
-    `degrees`: angles and their rates are in degrees, in the file and in the result.
+    `quantities` are quantities or conversions (`quaternion`, `from_quaternion`,
+    `from_rotation_matrix`). `source` and `path` may be binary streams of text with commas. Columns
+    are found by their names, or by `columns`; without either they are the arguments in the order
+    of the functions. Units in names are converted; without one, angles and their rates are in
+    radians, with `degrees` in degrees, as they then are in the result. `given` has numbers for
+    arguments that are in no column. Columns to `keep` are written before the result. Rows with
+    `missing` numbers are an error, have NaN as their result, or are dropped.
 
-    Raises DataError for a file or columns that do not fit, RequestError for what cannot be, such as
-    an unknown ending of the result, and QuantityError.
+    Raises DataError for a file or columns that do not fit, RequestError for a request that cannot
+    be met, such as an unknown ending of the result, and QuantityError.
     """
-    check_ending(path)
-    rows = rows_of(source)
-    if columns is not None and len(columns) != rows.width:
-        raise DataError(misnumbered(source, rows.width, len(columns)))
-    if path.resolve() == source.resolve():
-        raise RequestError(f"{path}: the result would take the place of what is read")
-    chosen = motion.select(quantities)
-    for name in quantities:
-        if not chosen.step(name).quantity.inputs:
-            raise RequestError(f"{name} takes no input: it is the same for every row")
+    named = source if isinstance(source, Path) else Path("standard input")
+    output = None if isinstance(path, Path) else path
+    place = path if isinstance(path, Path) else Path("standard output")
+    if output is None:
+        check_ending(place)
+        if place.resolve() == named.resolve():
+            raise RequestError(f"{place}: the result would replace the file that is read")
+    reader = reader_of(source) if isinstance(source, Path) else TextReader(named, source)
+    functions = functions_of(motion, quantities, target, degrees=degrees)
     try:
-        inputs = inputs_of(
-            chosen,
-            quantities,
-            columns or rows.names,
-            rows.width,
-            given=given or {},
-            degrees=degrees,
+        names = reader.names if columns is None else names_for(columns, reader.width)
+        header = None if names is None else ColumnNames(names)
+        used, inputs = inputs_of(
+            functions.arguments, header, reader.width, given=given or {}, degrees=degrees
         )
+        kept = tuple(_kept(header, name) for name in keep)
     except RequestError:
         raise
     except DataError as error:
-        raise DataError(f"{source}: {error}") from None
-    if not inputs.columns:
-        raise RequestError(
-            f"{source}: nothing of it is used; the results are the same for every row"
-        )
+        raise DataError(f"{named}: {error}") from None
+    if not used:
+        raise RequestError(f"{named}: no column is used; the results are the same for every row")
     work = Work(
-        kernels=chosen.kernels(target),
-        calls=tuple((name, chosen.step(name).quantity.inputs) for name in quantities),
+        kernels=functions.kernels,
+        calls=functions.calls,
         inputs=inputs,
-        columns=columns_of(chosen, quantities, degrees=degrees),
+        outputs=functions.outputs,
         threads=threads,
     )
+    free = [name for a in functions.arguments if inputs[a.name].columns for name in a.names]
     return Evaluation(
-        source=source, rows=rows, work=work, path=path, piece=piece, scheduler=scheduler
+        reader=reader,
+        columns=used,
+        names=tuple(free),
+        kept=kept,
+        kept_names=() if header is None else tuple(header.names[column] for column in kept),
+        work=work,
+        path=place,
+        rows=rows,
+        missing=missing,
+        scheduler=scheduler,
+        output=output,
     )
+
+
+def _kept(header: ColumnNames | None, name: str) -> int:
+    if header is None:
+        raise DataError("the columns have no names for --keep; --columns gives them")
+    if (column := header.find([name])) is None:
+        raise DataError(f"no column {name} among {', '.join(header.names)}")
+    return column

@@ -1,7 +1,8 @@
-"""What is computed of each piece: whole in itself, so that it can be sent to another machine."""
+"""What is computed of each chunk: whole in itself, so that it can be sent to another machine."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from types import ModuleType
@@ -10,8 +11,38 @@ import numpy as np
 
 from rigidsym.data.chunk import Table
 from rigidsym.kernels.module import KernelModule
-from rigidsym.tools.evaluate.inputs import Inputs
-from rigidsym.tools.evaluate.outputs import Column, in_units
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Input:
+    """One argument of a function: columns of each chunk, or numbers that stay the same."""
+
+    columns: tuple[int, ...]  # of the chunk; empty if the numbers are given
+    given: tuple[float, ...] = ()
+    factors: tuple[float, ...] = ()  # to the units of the functions
+    shape: tuple[int, ...] = (-1,)  # of the argument of one row
+
+    def of(self, table: Table) -> Table:
+        """The argument of each row, (rows, *shape), in the units of the functions."""
+        if not self.columns:
+            return np.array(self.given, table.dtype).reshape(self.shape)
+        values = table[:, list(self.columns)]
+        if any(factor != 1 for factor in self.factors):
+            values = values * np.array(self.factors).astype(table.dtype)
+        return values.reshape(len(table), *self.shape)
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """One column of a result."""
+
+    name: str
+    unit: str = ""
+    in_degrees: bool = False
+
+    def __str__(self) -> str:
+        unit = self.unit.replace("rad", "deg", 1) if self.in_degrees else self.unit
+        return f"{self.name} [{unit}]" if unit else self.name
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -20,22 +51,26 @@ class Work:
 
     kernels: KernelModule
     calls: tuple[tuple[str, tuple[str, ...]], ...]  # functions, with the names of their arrays
-    inputs: Inputs
-    columns: tuple[Column, ...]  # of the result
+    inputs: Mapping[str, Input]  # by the names of the arrays
+    outputs: tuple[Output, ...]
     threads: int = 1
 
     def of(self, table: Table) -> Table:
-        """The results, (rows, columns), of float32 where the rows are."""
+        """The results, (rows, outputs), of float32 if the rows are."""
         kernels = self.kernels
         module = _loaded(kernels.name, kernels.target, tuple(kernels.files.items()))
         found = []
         for function, names in self.calls:
-            arguments = [self.inputs.arguments[name].of(table) for name in names]
+            arguments = [self.inputs[name].of(table) for name in names]
             values = np.asarray(getattr(module, function)(*arguments, threads=self.threads))
-            has_rows = any(self.inputs.arguments[name].columns for name in names)
+            has_rows = any(self.inputs[name].columns for name in names)
             rows = values.reshape(len(table) if has_rows else 1, -1)
             found.append(np.broadcast_to(rows, (len(table), rows.shape[1])))
-        return in_units(self.columns, np.concatenate(found, axis=1))
+        result: Table = np.concatenate(found, axis=1)
+        if any(output.in_degrees for output in self.outputs):
+            degrees = [180 / np.pi if output.in_degrees else 1 for output in self.outputs]
+            result = result * np.array(degrees).astype(table.dtype)
+        return result
 
 
 @lru_cache(maxsize=4)

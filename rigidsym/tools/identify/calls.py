@@ -105,15 +105,17 @@ def _sympy_motion(reading: Reading, velocity: Velocity) -> Iterator[str]:
 def _rigidsym(reading: Reading) -> Iterator[str]:
     passive = ", passive=True" if reading.passive else ""
     yield "import rigidsym as rs"
-    if reading.scalar_last is not None:
-        yield "from rigidsym.tools.identify.turns import quaternion_of"
     yield from _turns(reading)
     yield f'model = rs.EulerAngles("{reading.sequence}"{passive})'
-    yield "kernels = rs.derive(model).kernels().load()"
-    yield f"matrix = kernels.rotation_matrix({_radians(reading)})"
-    if reading.scalar_last is not None:
-        order = "[..., [1, 2, 3, 0]]" if reading.scalar_last else ""
-        yield f"quaternion = quaternion_of(matrix){order}"
+    if reading.scalar_last is None:
+        yield "kernels = rs.derive(model).kernels().load()"
+        yield f"matrix = kernels.rotation_matrix({_radians(reading)})"
+    else:
+        conjugate = " * [1, -1, -1, -1]" if reading.passive else ""
+        yield "kernels = rs.derive(model).kernels(conversions=True).load()"
+        yield f"quaternion = kernels.quaternion({_radians(reading)}){conjugate}"
+        if reading.scalar_last:
+            yield "quaternion = quaternion[..., [1, 2, 3, 0]]"
     if reading.velocity:
         name = f"angular_velocity_{reading.velocity.frame}"
         yield f"omega = kernels.{name}({_radians(reading)}, {_name(reading, 'rates')})"

@@ -1,45 +1,25 @@
-"""The columns of a file: by the names in its header or by those the user gives."""
+"""The columns of a table: by the names in its header or by those the user gives."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
-from itertools import product
 
-from rigidsym.data.column_names import counted, plain
+from rigidsym.data.columns import ColumnNames, counted
+from rigidsym.errors import DataError
 from rigidsym.tools.identify.readings import ANGLE_NAMES
 from rigidsym.tools.identify.samples import SampleError
+from rigidsym.tools.spellings import (
+    ANGLES,
+    MATRICES,
+    NAMED_QUATERNIONS,
+    OMEGAS,
+    QUATERNIONS,
+    RATES,
+    Names,
+)
 
-Names = tuple[str, ...]
-
-_INDICES = tuple(f"{row}{column}" for row, column in product("123", repeat=2))
-ANGLES: tuple[Names, ...] = (
-    ("angle1", "angle2", "angle3"),
-    ("a1", "a2", "a3"),
-    ("roll", "pitch", "yaw"),
-    ("roll", "pitch", "heading"),
-    ("phi", "theta", "psi"),
-    ("alpha", "beta", "gamma"),
-    ("rx", "ry", "rz"),
-)
-MATRICES: tuple[Names, ...] = tuple(
-    tuple(letter + index for index in _INDICES) for letter in ("r", "m", "a", "c", "dcm")
-)
-NAMED_QUATERNIONS: tuple[Names, ...] = (("qw", "qx", "qy", "qz"), ("w", "x", "y", "z"))
-QUATERNIONS: tuple[Names, ...] = (
-    *NAMED_QUATERNIONS,
-    ("q0", "q1", "q2", "q3"),
-    ("q1", "q2", "q3", "q4"),
-)
-OMEGAS: tuple[Names, ...] = (
-    ("omega1", "omega2", "omega3"),
-    ("omegax", "omegay", "omegaz"),
-    ("wx", "wy", "wz"),
-    ("gyrox", "gyroy", "gyroz"),
-    ("p", "q", "r"),
-)
-_RATES = ("{}dot", "{}rate", "d{}")
 _NUMBERED_RATES: Names = ("rate1", "rate2", "rate3")
 _WITHOUT_HEADER = {
     7: "angles and a quaternion",
@@ -51,7 +31,7 @@ _WITHOUT_HEADER = {
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Columns:
-    """Where in a row each part stands, counted from 0."""
+    """The position of each part in a row, counted from 0."""
 
     angles: tuple[int, ...]
     attitude: tuple[int, ...]  # nine for a matrix, row by row; four for a quaternion
@@ -59,14 +39,27 @@ class Columns:
     omega: tuple[int, ...] = ()
     names: Names = ANGLE_NAMES  # of the angles
     scalar_last: bool | None = None  # of a quaternion whose names tell which is the scalar
+    factors: tuple[float, ...] = ()  # of all columns used; none if all are 1
+    converted: tuple[str, ...] = ()  # what they convert: "yaw from cdeg to deg"
 
     @property
     def used(self) -> list[int]:
         return [*self.angles, *self.attitude, *self.rates, *self.omega]
 
+    @property
+    def is_matrix(self) -> bool:
+        return len(self.attitude) == 9
+
+    @property
+    def layouts(self) -> tuple[bool | None, ...]:
+        """Whether the scalar of a quaternion may be last; None for a matrix."""
+        if self.is_matrix:
+            return (None,)
+        return (False, True) if self.scalar_last is None else (self.scalar_last,)
+
 
 def by_width(width: int) -> Columns:
-    """The columns of an array without names; raises SampleError for a width that says nothing."""
+    """The columns of an array without names; raises SampleError for other widths than 7, 12, ..."""
     if width not in _WITHOUT_HEADER:
         known = "; ".join(f"{number} ({parts})" for number, parts in _WITHOUT_HEADER.items())
         raise SampleError(
@@ -85,79 +78,107 @@ def by_width(width: int) -> Columns:
     )
 
 
-def by_name(header: Sequence[str]) -> Columns:
-    """The columns that a header names; others are left alone.
+def by_name(names: Sequence[str]) -> Columns:
+    """The columns that a header names; others are not read.
 
     Angles, and quaternions whose names do not tell which is the scalar, keep the order of the
-    file. Raises SampleError for what is missing, with the nearest names that are there.
+    file. Raises SampleError for missing columns, with the nearest names that are there, for two
+    columns of one name, and for units that are not those of angles and their rates.
     """
-    names = [plain(name) for name in header]
-    angles = tuple(sorted(_nearest(ANGLES, names), key=_order(names)))
-    attitude = _attitude(names)
-    rates, omega = _rates_of(angles, names), _nearest(OMEGAS, names)
-    has_velocity = bool({*rates, *omega} & set(names))
+    try:
+        return _by_name(ColumnNames(names))
+    except DataError as error:
+        raise error if isinstance(error, SampleError) else SampleError([str(error)]) from None
+
+
+def _by_name(header: ColumnNames) -> Columns:
+    angles = tuple(sorted(_nearest(ANGLES, header), key=_order(header)))
+    attitude = _attitude(header)
+    rates, omega = _rates_of(angles, header), _nearest(OMEGAS, header)
+    has_velocity = any(map(header.has, (*rates, *omega)))
     wanted = (*angles, *attitude, *((*rates, *omega) if has_velocity else ()))
     faults = _missing(wanted, header)
     if faults:
         faults.append("--columns names the columns in their order, for a file with other names")
-    if {_share(_nearest(groups, names), names) for groups in (MATRICES, QUATERNIONS)} == {1.0}:
+    if {_share(_nearest(groups, header), header) for groups in (MATRICES, QUATERNIONS)} == {1.0}:
         faults.append("both a matrix and a quaternion are named; leave one out")
     if faults:
         raise SampleError(faults)
+    parts = [[header.find([name]) or 0 for name in part] for part in (angles, attitude)]
+    for part in (rates, omega):
+        parts.append([header.find([name]) or 0 for name in part] if has_velocity else [])
+    factors = [*_factors(header, parts[0], ""), *[1.0] * len(parts[1])]
+    factors += [factor for part in parts[2:] for factor in _factors(header, part, "/s")]
+    used = [column for part in parts for column in part]
     return Columns(
-        angles=tuple(map(names.index, angles)),
-        attitude=tuple(map(names.index, attitude)),
-        rates=tuple(map(names.index, rates)) if has_velocity else (),
-        omega=tuple(map(names.index, omega)) if has_velocity else (),
+        angles=tuple(parts[0]),
+        attitude=tuple(parts[1]),
+        rates=tuple(parts[2]),
+        omega=tuple(parts[3]),
         names=angles,
         scalar_last=_scalar_last(attitude),
+        factors=tuple(factors) if any(factor != 1 for factor in factors) else (),
+        converted=tuple(
+            header.names[column]
+            for column, factor in zip(used, factors, strict=True)
+            if factor != 1
+        ),
     )
 
 
-def _attitude(names: Sequence[str]) -> Names:
+def _factors(header: ColumnNames, columns: Sequence[int], per: str) -> list[float]:
+    """To radians if a unit is a multiple of them, and else to degrees: (columns,)."""
+    stated = [header.unit(column).casefold() for column in columns]
+    in_radians = any(unit.lstrip("numµ").startswith("rad") for unit in stated)
+    unit = ("rad" if in_radians else "deg") + per
+    found = [header.factor(column, unit) for column in columns]
+    return [1.0 if factor is None or abs(factor - 1) < 1e-15 else factor for factor in found]
+
+
+def _attitude(header: ColumnNames) -> Names:
     """The names of the matrix or of the quaternion, whichever is there more fully."""
-    matrix, quaternion = _nearest(MATRICES, names), _nearest(QUATERNIONS, names)
-    if _share(matrix, names) >= _share(quaternion, names):
+    matrix, quaternion = _nearest(MATRICES, header), _nearest(QUATERNIONS, header)
+    if _share(matrix, header) >= _share(quaternion, header):
         return matrix
-    in_file = tuple(sorted(quaternion, key=_order(names)))
+    in_file = tuple(sorted(quaternion, key=_order(header)))
     if quaternion in NAMED_QUATERNIONS and _scalar_last(in_file) is None:
         return quaternion
     return in_file
 
 
 def _scalar_last(names: Names) -> bool | None:
-    """Whether w stands behind x, y, z; None where names or order tell nothing."""
+    """Whether w comes after x, y, z; None if names or order do not tell."""
     for scalar, *vector in NAMED_QUATERNIONS:
         if names in ((scalar, *vector), (*vector, scalar)):
             return names[-1] == scalar
     return None
 
 
-def _order(names: Sequence[str]) -> Callable[[str], int]:
-    """Sorts by the place in the file; what is not there comes last."""
-    return lambda name: names.index(name) if name in names else len(names)
+def _order(header: ColumnNames) -> Callable[[str], int]:
+    """Sorts by the position in the file; missing names come last."""
+    return lambda name: (header.find([name]) or 0) if header.has(name) else len(header.names)
 
 
-def _nearest(trios: Iterable[Names], names: Sequence[str]) -> Names:
+def _nearest(groups: Iterable[Names], header: ColumnNames) -> Names:
     """The group of which the largest share is there; the first of equals."""
-    return max(trios, key=lambda trio: _share(trio, names))
+    return max(groups, key=lambda group: _share(group, header))
 
 
-def _share(group: Names, names: Sequence[str]) -> float:
-    return sum(name in names for name in group) / len(group)
+def _share(group: Names, header: ColumnNames) -> float:
+    return sum(map(header.has, group)) / len(group)
 
 
-def _rates_of(angles: Names, names: Sequence[str]) -> Names:
+def _rates_of(angles: Names, header: ColumnNames) -> Names:
     """The names of the rates in this header: of each angle, or numbered."""
-    groups = [tuple(form.format(angle) for angle in angles) for form in _RATES]
-    return _nearest([*groups, _NUMBERED_RATES], names)
+    groups = [tuple(form.format(angle) for angle in angles) for form in RATES]
+    return _nearest([*groups, _NUMBERED_RATES], header)
 
 
-def _missing(wanted: Sequence[str], header: Sequence[str]) -> list[str]:
-    """What to say of the columns that are not there: those that are nearly, then all others."""
-    there = {plain(name): name.strip() for name in header}
+def _missing(wanted: Sequence[str], header: ColumnNames) -> list[str]:
+    """Messages on missing columns: those with similar names first, then all others."""
+    there = dict(zip(header.plain, header.names, strict=True))
     free = [name for name in there if name not in wanted]
-    lacking = [name for name in wanted if name not in there]
+    lacking = [name for name in wanted if not header.has(name)]
     near = {name: get_close_matches(name, free, n=2) for name in lacking}
     faults = [
         f"no column {name}: did you mean {' or '.join(there[match] for match in found)}?"

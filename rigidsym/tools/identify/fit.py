@@ -9,8 +9,9 @@ from functools import cache
 
 import numpy as np
 
+from rigidsym.data.text import MOST_SHOWN
 from rigidsym.tools.identify.readings import VELOCITIES, Reading, Velocity, distinct
-from rigidsym.tools.identify.samples import MOST_SHOWN, SLACK, Block, SampleError, check
+from rigidsym.tools.identify.samples import SLACK, Block, SampleError, check
 from rigidsym.tools.identify.sources import Source
 from rigidsym.tools.identify.tolerance import Tolerance, check_tolerance, tolerances
 from rigidsym.tools.identify.turns import Array, Table
@@ -55,27 +56,27 @@ def fit(
     """
     check_tolerance(tolerance)
     slack = max(SLACK, 2 * (tolerance or 0))
-    block, faults = check(source.spread(), source.place, slack)
+    block, faults, _ = check(source.spread(), source.place, slack)
     if not len(block):
         deque(_good(source, slack), maxlen=0)  # raises, and names all of them
-        raise SampleError(faults)
+        raise SampleError(faults or ["no samples"])
     scale = _scale(block)
     chosen, candidates = _narrowed(source, block, tolerance, scale)
     tally = _Tally(candidates, chosen, scale)
-    for piece in _good(source, slack):
-        tally.add(piece)
+    for block in _good(source, slack):
+        tally.add(block)
         if progress:
-            progress(piece.done)
+            progress(block.done)
     return Outcome(matches=tally.matches(source), tolerance=chosen, scale=scale)
 
 
 def _good(source: Source, slack: float) -> Iterator[Block]:
-    """Every block; raises SampleError after the last where one of them had faults."""
+    """Every block; raises SampleError after the last if one of them had faults."""
     faults: list[str] = []
     count = 0
     for block in source.blocks():
-        good, wrong = check(block, source.place, slack)
-        count += len(wrong)
+        good, wrong, more = check(block, source.place, slack)
+        count += more
         faults += wrong[: MOST_SHOWN - len(faults)]
         if not count:
             yield good
@@ -128,7 +129,7 @@ def _narrowed(
     source: Source, block: Block, asked: float | None, scale: float
 ) -> tuple[Tolerance, list[Reading]]:
     """The readings that fit a few rows, or the nearest alone, and the tolerance for the rest."""
-    table = _everything(source.layouts)
+    table = _everything(source.columns.layouts)
     angles = table.residuals(block.angles, block.orientation())
     readings = np.array(table.readings)
     in_degrees = np.array([reading.degrees for reading in readings])

@@ -68,14 +68,17 @@ def identify_file(
     *,
     columns: Sequence[str] | None = None,
     tolerance: float | None = None,
+    drops_missing: bool = False,
     progress: Progress | None = None,
 ) -> Identification:
-    """The same for an NPY or a text file, of which a piece at a time is in memory.
+    """The same for an NPY, Parquet or text file, which is read in chunks.
 
-    `columns` names the columns where the file does not, with `-` for one to leave out.
-    `progress` is called with the share of the file that is done.
+    `columns` names the columns if the file does not, with `-` for one to leave out. Samples in
+    which a number is missing are an error, unless `drops_missing`. `progress` is called with the
+    share of the file that is done.
     """
-    return identify_source(from_file(Path(path), columns), tolerance=tolerance, progress=progress)
+    source = from_file(Path(path), columns, drops_missing=drops_missing)
+    return identify_source(source, tolerance=tolerance, progress=progress)
 
 
 def identify_source(
@@ -91,8 +94,9 @@ def identify_source(
         nearest=None if is_fit else answers[0],
         tolerance=outcome.tolerance,
         samples=answers[0].samples,
-        tried=len(list(distinct(source.layouts))) * (len(VELOCITIES) if has_velocity else 1),
-        names=source.names,
+        tried=len(list(distinct(source.columns.layouts)))
+        * (len(VELOCITIES) if has_velocity else 1),
+        names=source.columns.names,
         has_velocity=has_velocity,
         further=separation([answer.reading for answer in answers], outcome),
     )
@@ -100,3 +104,7 @@ def identify_source(
 
 def _answer(match: Match) -> Answer:
     return Answer(**{field.name: getattr(match, field.name) for field in fields(match)})
+
+
+def _count(layouts: Sequence[bool | None], has_velocity: bool) -> int:
+    return len(list(distinct(layouts))) * (len(VELOCITIES) if has_velocity else 1)

@@ -10,18 +10,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidsym.errors import RigidsymError
+from rigidsym.data.text import MOST_SHOWN
+from rigidsym.errors import DataError
 from rigidsym.tools.identify.turns import Array, quaternion_of
 
 SLACK = 0.05  # how far M Mᵀ may be from 1, and |q| from 1, before the data are refused
-MOST_SHOWN = 10
 _WIDTHS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
 
 
-class SampleError(RigidsymError):
+class SampleError(DataError):
     """Samples that cannot be read: all faults at once, each with its place."""
-
-    exit_code: ClassVar[int] = 3
 
     def __init__(
         self, faults: Sequence[str], *, count: int | None = None, path: Path | None = None
@@ -104,24 +102,26 @@ class Block:
 
 def check(
     block: Block, place: Callable[[int], str], slack: float = SLACK
-) -> tuple[Block, list[str]]:
-    """The good rows, and what is wrong with each of the others.
+) -> tuple[Block, list[str], int]:
+    """The good rows, the first faults of the others, and the number of faults.
 
-    Wrong are numbers that are not finite, matrices that are not rotations, quaternions that are
-    not of unit length; `slack` is how far off the last two may be.
+    Faults are numbers that are missing or not finite, matrices that are not rotations, and
+    quaternions that are not of unit length; `slack` is how far off the last two may be.
     """
     finite = np.ones(len(block), bool)
     faults: list[tuple[int, str]] = []
     for name, part in block.parts.items():
         good = np.isfinite(part).all(axis=1)
         finite &= good
-        faults += [(row, f"{name}: a number that is not finite") for row in block.rows[~good]]
+        faults += [
+            (row, f"{name}: a number that is missing or not finite") for row in block.rows[~good]
+        ]
     rest = block.at(finite)
     turns = _turns(rest, slack)
-    faults += [
-        (int(rest.rows[k]), _what_is_wrong(rest, k)) for k in np.flatnonzero(~turns).tolist()
-    ]
-    return rest.at(turns), [f"{place(row)}: {fault}" for row, fault in sorted(faults)]
+    wrong = np.flatnonzero(~turns).tolist()
+    faults += [(int(rest.rows[k]), _what_is_wrong(rest, k)) for k in wrong]
+    said = [f"{place(row)}: {fault}" for row, fault in sorted(faults)[:MOST_SHOWN]]
+    return rest.at(turns), said, len(faults)
 
 
 def _turns(block: Block, slack: float) -> NDArray[np.bool_]:

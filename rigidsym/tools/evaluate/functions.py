@@ -1,0 +1,113 @@
+"""The functions that `eval` can call: quantities of a derivation, and conversions."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from rigidsym.errors import QuantityError, RequestError
+from rigidsym.kernels.module import KernelModule
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.motion import Motion
+from rigidsym.tools.evaluate.work import Output
+
+CONVERSIONS = ("quaternion", "from_quaternion", "from_rotation_matrix")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Argument:
+    """A vector or matrix that a function takes, with a name and a unit for each component."""
+
+    name: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    shape: tuple[int, ...] = (-1,)
+
+
+_QUATERNION = Argument(name="quaternion", names=("qw", "qx", "qy", "qz"), units=("",) * 4)
+_MATRIX = Argument(
+    name="matrix",
+    names=tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)),
+    units=("",) * 9,
+    shape=(3, 3),
+)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Functions:
+    """Functions of one module, their arguments, and the columns of their results."""
+
+    kernels: KernelModule
+    calls: tuple[tuple[str, tuple[str, ...]], ...]  # each with the names of its arguments
+    arguments: tuple[Argument, ...]  # of all of them
+    outputs: tuple[Output, ...]
+
+
+def derived_for(names: Sequence[str]) -> tuple[str, ...]:
+    """The quantities to derive for some functions."""
+    return tuple(name for name in names if name not in CONVERSIONS) or ("rotation_matrix",)
+
+
+def functions_of(motion: Motion, names: Sequence[str], target: str, *, degrees: bool) -> Functions:
+    """Some functions of a motion, which has derived what they need.
+
+    Raises QuantityError for an unknown name, and RequestError for a quantity without inputs.
+    """
+    chosen = motion.select(derived_for(names))
+    converts = not {*CONVERSIONS}.isdisjoint(names)
+    kernels = chosen.kernels(target, conversions=converts)
+    calls = tuple((name, _inputs(chosen, kernels, name)) for name in names)
+    wanted = {argument for _, taken in calls for argument in taken}
+    known = [
+        *(Argument(name=a.name, names=a.names, units=a.units) for a in chosen.arguments),
+        _QUATERNION,
+        _MATRIX,
+    ]
+    outputs = tuple(
+        Output(name, unit, degrees and is_angle(unit))
+        for function in names
+        for name, unit in _results(chosen, function)
+    )
+    return Functions(
+        kernels=kernels,
+        calls=calls,
+        arguments=tuple(argument for argument in known if argument.name in wanted),
+        outputs=outputs,
+    )
+
+
+def is_angle(unit: str) -> bool:
+    """Whether a unit holds radians: rad, rad/s, rad/s^2."""
+    return unit.split("/")[0] == "rad"
+
+
+def _inputs(motion: Motion, kernels: KernelModule, name: str) -> tuple[str, ...]:
+    if name not in CONVERSIONS:
+        if not (inputs := motion.step(name).quantity.inputs):
+            raise RequestError(f"{name} takes no input: it is the same for every row")
+        return inputs
+    function = getattr(kernels.load(), name, None)
+    if function is None:
+        raise QuantityError(f"this rotation has no function {name}")
+    taken = [
+        p.name for p in inspect.signature(function).parameters.values() if p.kind != p.KEYWORD_ONLY
+    ]
+    first = {"from_quaternion": "quaternion", "from_rotation_matrix": "matrix"}.get(name, taken[0])
+    return (first, *taken[1:])
+
+
+def _results(derivation: Derivation | Motion, name: str) -> Iterable[tuple[str, str]]:
+    """The names and units of the columns of a result, entries row by row."""
+    if name == "quaternion":
+        return zip(_QUATERNION.names, _QUATERNION.units, strict=True)
+    of_coordinates = {"from_quaternion": "q", "from_rotation_matrix": "q"}
+    of_coordinates |= {f"rates_from_angular_velocity_{f}": "q_dot" for f in ("space", "body")}
+    if name in of_coordinates:
+        argument = derivation.argument(of_coordinates[name])
+        return zip(argument.names, argument.units, strict=True)
+    step = derivation.step(name)
+    indices = product(*(range(1, size + 1) for size in step.shape))
+    names = ["_".join(filter(None, [name, "".join(map(str, index))])) for index in indices]
+    return [(each, step.quantity.unit) for each in names]
