@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics.derivation import Derivation, Step
-from rigidsym.mechanics.kinematics import derive as kinematics
+from rigidsym.mechanics.derive import Body, derive as derivation_of
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
-from rigidsym.models.body import BodyDescription, RigidBody
-from rigidsym.models.distribution import Distribution
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.formula.manner import DEFAULT, Manner
@@ -27,7 +25,6 @@ if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
     from rigidsym.notes.note import Note
 
-Body = RigidBody | BodyDescription | Distribution
 QUANTITIES = (*QUANTITY_NAMES, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES)
 
 
@@ -166,7 +163,7 @@ def derive(
     for name in wanted:
         if name not in QUANTITIES:
             raise QuantityError(f"no quantity {name!r}; {offer(name, QUANTITIES)}")
-    derivation = _derivation(rotation, wanted, body, has_theory=theory)
+    derivation = derivation_of(rotation, wanted, body=body, theory=theory)
     return Motion(**{f.name: getattr(derivation, f.name) for f in fields(Derivation)})
 
 
@@ -185,18 +182,3 @@ def kernels(
     """
     motion = derive(model, only, body=body)
     return motion.kernels(target, conversions=conversions, derivatives=derivatives).load()
-
-
-def _derivation(
-    model: RotationModel, only: Collection[str], body: Body | None, *, has_theory: bool
-) -> Derivation:
-    if has_theory:
-        from rigidsym.mechanics.lecture.numbering import NEEDED, with_theory
-
-        wanted = only and {*only, *NEEDED}
-        return with_theory(_derivation(model, wanted, body, has_theory=False))
-    if body is None:
-        return kinematics.derive(model, only)
-    from rigidsym.mechanics.energy import energy
-
-    return energy.derive(model, body, only)

@@ -49,19 +49,29 @@ class Proof:
         return self.status == "exact"
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+Shape = Literal["scalar", "vector", "matrix"]  # (), (n,) and (m, n) in kernels and JSON
+
+
+@dataclass(frozen=True, slots=True)
 class Quantity:
     """What a step defines."""
 
     name: str  # in Python, in kernels, in JSON
     symbol: Markup
-    definition: Markup  # how it follows: C⁻¹(dR/dt Rᵀ)
     about: str  # words: "angular velocity, space components"
-    unit: str  # SI, "" for a pure number
-    inputs: tuple[str, ...]  # the arguments it depends on, by name: "q", "q_dot", ...
-    is_vector: bool = False  # shape (n,) in kernels, where the expression is an n x 1 matrix
-    is_scalar: bool = False  # shape (), where the expression is a 1 x 1 matrix
+    unit: str = ""  # SI, "" for a pure number
+    inputs: tuple[str, ...] = ()  # the arguments it depends on, by name: "q", "q_dot", ...
+    shape: Shape = "matrix"  # the expression of a vector is n x 1, that of a scalar 1 x 1
+    definition: Markup = Markup("", "")  # how it follows: C⁻¹(dR/dt Rᵀ)
     source: Citation | None = None
+
+    @property
+    def is_vector(self) -> bool:
+        return self.shape == "vector"
+
+    @property
+    def is_scalar(self) -> bool:
+        return self.shape == "scalar"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -100,6 +110,17 @@ class StepPrinter(Protocol):
     def latex(self, step: Step) -> str: ...
 
     def text(self, step: Step) -> str: ...
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What the derivation of one quantity comes to, before it is a numbered step."""
+
+    expression: sp.ImmutableMatrix
+    because: str
+    proofs: tuple[Proof, ...] = ()
+    vector_form: VectorForm | None = None
+    definition: Markup | None = None  # if the step says better what it follows from
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -11,7 +11,7 @@ from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets.javascript import printer as javascript
 from rigidsym.mechanics.derivation import Derivation, Markup, Quantity, Step
-from rigidsym.mechanics.kinematics import derive as kinematics
+from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.models.rotation import RotationModel
 from rigidsym.page.stage import has_turns
 
@@ -47,7 +47,7 @@ class Functions:
 
 def functions_of(model: RotationModel) -> Functions:
     """All that the page of a model evaluates."""
-    derivation = kinematics.derive(model, (*SHOWN, _WITH_A_MARGIN))
+    derivation = derivation_of(model, (*SHOWN, _WITH_A_MARGIN))
     steps = (replace(step, number=0) for step in (*derivation.steps, *_more(derivation)))
     program = lower(replace(derivation, steps=tuple(steps)), javascript.RESERVED)
     return Functions(

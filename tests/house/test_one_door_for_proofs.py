@@ -13,7 +13,7 @@ from rigidsym.algebra.integrate import Integrator
 from rigidsym.errors import BodyError, DerivationError
 from rigidsym.mechanics.derivation import VectorTerm
 from rigidsym.mechanics.kinematics.vector_forms import Vectors
-from rigidsym.mechanics.mass import inertia
+from rigidsym.mechanics.mass import derive as mass
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.models.distribution import Solid
 
@@ -75,8 +75,8 @@ def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch, quantity):
 
 
 def test_a_wrong_shift_of_an_inertia_tensor_is_refused(monkeypatch):
-    right = inertia._moved
-    monkeypatch.setattr(inertia, "_moved", lambda mass, by: 2 * right(mass, by))
+    right = mass._moved
+    monkeypatch.setattr(mass, "_moved", lambda m, by: 2 * right(m, by))
     with pytest.raises(DerivationError, match="is false"):
         rs.derive("ZXZ", ["inertia_tensor_point"], body=rs.solid("cone"))
 

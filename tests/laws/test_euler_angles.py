@@ -11,7 +11,7 @@ import sympy as sp
 from helpers.motions import derived
 from helpers.parametrisations import MOVING, Moving
 from helpers.witness import CONVENTIONS, agree, evaluate, mp, number
-from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 
 FRAMES = ("space", "body")

@@ -11,7 +11,7 @@ from sympy import cos, sin
 from sympy.physics.vector import dynamicsymbols
 
 from helpers.witness import agree, evaluate, paths, values_along
-from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.so3 import elementary, hat
 

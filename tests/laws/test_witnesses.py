@@ -26,7 +26,7 @@ from helpers.witness import (
     values_along,
 )
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 
 ANGLES = dynamicsymbols("phi theta psi")

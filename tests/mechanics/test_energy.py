@@ -15,8 +15,7 @@ from sympy.physics.mechanics import Point, ReferenceFrame, RigidBody, inertia
 from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
-from benchmarks import energy as energy_benchmark
-from benchmarks import sympy_energy
+from benchmarks import energy as energy_benchmark, sympy_energy
 from helpers.witness import (
     Path,
     agree,

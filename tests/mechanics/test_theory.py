@@ -18,8 +18,8 @@ import rigidsym as rs
 from helpers.witness import derivative, evaluate, hat, mp, paths, rotation, unhat, values_along
 from rigidsym.errors import DerivationError, ModelError, SpecError
 from rigidsym.mechanics.derivation import Statement
-from rigidsym.mechanics.lecture import theory as theory_of
-from rigidsym.mechanics.lecture.theory import theory
+from rigidsym.mechanics.lecture import derive as theory_of
+from rigidsym.mechanics.lecture.derive import theory
 from rigidsym.notes.formats.pdf import missing_programs, typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show

@@ -20,7 +20,7 @@ from helpers.parametrisations import (
 )
 from helpers.witness import derivative, evaluate, hat, mp, number, paths, unhat
 from rigidsym.errors import ExpressionError, ModelError, QuantityError
-from rigidsym.mechanics.kinematics import derive as kinematics
+from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.motion import derive
@@ -91,7 +91,7 @@ def test_the_rotation_vector_has_the_form_of_the_textbooks():
 def test_eight_turns_are_proved_turn_by_turn():
     text = " ".join(f"{axis}(a_{k})" for k, axis in enumerate("zxzyxzyx", start=1))
     names = ("angular_velocity_space", "angular_velocity_body")
-    motion = kinematics.derive(rotation_from(text), only=names)
+    motion = derivation_of(rotation_from(text), only=names)
     assert motion.is_proved
     assert tuple(step.quantity.name for step in motion.steps) == names
     path = paths(1, size=8)[0]
@@ -106,7 +106,7 @@ def test_turns_are_no_longer_than_the_sum_that_they_add_up_to():
     counts = []
     for size in range(1, 7):
         text = " ".join(f"{'zxzyxz'[k]}(a_{k + 1})" for k in range(size))
-        motion = kinematics.derive(rotation_from(text), only=("angular_velocity_space",))
+        motion = derivation_of(rotation_from(text), only=("angular_velocity_space",))
         counts.append(sp.count_ops(motion.angular_velocity_space))
     assert all(first < second for first, second in pairwise(counts))
     assert counts[2] <= 36
@@ -153,7 +153,7 @@ def test_wrong_options_are_refused():
     with pytest.raises(ModelError, match="expected 4 different names"):
         rotation_from("quaternion", names=["a", "b", "c"])
     with pytest.raises(QuantityError, match="no quantity speed"):
-        kinematics.derive(rotation_from("ZXZ"), only=("speed",))
+        derivation_of(rotation_from("ZXZ"), only=("speed",))
 
 
 def test_vectors_are_printed_as_vectors():
@@ -200,7 +200,7 @@ def test_a_name_is_a_coordinate_or_a_constant():
 
 
 def test_a_step_of_many_turns_is_proved_by_itself():
-    motion = kinematics.derive(
+    motion = derivation_of(
         rotation_from("z(a_1) x(a_2) z(a_3) x(a_4) y(a_5)"), only=("spin_matrix",)
     )
     assert "dR/dt·Rᵀ = C(Ω)" in [proof.claim.text for proof in motion.proofs]

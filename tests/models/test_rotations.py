@@ -37,7 +37,7 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import AlgebraError, DerivationError, ModelError, NotARotation
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.mechanics.derive import derive
 from rigidsym.models.so3 import elementary, time_function
 
 DERIVED: dict[str, Derivation] = {}

@@ -18,7 +18,7 @@ from helpers.elements import ODD, Elements, odd_model
 from helpers.motions import derived
 from rigidsym.errors import AlgebraError
 from rigidsym.mechanics.derivation import Markup
-from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.notes.formats.html import _parts, escape
 from rigidsym.notes.formats.mathml import mathml

@@ -16,7 +16,7 @@ from markdown_it import MarkdownIt
 import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.errors import MissingExtra
-from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.rotation import Citation
 from rigidsym.models.so3 import elementary, time_function

@@ -11,7 +11,7 @@ import sympy as sp
 import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.mechanics.derivation import Derivation, Markup, Place, Proof, Singularity
-from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.rotation import LECTURE, Citation, RotationModel
 from rigidsym.models.so3 import elementary, time_function

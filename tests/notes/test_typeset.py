@@ -11,7 +11,7 @@ from sympy import Rational, pi, symbols
 import rigidsym as rs
 from helpers.typesetting import BEGIN, END, bound_together
 from rigidsym.errors import MissingTool, ToolFailed
-from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.mechanics.derive import derive
 from rigidsym.models.chain import axis_turn
 from rigidsym.models.chain import chain as chain_of
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles

@@ -34,7 +34,7 @@ from rigidsym.mechanics.conversions.turn_chain import (
     known_claims,
 )
 from rigidsym.mechanics.derivation import Markup, Proof, Quantity, Step
-from rigidsym.mechanics.kinematics.derive import derive
+from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.quaternions import UnitQuaternion
 from rigidsym.models.rotation import Citation, RotationModel
@@ -54,11 +54,10 @@ _RODRIGUES = Citation(
 QUATERNION = Quantity(
     name="quaternion",
     symbol=P,
-    definition=Markup("", ""),
     about="unit quaternion of the rotation, scalar first",
     unit="",
     inputs=("q",),
-    is_vector=True,
+    shape="vector",
     source=_RODRIGUES,
 )
 UNIT = "_unit"  # ends the names of what holds for quaternions of length one

@@ -6,26 +6,14 @@ One algorithm for every rotation model, in the model's ring (lecture, eq. 15 and
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
-from rigidsym.errors import QuantityError
 from rigidsym.mechanics import claims
-from rigidsym.mechanics.derivation import (
-    OF_RATES,
-    Derivation,
-    Markup,
-    Proof,
-    Quantity,
-    Singularities,
-    Step,
-    VectorForm,
-)
+from rigidsym.mechanics.derivation import Found, Markup, Proof
 from rigidsym.mechanics.kinematics import composition
 from rigidsym.mechanics.kinematics.composition import hat
 from rigidsym.mechanics.kinematics.rates import Inverse
@@ -41,86 +29,22 @@ from rigidsym.mechanics.quantities.kinematics import (
     ROTATION,
     SPACE,
     Frame,
-    quantities,
 )
-from rigidsym.mechanics.singularities.singularities import singularities_of
-from rigidsym.models.rotation import RotationModel
 
 
-def derive(model: RotationModel, only: Collection[str] = ()) -> Derivation:
-    """The kinematics of a rotation model, each step proved.
+def steps(values: Values, only: Collection[str] = ()) -> Iterator[tuple[str, Found]]:
+    """(name, what was found) of the quantities that are wanted and that the model has.
 
-    `only` names the quantities to derive; all that the model has where it is empty.
-
-    Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over,
-    AlgebraError for expressions that the ring cannot hold, and QuantityError for unknown names
-    and for quantities that the model has not.
+    The matrix is proved to be a rotation in any case: all else rests on it. Raises NotARotation
+    if R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over.
     """
-    unknown = ", ".join(name for name in only if name not in _STEPS)
-    if unknown:
-        raise QuantityError(f"no quantity {unknown}; there are {', '.join(_STEPS)}")
-    work = _Kinematics(Values(model))
-    steps = tuple(_numbered(work, only))
-    absent = ", ".join(sorted(set(only) - {step.quantity.name for step in steps}))
-    if absent:
-        raise QuantityError(
-            f"{model.name} has no quantity {absent}: its rate matrix has no inverse, since its "
-            "rates do not give every angular velocity"
-        )
-    return Derivation(
-        name=model.name,
-        title=model.title,
-        model=model,
-        arguments=tuple(work.values.arguments.values()),
-        steps=steps,
-        singularities=None if only and OF_RATES.isdisjoint(only) else work.singularities(),
-    )
-
-
-def _numbered(work: _Kinematics, only: Collection[str]) -> Iterator[Step]:
-    """The steps that are wanted and that the model has."""
-    units = set(work.values.arguments["q_dot"].units)
-    table = quantities(
-        passive=work.model.passive,
-        coordinates=len(work.model.coordinates),
-        rate_unit=units.pop() if len(units) == 1 else "",
-    )
-    rotation = work.rotation_matrix()  # in any case: all else rests on its being a rotation
-    constants = work.model.constants
-    number = 0
+    work = _Kinematics(values)
+    rotation = work.rotation_matrix()
     for name, find in _STEPS.items():
-        if only and name not in only:
-            continue
-        found = rotation if name == "rotation_matrix" else find(work)
-        if found is not None:
-            number += 1
-            yield Step(
-                number=number,
-                quantity=_with_parameters(table[name], found.expression, constants),
-                expression=found.expression,
-                because=found.because,
-                proofs=found.proofs,
-                vector_form=found.vector_form,
-            )
-
-
-def _with_parameters(
-    quantity: Quantity, expression: sp.ImmutableMatrix, constants: Collection[sp.Symbol]
-) -> Quantity:
-    """The quantity, with the constants of the model among its inputs where it holds any."""
-    if not constants or expression.free_symbols.isdisjoint(constants):
-        return quantity
-    return replace(quantity, inputs=(*quantity.inputs, "parameters"))
-
-
-@dataclass(frozen=True, slots=True)
-class _Found:
-    """What one step comes to."""
-
-    expression: sp.ImmutableMatrix
-    because: str
-    proofs: tuple[Proof, ...]
-    vector_form: VectorForm | None = None
+        if not only or name in only:
+            found = rotation if name == "rotation_matrix" else find(work)
+            if found is not None:
+                yield name, found
 
 
 class _Kinematics:
@@ -132,7 +56,7 @@ class _Kinematics:
         self.present = presenter_for(values.codec)
         self.prove = Prover(values.model, values.codec)
 
-    def rotation_matrix(self) -> _Found:
+    def rotation_matrix(self) -> Found:
         values, symbol = self.values, self._shown_symbol
         if values.factors:
             residual = composition.orthogonality(values.factors)
@@ -161,9 +85,9 @@ class _Kinematics:
                 return f"The matrix of the turn is written out{turned_over}."
         return f"The turns are multiplied from left to right{turned_over}."
 
-    def rotation_rate(self) -> _Found:
+    def rotation_rate(self) -> Found:
         spin = self._shown_spin
-        return _Found(
+        return Found(
             self.present.matrix(self._shown(self.values.R_dot)),
             "The matrix is differentiated entry by entry, by the chain rule.",
             (
@@ -172,7 +96,7 @@ class _Kinematics:
             ),
         )
 
-    def spin_matrix(self) -> _Found:
+    def spin_matrix(self) -> Found:
         spin, symbol = self._shown_spin, claims.spin_of(self._shown_symbol)
         proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol)), *self._composed()]
         because = "The derivative is multiplied by the transpose; the product is skew"
@@ -180,7 +104,7 @@ class _Kinematics:
             operator = claims.is_operator(BODY.omega, symbol, "-")
             proofs.append(self.prove.vanishes(spin + hat(self.values.omega_body), operator))
             because += ", and it is the operator of −Ω′, not of Ω"
-        return _Found(self.present.matrix(spin), f"{because}.", tuple(proofs))
+        return Found(self.present.matrix(spin), f"{because}.", tuple(proofs))
 
     def _composed(self) -> tuple[Proof, ...]:
         """Where Ω was composed turn by turn: that it is the vector of dR/dt Rᵀ."""
@@ -191,7 +115,7 @@ class _Kinematics:
         claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
         return (self.prove.vanishes(residual, claim),)
 
-    def angular_velocity_space(self) -> _Found:
+    def angular_velocity_space(self) -> Found:
         values = self.values
         if values.factors:
             (proof,) = self._composed()
@@ -212,7 +136,7 @@ class _Kinematics:
             proof = self.prove.vanishes(values.spin - hat(values.omega_space), claim)
         return self._vector(SPACE, values.omega_space, because, proof)
 
-    def angular_velocity_body(self) -> _Found:
+    def angular_velocity_body(self) -> Found:
         values = self.values
         return self._vector(
             BODY,
@@ -225,7 +149,7 @@ class _Kinematics:
             ),
         )
 
-    def rate_matrix(self, frame: Frame, matrix: RingMatrix, omega: RingMatrix) -> _Found:
+    def rate_matrix(self, frame: Frame, matrix: RingMatrix, omega: RingMatrix) -> Found:
         residual = matrix @ self.values.argument("q_dot") - omega
         claim = claims.maps_rates(frame.matrix, RATES, frame.omega)
         return self._matrix(
@@ -237,7 +161,7 @@ class _Kinematics:
             symbol=frame.matrix,
         )
 
-    def inverse(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> _Found | None:
+    def inverse(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> Found | None:
         if inverse is None:
             return None
         above, below = inverse
@@ -261,7 +185,7 @@ class _Kinematics:
         choice = "those that keep to the conditions" if is_bound else "the smallest"
         return f"Of all rates that give an angular velocity, {choice} are taken."
 
-    def rates(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> _Found | None:
+    def rates(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> Found | None:
         if inverse is None:
             return None
         above, below = inverse
@@ -275,37 +199,33 @@ class _Kinematics:
         form = applied_form(
             self.prove, self.model.vector, above, below, RATES, to=(frame.omega, given)
         )
-        return _Found(
+        return Found(
             self.present.matrix(rates, below),
             "The inverse rate matrix is applied to a given angular velocity.",
             (proof,) if form is None else (proof, form.proof),
             form,
         )
 
-    def angular_acceleration_space(self) -> _Found:
+    def angular_acceleration_space(self) -> Found:
         space = self.values.omega_space.dt()
         claim = claims.is_operator(ALPHA, claims.rate_of_whole(claims.spin_of(ROTATION)))
-        return _Found(
+        return Found(
             self.present.matrix(space),
             "The space components of the angular velocity are differentiated.",
             (self.prove.vanishes(self.values.spin.dt() - hat(space), claim), *self._composed()),
         )
 
-    def angular_acceleration_body(self) -> _Found:
+    def angular_acceleration_body(self) -> Found:
         values = self.values
         body = values.omega_body.dt()
         residual = values.R @ body - values.omega_space.dt()
         claim = claims.rotates(ROTATION, ALPHA_BODY, ALPHA)
-        return _Found(
+        return Found(
             self.present.matrix(body),
             "Its body components are the derivatives of those of the angular velocity, since "
             "Ω × Ω vanishes.",
             (self.prove.vanishes(residual, claim),),
         )
-
-    def singularities(self) -> Singularities:
-        """Where the rate matrix loses rank."""
-        return singularities_of(self.values, self.present)
 
     def _matrix(
         self,
@@ -314,17 +234,17 @@ class _Kinematics:
         *proofs: Proof,
         symbol: Markup,
         below: PolyElement | None = None,
-    ) -> _Found:
+    ) -> Found:
         """A matrix over `below`, as a function of the vector too where it is one."""
         over = self.values.ring.one if below is None else below
         form = matrix_form(self.prove, self.model.vector, matrix, over, symbol)
         proved = proofs if form is None else (*proofs, form.proof)
-        return _Found(self.present.matrix(matrix, below), because, proved, form)
+        return Found(self.present.matrix(matrix, below), because, proved, form)
 
-    def _vector(self, frame: Frame, omega: RingMatrix, because: str, proof: Proof) -> _Found:
+    def _vector(self, frame: Frame, omega: RingMatrix, because: str, proof: Proof) -> Found:
         form = vector_form(self.prove, self.model.vector, omega, frame.omega)
         proofs = (proof,) if form is None else (proof, form.proof)
-        return _Found(self.present.matrix(omega), because, proofs, form)
+        return Found(self.present.matrix(omega), because, proofs, form)
 
     @property
     def _shown_symbol(self) -> Markup:
@@ -341,7 +261,7 @@ class _Kinematics:
         return frame.inverse if len(self.model.coordinates) == 3 else frame.right_inverse
 
 
-_STEPS: Mapping[str, Callable[[_Kinematics], _Found | None]] = MappingProxyType(
+_STEPS: Mapping[str, Callable[[_Kinematics], Found | None]] = MappingProxyType(
     {
         "rotation_matrix": _Kinematics.rotation_matrix,
         "rotation_rate": _Kinematics.rotation_rate,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rigidsym.mechanics.derivation import Statement
-from rigidsym.mechanics.lecture.words import BODY_INERTIA, INERTIA, OMEGA, R, f, statement
+from rigidsym.mechanics.lecture.symbols import BODY_INERTIA, INERTIA, OMEGA, R, f, statement
 
 _BASIS = "Another basis"
 _MOMENTS = "Moments of inertia"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rigidsym.mechanics.derivation import Statement
-from rigidsym.mechanics.lecture.words import BODY_OMEGA, RELATIVE_RATE, SPIN, f, statement
+from rigidsym.mechanics.lecture.symbols import BODY_OMEGA, RELATIVE_RATE, SPIN, f, statement
 
 _MOMENTUM = "The angular momentum"
 _VELOCITY = "The angular velocity of a rotation"

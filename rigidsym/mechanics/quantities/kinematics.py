@@ -1,31 +1,48 @@
-"""The quantities of a rotation's kinematics: names, symbols, units and what they follow from.
+"""The quantities of a rotation's kinematics: a new one is an entry here and in `kinematics.derive`.
 
-Written once for the active presentation (R takes body to space components) and once, where it
-differs, for the passive one (A = Rᵀ, the direction cosine matrix).
+The table is for the active presentation (R takes body to space components). Entries that differ
+follow for the passive one (A = Rᵀ, the direction cosine matrix).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from types import MappingProxyType
 
 from rigidsym.mechanics.claims import fill, rate_of, spin_of, transpose_of
 from rigidsym.mechanics.derivation import Markup, Quantity
-from rigidsym.models.rotation import Citation, lecture
+from rigidsym.mechanics.quantities.table import read_table
+from rigidsym.models.rotation import Citation
 
 _DIEBEL = Citation(
     text="J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation "
     "Vectors (2006), section 5"
 )
-_LECTURE = "section 3.2"
 
 ROTATION = Markup(r"\mathbf{R}", "R")
 COSINES = Markup(r"\mathbf{A}", "A")
 RATES = Markup(r"\dot{\mathbf{q}}", "q̇")
 ALPHA = Markup(r"\dot{\boldsymbol{\Omega}}", "dΩ/dt")
 ALPHA_BODY = Markup(r"\dot{\boldsymbol{\Omega}}'", "dΩ′/dt")
+
+
+def _product(matrix: Markup, vector: Markup) -> Markup:
+    return fill(r"{0}{1}", "{0} {1}", matrix, vector)
+
+
+def _vector_of(skew: Markup) -> Markup:
+    return fill(r"\mathbf{{C}}^{{-1}}\left({0}\right)", "C⁻¹({0})", skew)
+
+
+def _operator(sign: str, vector: Markup) -> Markup:
+    latex, text = sign + r"\mathbf{{C}}({0})", sign.replace("-", "−") + "C({0})"
+    return fill(latex, text, vector)
+
+
+def _jacobian(omega: Markup) -> Markup:
+    return fill(r"\frac{{\partial {0}}}{{\partial {1}}}", "∂{0}/∂{1}", omega, RATES)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -36,7 +53,7 @@ class Frame:
     omega: Markup
     matrix: Markup
     inverse: Markup
-    right_inverse: Markup  # where there are more coordinates than dimensions
+    right_inverse: Markup  # if there are more coordinates than dimensions
 
 
 SPACE = Frame(
@@ -54,189 +71,112 @@ BODY = Frame(
     right_inverse=Markup(r"\mathbf{W}'^{+}", "W′⁺"),
 )
 
-_NONE = Markup("", "")
-_Q, _RATES, _ALL = ("q",), ("q", "q_dot"), ("q", "q_dot", "q_ddot")
-
-
-def _active() -> tuple[Quantity, ...]:
-    return (
-        Quantity(
-            name="rotation_matrix",
-            symbol=ROTATION,
-            definition=_NONE,
-            about="rotation matrix, body to space components",
-            unit="",
-            inputs=_Q,
-            source=lecture("17", _LECTURE),
+_ACTIVE = read_table(
+    """
+    rotation_matrix                    matrix  -        q                3.2 (17)
+        rotation matrix, body to space components
+    rotation_rate                      matrix  1/s      q q_dot          3.2 (15)
+        time derivative of the rotation matrix
+    spin_matrix                        matrix  rad/s    q q_dot          3.2 (15)
+        spin matrix, the operator Ω × in space components
+    angular_velocity_space             vector  rad/s    q q_dot          3.2 (16)
+        angular velocity, space components
+    angular_velocity_body              vector  rad/s    q q_dot          3.2 (16)
+        angular velocity, body components
+    rate_matrix_space                  matrix  -        q                Diebel
+        rate matrix to space components of the angular velocity
+    inverse_rate_matrix_space          matrix  -        q                Diebel
+        inverse rate matrix from space components
+    rates_from_angular_velocity_space  vector  rad/s    q omega_space    Diebel
+        rates of the coordinates from space components of the angular velocity
+    rate_matrix_body                   matrix  -        q                Diebel
+        rate matrix to body components of the angular velocity
+    inverse_rate_matrix_body           matrix  -        q                Diebel
+        inverse rate matrix from body components
+    rates_from_angular_velocity_body   vector  rad/s    q omega_body     Diebel
+        rates of the coordinates from body components of the angular velocity
+    angular_acceleration_space         vector  rad/s^2  q q_dot q_ddot   Diebel
+        angular acceleration, space components
+    angular_acceleration_body          vector  rad/s^2  q q_dot q_ddot   Diebel
+        angular acceleration, body components
+    """,
+    {
+        "rotation_matrix": (ROTATION,),
+        "rotation_rate": (rate_of(ROTATION),),
+        "spin_matrix": (spin_of(ROTATION), _operator("", SPACE.omega)),
+        "angular_velocity_space": (SPACE.omega, _vector_of(spin_of(ROTATION))),
+        "angular_velocity_body": (BODY.omega, _product(transpose_of(ROTATION), SPACE.omega)),
+        **{
+            name: formula
+            for frame in (SPACE, BODY)
+            for name, formula in {
+                f"rate_matrix_{frame.name}": (frame.matrix, _jacobian(frame.omega)),
+                f"inverse_rate_matrix_{frame.name}": (frame.inverse,),
+                f"rates_from_angular_velocity_{frame.name}": (
+                    RATES,
+                    _product(frame.inverse, frame.omega),
+                ),
+            }.items()
+        },
+        "angular_acceleration_space": (ALPHA, rate_of(SPACE.omega)),
+        "angular_acceleration_body": (
+            ALPHA_BODY,
+            _product(transpose_of(ROTATION), rate_of(SPACE.omega)),
         ),
-        Quantity(
-            name="rotation_rate",
-            symbol=rate_of(ROTATION),
-            definition=_NONE,
-            about="time derivative of the rotation matrix",
-            unit="1/s",
-            inputs=_RATES,
-            source=lecture("15", _LECTURE),
+    },
+    {"Diebel": _DIEBEL},
+)
+_PASSIVE = read_table(
+    """
+    rotation_matrix         matrix  -      q        2.1 (7)
+        direction cosine matrix, space to body components
+    rotation_rate           matrix  1/s    q q_dot  3.2 (15)
+        time derivative of the direction cosine matrix
+    spin_matrix             matrix  rad/s  q q_dot  3.2 (15)
+        spin matrix of the direction cosines, the operator −Ω′ × in body components
+    angular_velocity_space  vector  rad/s  q q_dot  3.2 (16)
+        angular velocity, space components
+    angular_velocity_body   vector  rad/s  q q_dot  3.2 (16)
+        angular velocity, body components
+    """,
+    {
+        "rotation_matrix": (COSINES, transpose_of(ROTATION)),
+        "rotation_rate": (rate_of(COSINES),),
+        "spin_matrix": (spin_of(COSINES), _operator("-", BODY.omega)),
+        "angular_velocity_space": (
+            SPACE.omega,
+            _vector_of(fill(r"{0}\,{1}", "{0}·{1}", rate_of(transpose_of(COSINES)), COSINES)),
         ),
-        Quantity(
-            name="spin_matrix",
-            symbol=spin_of(ROTATION),
-            definition=fill(r"\mathbf{{C}}({0})", "C({0})", SPACE.omega),
-            about="spin matrix, the operator Ω × in space components",
-            unit="rad/s",
-            inputs=_RATES,
-            source=lecture("15", _LECTURE),
+        "angular_velocity_body": (
+            BODY.omega,
+            fill(r"{0}\,{1}", "{0} {1}", COSINES, SPACE.omega),
         ),
-        _omega_space(fill(r"\mathbf{{C}}^{{-1}}\left({0}\right)", "C⁻¹({0})", spin_of(ROTATION))),
-        _omega_body(fill(r"{0}{1}", "{0} {1}", transpose_of(ROTATION), SPACE.omega)),
-    )
-
-
-def _passive() -> tuple[Quantity, ...]:
-    return (
-        Quantity(
-            name="rotation_matrix",
-            symbol=COSINES,
-            definition=transpose_of(ROTATION),
-            about="direction cosine matrix, space to body components",
-            unit="",
-            inputs=_Q,
-            source=lecture("7", "section 2.1"),
-        ),
-        Quantity(
-            name="rotation_rate",
-            symbol=rate_of(COSINES),
-            definition=_NONE,
-            about="time derivative of the direction cosine matrix",
-            unit="1/s",
-            inputs=_RATES,
-            source=lecture("15", _LECTURE),
-        ),
-        Quantity(
-            name="spin_matrix",
-            symbol=spin_of(COSINES),
-            definition=fill(r"-\mathbf{{C}}({0})", "−C({0})", BODY.omega),
-            about="spin matrix of the direction cosines, the operator −Ω′ × in body components",
-            unit="rad/s",
-            inputs=_RATES,
-            source=lecture("15", _LECTURE),
-        ),
-        _omega_space(
-            fill(
-                r"\mathbf{{C}}^{{-1}}\left({0}\,{1}\right)",
-                "C⁻¹({0}·{1})",
-                rate_of(transpose_of(COSINES)),
-                COSINES,
-            )
-        ),
-        _omega_body(fill(r"{0}\,{1}", "{0} {1}", COSINES, SPACE.omega)),
-    )
-
-
-def _omega_space(definition: Markup) -> Quantity:
-    return Quantity(
-        name="angular_velocity_space",
-        symbol=SPACE.omega,
-        definition=definition,
-        about="angular velocity, space components",
-        unit="rad/s",
-        inputs=_RATES,
-        is_vector=True,
-        source=lecture("16", _LECTURE),
-    )
-
-
-def _omega_body(definition: Markup) -> Quantity:
-    return Quantity(
-        name="angular_velocity_body",
-        symbol=BODY.omega,
-        definition=definition,
-        about="angular velocity, body components",
-        unit="rad/s",
-        inputs=_RATES,
-        is_vector=True,
-        source=lecture("16", _LECTURE),
-    )
-
-
-def _rates(frame: Frame, rate_unit: str, *, is_square: bool) -> tuple[Quantity, ...]:
-    """The rate matrix of one frame, its inverse, and the rates that follow from it."""
-    inverse = frame.inverse if is_square else frame.right_inverse
-    kind = "inverse" if is_square else "right inverse of the"
-    return (
-        Quantity(
-            name=f"rate_matrix_{frame.name}",
-            symbol=frame.matrix,
-            definition=fill(
-                r"\frac{{\partial {0}}}{{\partial {1}}}", "∂{0}/∂{1}", frame.omega, RATES
-            ),
-            about=f"rate matrix to {frame.name} components of the angular velocity",
-            unit="",
-            inputs=_Q,
-            source=_DIEBEL,
-        ),
-        Quantity(
-            name=f"inverse_rate_matrix_{frame.name}",
-            symbol=inverse,
-            definition=_NONE,
-            about=f"{kind} rate matrix from {frame.name} components",
-            unit="",
-            inputs=_Q,
-            source=_DIEBEL,
-        ),
-        Quantity(
-            name=f"rates_from_angular_velocity_{frame.name}",
-            symbol=RATES,
-            definition=fill(r"{0}{1}", "{0} {1}", inverse, frame.omega),
-            about=f"rates of the coordinates from {frame.name} components of the angular velocity",
-            unit=rate_unit,
-            inputs=("q", f"omega_{frame.name}"),
-            is_vector=True,
-            source=_DIEBEL,
-        ),
-    )
-
-
-def _accelerations() -> tuple[Quantity, ...]:
-    return (
-        Quantity(
-            name="angular_acceleration_space",
-            symbol=ALPHA,
-            definition=rate_of(SPACE.omega),
-            about="angular acceleration, space components",
-            unit="rad/s^2",
-            inputs=_ALL,
-            is_vector=True,
-            source=_DIEBEL,
-        ),
-        Quantity(
-            name="angular_acceleration_body",
-            symbol=ALPHA_BODY,
-            definition=fill("{0}{1}", "{0} {1}", transpose_of(ROTATION), rate_of(SPACE.omega)),
-            about="angular acceleration, body components",
-            unit="rad/s^2",
-            inputs=_ALL,
-            is_vector=True,
-            source=_DIEBEL,
-        ),
-    )
+    },
+)
+QUANTITY_NAMES = tuple(_ACTIVE)
 
 
 @cache
 def quantities(
-    *, passive: bool, coordinates: int = 3, rate_unit: str = "rad/s"
+    *, passive: bool = False, coordinates: int = 3, rate_unit: str = "rad/s"
 ) -> Mapping[str, Quantity]:
     """All quantities by name, in the order of the derivation, for a number of coordinates.
 
-    `rate_unit` is that of the rates, where they have one in common.
+    `rate_unit` is the unit that all rates share; empty if they do not.
     """
-    table = (
-        *(_passive() if passive else _active()),
-        *_rates(SPACE, rate_unit, is_square=coordinates == 3),
-        *_rates(BODY, rate_unit, is_square=coordinates == 3),
-        *_accelerations(),
-    )
-    return MappingProxyType({quantity.name: quantity for quantity in table})
-
-
-QUANTITY_NAMES = tuple(quantities(passive=False))
+    table = {**_ACTIVE, **(_PASSIVE if passive else {})}
+    for frame in (SPACE, BODY):
+        inverse, rates = (
+            f"{name}_{frame.name}"
+            for name in ("inverse_rate_matrix", "rates_from_angular_velocity")
+        )
+        table[rates] = replace(table[rates], unit=rate_unit)
+        if coordinates != 3:
+            table[inverse] = replace(
+                table[inverse],
+                symbol=frame.right_inverse,
+                about=f"right inverse of the rate matrix from {frame.name} components",
+            )
+            definition = _product(frame.right_inverse, frame.omega)
+            table[rates] = replace(table[rates], definition=definition)
+    return MappingProxyType(table)

@@ -1,20 +1,20 @@
-"""The quantities of a mass distribution: names, symbols, units and what they follow from."""
+"""The quantities of a mass distribution: a new one is an entry here and in `mass.derive`."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
-
 from rigidsym.mechanics.claims import fill, transpose_of
-from rigidsym.mechanics.derivation import Markup, Quantity
-from rigidsym.mechanics.quantities.energy import INERTIA, INERTIA_SPACE, MASS
+from rigidsym.mechanics.derivation import Markup
 from rigidsym.mechanics.quantities.kinematics import ROTATION
-from rigidsym.models.rotation import Citation, lecture
+from rigidsym.mechanics.quantities.table import read_table
+from rigidsym.models.rotation import Citation
 
 STEINER = Citation(
     text="L. D. Landau and E. M. Lifshitz, Mechanics, 3rd edition (1976), section 32",
     equation="32.12",
 )
+MASS = Markup("M", "M")
+INERTIA = Markup(r"\mathbf{I}'", "I′")
+INERTIA_SPACE = Markup(r"\mathbf{I}", "I")
 CENTRE = Markup(r"\mathbf{c}", "c")
 POINT = Markup(r"\mathbf{p}", "p")
 DIRECTION = Markup(r"\mathbf{n}", "n")
@@ -33,8 +33,6 @@ TENSOR_INTEGRAL = Markup(
     r"(\mathbf{x}'-\mathbf{c})^{\mathsf T}\right) dm",
     "∫ (|x′ − c|² 1 − (x′ − c)(x′ − c)ᵀ) dm",
 )
-_NONE = Markup("", "")
-_BODY = "body components"
 
 
 def moved(mass: Markup, by: str, text: str) -> Markup:
@@ -46,114 +44,49 @@ def moved(mass: Markup, by: str, text: str) -> Markup:
     )
 
 
-FROM_CENTRE = moved(MASS, r"\mathbf{p}-\mathbf{c}", "p − c")
+_STEINER = fill("{0} + {1}", "{0} + {1}", INERTIA, moved(MASS, r"\mathbf{p}-\mathbf{c}", "p − c"))
+_FORM = fill(r"{1}\,{0}\,{2}", "{1} {0} {2}", POINT_TENSOR, transpose_of(DIRECTION), DIRECTION)
+_TURNED = fill(r"{0}\,{1}\,{2}", "{0} {1} {2}", ROTATION, INERTIA, transpose_of(ROTATION))
 
+INERTIA_QUANTITIES = read_table(
+    """
+    mass                  scalar  kg               -                1.1
+        mass
+    centre_of_mass        vector  m                -                1.1 (1)
+        centre of mass, in the axes of the description
+    inertia_tensor        matrix  kg m^2           -                2.2 (4)
+        inertia tensor about the centre of mass, body components
+    inertia_tensor_point  matrix  kg m^2           point            Steiner
+        inertia tensor about a point p, body components
+    moment_of_inertia     scalar  kg m^2           point direction  2.2
+        moment of inertia about the line through p along n, a unit vector
+    radii_of_gyration     vector  m                -                -
+        radii of gyration about the axes through the centre of mass
+    principal_moments     vector  kg m^2           -                2.3 (10)
+        principal moments of inertia
+    principal_axes        matrix  -                -                2.3
+        principal axes, one a column, right-handed, body components
+    inertia_ellipsoid     vector  (kg m^2)^(-1/2)  -                -
+        semi-axes of the inertia ellipsoid, along the principal axes
+    inertia_tensor_space  matrix  kg m^2           q                2.1 (9)
+        inertia tensor about the centre of mass, space components
+    """,
+    {
+        "mass": (MASS, TOTAL_MASS),
+        "centre_of_mass": (CENTRE, MASS_FIRST),
+        "inertia_tensor": (INERTIA,),
+        "inertia_tensor_point": (POINT_TENSOR, _STEINER),
+        "moment_of_inertia": (MOMENT, _FORM),
+        "radii_of_gyration": (RADII,),
+        "principal_moments": (MOMENTS,),
+        "principal_axes": (AXES,),
+        "inertia_ellipsoid": (SEMI_AXES,),
+        "inertia_tensor_space": (INERTIA_SPACE, _TURNED),
+    },
+    {"Steiner": STEINER},
+)
 
-def _table() -> tuple[Quantity, ...]:
-    form = fill(r"{1}\,{0}\,{2}", "{1} {0} {2}", POINT_TENSOR, transpose_of(DIRECTION), DIRECTION)
-    return (
-        Quantity(
-            name="mass",
-            symbol=MASS,
-            definition=TOTAL_MASS,
-            about="mass",
-            unit="kg",
-            inputs=(),
-            is_scalar=True,
-            source=lecture("", "section 1.1"),
-        ),
-        Quantity(
-            name="centre_of_mass",
-            symbol=CENTRE,
-            definition=MASS_FIRST,
-            about="centre of mass, in the axes of the description",
-            unit="m",
-            inputs=(),
-            is_vector=True,
-            source=lecture("1", "section 1.1"),
-        ),
-        Quantity(
-            name="inertia_tensor",
-            symbol=INERTIA,
-            definition=_NONE,
-            about=f"inertia tensor about the centre of mass, {_BODY}",
-            unit="kg m^2",
-            inputs=(),
-            source=lecture("4", "section 2.2"),
-        ),
-        Quantity(
-            name="inertia_tensor_point",
-            symbol=POINT_TENSOR,
-            definition=fill("{0} + {1}", "{0} + {1}", INERTIA, FROM_CENTRE),
-            about=f"inertia tensor about a point p, {_BODY}",
-            unit="kg m^2",
-            inputs=("point",),
-            source=STEINER,
-        ),
-        Quantity(
-            name="moment_of_inertia",
-            symbol=MOMENT,
-            definition=form,
-            about="moment of inertia about the line through p along n, a unit vector",
-            unit="kg m^2",
-            inputs=("point", "direction"),
-            is_scalar=True,
-            source=lecture("", "section 2.2"),
-        ),
-        Quantity(
-            name="radii_of_gyration",
-            symbol=RADII,
-            definition=_NONE,
-            about="radii of gyration about the axes through the centre of mass",
-            unit="m",
-            inputs=(),
-            is_vector=True,
-        ),
-        Quantity(
-            name="principal_moments",
-            symbol=MOMENTS,
-            definition=_NONE,
-            about="principal moments of inertia",
-            unit="kg m^2",
-            inputs=(),
-            is_vector=True,
-            source=lecture("10", "section 2.3"),
-        ),
-        Quantity(
-            name="principal_axes",
-            symbol=AXES,
-            definition=_NONE,
-            about=f"principal axes, one a column, right-handed, {_BODY}",
-            unit="",
-            inputs=(),
-            source=lecture("", "section 2.3"),
-        ),
-        Quantity(
-            name="inertia_ellipsoid",
-            symbol=SEMI_AXES,
-            definition=_NONE,
-            about="semi-axes of the inertia ellipsoid, along the principal axes",
-            unit="(kg m^2)^(-1/2)",
-            inputs=(),
-            is_vector=True,
-        ),
-        Quantity(
-            name="inertia_tensor_space",
-            symbol=INERTIA_SPACE,
-            definition=fill(
-                r"{0}\,{1}\,{2}", "{0} {1} {2}", ROTATION, INERTIA, transpose_of(ROTATION)
-            ),
-            about="inertia tensor about the centre of mass, space components",
-            unit="kg m^2",
-            inputs=("q",),
-            source=lecture("9", "section 2.1"),
-        ),
-    )
-
-
-INERTIA_QUANTITIES: Mapping[str, Quantity] = MappingProxyType({q.name: q for q in _table()})
-
-# What is proved.
+# Claims.
 
 SYMMETRIC = fill("{0} = {1}", "{0} = {1}", INERTIA, transpose_of(INERTIA))
 CENTRED = Markup(r"\int (\mathbf{x}'-\mathbf{c})\,dm = \mathbf{0}", "∫ (x′ − c) dm = 0")

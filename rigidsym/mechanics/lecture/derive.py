@@ -7,7 +7,7 @@ is; what holds in its ring holds for all. Vectors without a derivation of their 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import TypeAlias
@@ -18,9 +18,10 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.present import presenter_for
-from rigidsym.mechanics.derivation import Markup, Proof, Statement
+from rigidsym.errors import ModelError
+from rigidsym.mechanics.derivation import Derivation, Markup, Proof, Statement, Step
 from rigidsym.mechanics.kinematics.composition import hat, unhat
-from rigidsym.mechanics.lecture import bases, bodies, momenta
+from rigidsym.mechanics.lecture import bases, momenta, rigid_body
 from rigidsym.mechanics.particles import IN_BODY, MASS, Sum
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.quaternions import UnitQuaternion
@@ -42,7 +43,7 @@ def theory() -> tuple[Statement, ...]:
     work = _Theory()
     return tuple(
         replace(statement, proofs=work.proofs(statement), summands=work.summands(statement))
-        for statement in (*bodies.STATEMENTS, *bases.STATEMENTS, *momenta.STATEMENTS)
+        for statement in (*rigid_body.STATEMENTS, *bases.STATEMENTS, *momenta.STATEMENTS)
     )
 
 
@@ -234,3 +235,34 @@ _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
     "spin": lambda t: t.R_dot @ t.R.T - hat(t.spin()),
     "body_spin": lambda t: t.R.T @ t.R_dot - hat(t.R.T @ t.spin()),
 }
+
+
+# The equations of the lecture that these evaluate; what stands on the way to 16 has its number.
+NUMBERS = {
+    "rotation_rate": 15,
+    "spin_matrix": 15,
+    "angular_velocity_space": 16,
+    "rotation_matrix": 17,
+    "angular_velocity_body": 18,
+}
+NEEDED = ("rotation_matrix", "spin_matrix", "angular_velocity_space", "angular_velocity_body")
+LAST = 18
+
+
+def with_theory(derivation: Derivation) -> Derivation:
+    """The theory, and the steps with the lecture's numbers; what follows is numbered from 19.
+
+    Raises ModelError for a passive presentation, which the lecture does not have.
+    """
+    if derivation.model.passive:
+        raise ModelError(
+            f"{derivation.name}: the theory is that of active rotations; leave passive"
+        )
+    return replace(derivation, theory=theory(), steps=tuple(_numbered(derivation.steps)))
+
+
+def _numbered(steps: Sequence[Step]) -> Iterator[Step]:
+    number = LAST
+    for step in steps:
+        number += step.quantity.name not in NUMBERS
+        yield replace(step, number=NUMBERS.get(step.quantity.name, number))

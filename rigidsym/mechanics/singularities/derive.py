@@ -11,7 +11,7 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.matrix import RingMatrix, Row, cross
-from rigidsym.algebra.present import Presenter, presenter_for
+from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.ring import Ring
 from rigidsym.algebra.shorten import shortest
 from rigidsym.algebra.stumpff import at_zero, rewriter_for
@@ -21,7 +21,7 @@ from rigidsym.mechanics.singularities.rate_map import rate_map_of
 from rigidsym.mechanics.singularities.zeros import Zero, matrix_at, solver_for
 
 
-def singularities_of(values: Values, presenter: Presenter) -> Singularities:
+def singularities_of(values: Values) -> Singularities:
     """The places where the rates that a model allows give fewer directions of Ω than elsewhere.
 
     These are the common zeros of the minors of the rate matrix, solved where `Solver` can; else
@@ -30,12 +30,12 @@ def singularities_of(values: Values, presenter: Presenter) -> Singularities:
     inverse = values.inverse_space
     if values.model.pullback is not None and inverse is not None and inverse[1].is_ground:
         return _without_divisor()
-    study = _Study(values, presenter)
+    study = _Study(values)
     found = study.singularities()
     if found.is_solved or not study.solver.missing:
         return found
     wider = Values(values.model, numbers=study.solver.missing)
-    return _Study(wider, presenter_for(wider.codec)).singularities()
+    return _Study(wider).singularities()
 
 
 def _without_divisor() -> Singularities:
@@ -48,8 +48,8 @@ def _without_divisor() -> Singularities:
 class _Study:
     """The rank of the rate matrix of one model."""
 
-    def __init__(self, values: Values, presenter: Presenter) -> None:
-        self.present = presenter
+    def __init__(self, values: Values) -> None:
+        self.present = presenter_for(values.codec)
         self.codec: Codec = values.codec
         self.coordinates = values.arguments["q"].symbols
         self.map = rate_map_of(values)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rigidsym.mechanics.derivation import Statement
-from rigidsym.mechanics.lecture.words import (
+from rigidsym.mechanics.lecture.symbols import (
     AT_REST,
     CENTRE,
     MASS,

@@ -7,8 +7,7 @@ energies are follow from these two.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from types import MappingProxyType
 
@@ -18,85 +17,18 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form, half_of_squares
-from rigidsym.errors import QuantityError
 from rigidsym.mechanics import particles
-from rigidsym.mechanics.arguments import arguments_of
-from rigidsym.mechanics.derivation import Derivation, Step
-from rigidsym.mechanics.energy import energy_claims as claims, momentum_forms
-from rigidsym.mechanics.kinematics import derive as kinematics
+from rigidsym.mechanics.derivation import Found
+from rigidsym.mechanics.energy import momentum_forms
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.mass import inertia
-from rigidsym.mechanics.mass.bodies import rigid_body
-from rigidsym.mechanics.mass.inertia import Found
 from rigidsym.mechanics.prove import Prover
-from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES
-from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
-from rigidsym.models.body import BodyDescription, RigidBody
-from rigidsym.models.distribution import Distribution
-from rigidsym.models.rotation import RotationModel
-
-BODY_QUANTITIES = MappingProxyType({**INERTIA_QUANTITIES, **ENERGY_QUANTITIES})
+from rigidsym.mechanics.quantities import energy as claims
 
 
-def derive(
-    model: RotationModel,
-    body: RigidBody | BodyDescription | Distribution,
-    only: Collection[str] = (),
-) -> Derivation:
-    """The kinematics of a rotation model, then the energies and momenta of a body that turns so.
-
-    The moments of a description are integrated first; BodyError if that fails.
-
-    `only` names the quantities to derive; all there are where it is empty. Raises what
-    `kinematics.derive` raises, ModelError where a name stands for two things, and QuantityError
-    for quantities that the body has not.
-    """
-    known = (*QUANTITY_NAMES, *BODY_QUANTITIES)
-    unknown = ", ".join(name for name in only if name not in known)
-    if unknown:
-        raise QuantityError(f"no quantity {unknown}; there are {', '.join(known)}")
-    body = rigid_body(body)
-    arguments = arguments_of(model, body)
-    turning = [name for name in only if name in QUANTITY_NAMES]
-    motion = kinematics.derive(model, turning or ("rotation_matrix",) if only else ())
-    steps = motion.steps if turning or not only else ()
-    found = tuple(_numbered(Values(model, body), only, first=len(steps) + 1))
-    _raise_if_absent(body, only, {step.quantity.name for step in found})
-    return replace(motion, arguments=arguments, body=body, steps=(*steps, *found))
-
-
-def _raise_if_absent(body: RigidBody, only: Collection[str], found: Collection[str]) -> None:
-    absent = [name for name in BODY_QUANTITIES if name in only and name not in found]
-    if absent:
-        reasons = (f"no quantity {name}: {inertia.WITHOUT[name]}" for name in absent)
-        raise QuantityError(f"{body.name} has {'; '.join(reasons)}")
-
-
-def _numbered(values: Values, only: Collection[str], *, first: int) -> Iterator[Step]:
-    """The steps of the body by itself, and of its energy and momentum."""
-    wanted = [name for name in BODY_QUANTITIES if not only or name in only]
-    parameters = values.arguments.get("parameters")
-    constants = set(parameters.symbols) if parameters else set()
-    for number, (name, found) in enumerate(_found(values, wanted), start=first):
-        quantity = BODY_QUANTITIES[name]
-        if not constants.isdisjoint(found.expression.free_symbols):
-            quantity = replace(quantity, inputs=(*quantity.inputs, "parameters"))
-        if found.definition is not None:
-            quantity = replace(quantity, definition=found.definition)
-        yield Step(
-            number=number,
-            quantity=quantity,
-            expression=found.expression,
-            because=found.because,
-            proofs=found.proofs,
-        )
-
-
-def _found(values: Values, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
-    yield from inertia.steps_of(values, [name for name in wanted if name in INERTIA_QUANTITIES])
+def steps(values: Values, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
+    """(name, what was found) of the energies and momenta that are wanted."""
     work = _Energy(values)
-    yield from ((name, _STEPS[name](work)) for name in wanted if name in ENERGY_QUANTITIES)
+    yield from ((name, _STEPS[name](work)) for name in wanted)
 
 
 class _Energy:
@@ -141,19 +73,19 @@ class _Energy:
         return Found(
             sp.ImmutableMatrix([[self._translational]]),
             "All the mass moves with the centre of mass.",
-            (self.prove.vanishes(residual, claims.translation_of_particles()),),
+            (self.prove.vanishes(residual, claims.TRANSLATION_OF_PARTICLES),),
         )
 
     def rotational_energy(self) -> Found:
         values = self.values
         turned = values.R.T @ values.omega_space  # for Ωᵀ (R I′ Rᵀ) Ω, from the outside inwards
         in_space = turned.T @ self.inertia @ turned
-        proofs = [self.prove.vanishes(in_space - self._scalar(self._twice), claims.both_forms())]
+        proofs = [self.prove.vanishes(in_space - self._scalar(self._twice), claims.BOTH_FORMS)]
         if self._has_particles:
             _, velocity = self._particle
             summed = self._of_particles(self._scalar(self._square(velocity)))
             residual = summed - self._scalar(self._twice)
-            proofs.append(self.prove.vanishes(residual, claims.rotation_of_particles()))
+            proofs.append(self.prove.vanishes(residual, claims.ROTATION_OF_PARTICLES))
         return Found(
             sp.ImmutableMatrix([[self._rotational]]),
             "The energy of the rotation is a quadratic form in the angular velocity.",
@@ -167,9 +99,9 @@ class _Energy:
             whole = self.velocity + self._particle[1]
             summed = self._of_particles(self._scalar(self._square(whole)))
             residual = summed - self._scalar(twice)
-            proofs.append(self.prove.vanishes(residual, claims.energy_splits()))
+            proofs.append(self.prove.vanishes(residual, claims.ENERGY_SPLITS))
         else:
-            proofs.append(self.prove.vanishes(self._cross_term(), claims.no_cross_term()))
+            proofs.append(self.prove.vanishes(self._cross_term(), claims.NO_CROSS_TERM))
         return Found(
             sp.ImmutableMatrix([[self._translational + self._rotational]]),
             "The energy splits, since the velocities relative to the centre of mass add up to "
@@ -188,7 +120,7 @@ class _Energy:
         return Found(
             self.present.matrix(momentum),
             "It is that of the whole mass in the centre of mass.",
-            (self.prove.vanishes(summed - momentum, claims.momentum_of_centre()),),
+            (self.prove.vanishes(summed - momentum, claims.MOMENTUM_OF_CENTRE),),
         )
 
     def angular_momentum_rotation_body(self) -> Found:
@@ -198,7 +130,7 @@ class _Energy:
         return Found(
             momentum_forms.in_body(self.present, self.inertia, values),
             "The inertia tensor takes the angular velocity to the angular momentum.",
-            (self.prove.vanishes(dotted, claims.twice_energy_body()),),
+            (self.prove.vanishes(dotted, claims.TWICE_ENERGY_BODY),),
         )
 
     def angular_momentum_rotation(self) -> Found:
@@ -207,12 +139,12 @@ class _Energy:
         turned = values.R @ (self.inertia @ (values.R.T @ values.omega_space))
         dotted = momentum.T @ values.omega_space - self._scalar(self._twice)
         proofs = [
-            self.prove.vanishes(turned - momentum, claims.momentum_turns()),
-            self.prove.vanishes(dotted, claims.twice_energy()),
+            self.prove.vanishes(turned - momentum, claims.MOMENTUM_TURNS),
+            self.prove.vanishes(dotted, claims.TWICE_ENERGY),
         ]
         if self._has_particles:
             summed = self._of_particles(self._crossed(*self._particle))
-            proofs.append(self.prove.vanishes(summed - momentum, claims.momentum_of_particles()))
+            proofs.append(self.prove.vanishes(summed - momentum, claims.MOMENTUM_OF_PARTICLES))
         return Found(
             momentum_forms.in_space(self.present, self.inertia, values),
             "The components along the axes of space follow by the rotation.",
@@ -225,9 +157,9 @@ class _Energy:
             place, velocity = self._particle
             whole = self._crossed(self.centre + place, self.velocity + velocity)
             residual = self._of_particles(whole) - of_centre - self._momentum
-            proof = self.prove.vanishes(residual, claims.momentum_splits())
+            proof = self.prove.vanishes(residual, claims.MOMENTUM_SPLITS)
         else:
-            proof = self.prove.vanishes(self._cross_term(), claims.no_cross_term())
+            proof = self.prove.vanishes(self._cross_term(), claims.NO_CROSS_TERM)
         rotation = momentum_forms.in_space(self.present, self.inertia, self.values)
         return Found(
             sp.ImmutableMatrix(self.present.matrix(of_centre) + rotation),

@@ -7,7 +7,6 @@ the body's constants, and, for the tensor in space, over the ring of the rotatio
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 
@@ -16,7 +15,7 @@ import sympy as sp
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.rational import Rationals
 from rigidsym.mechanics.arguments import DIRECTION, POINT
-from rigidsym.mechanics.derivation import Markup, Proof
+from rigidsym.mechanics.derivation import Found
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass.moments import Moments, moments_of
 from rigidsym.mechanics.mass.principal import Principal, principal_of
@@ -37,18 +36,8 @@ WITHOUT = MappingProxyType(  # why a body may not have a quantity
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
-    """What one step comes to."""
-
-    expression: sp.ImmutableMatrix
-    because: str
-    proofs: tuple[Proof, ...] = ()
-    definition: Markup | None = None  # where the step says better what it follows from
-
-
-def steps_of(values: Values, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
-    """(name, step) of the quantities that are wanted and that the body has."""
+def steps(values: Values, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
+    """(name, what was found) of the quantities that are wanted and that the body has."""
     assert values.body is not None
     work = _Inertia(values.body, values)
     for name in wanted:
@@ -109,7 +98,7 @@ class _Inertia:
                 "The tensors of the parts are turned, moved to the common centre of mass by the "
                 "theorem of parallel axes, and added."
             )
-        return Found(body.inertia, because, tuple(proofs), claims.TENSOR_INTEGRAL)
+        return Found(body.inertia, because, tuple(proofs), definition=claims.TENSOR_INTEGRAL)
 
     def _of_parts(self, parts: Sequence[Part]) -> sp.Matrix:
         """Σ (R I R ᵀ + m (|d|² 1 − d dᵀ)), a hole with a minus sign."""

@@ -1,0 +1,131 @@
+"""The door of the room: a rotation, and perhaps a body that turns so, become a Derivation.
+
+1. A body that is only described is integrated (`mass.bodies`).
+2. The kinematics of the rotation follow from R(q) (`kinematics.derive`).
+3. The inertia of the body, its energy and its momentum follow (`mass.derive`, `energy.derive`).
+4. The steps are numbered, and described by the tables of `quantities`.
+5. Where the rates fail is found (`singularities.derive`).
+6. The equations of the lecture may go before all of it (`lecture.derive`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
+
+import sympy as sp
+
+from rigidsym.errors import QuantityError
+from rigidsym.mechanics.derivation import OF_RATES, Derivation, Found, Quantity, Step
+from rigidsym.mechanics.energy import derive as energy
+from rigidsym.mechanics.kinematics import derive as kinematics
+from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.mass import derive as mass
+from rigidsym.mechanics.mass.bodies import rigid_body
+from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
+from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES, quantities
+from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.mechanics.singularities.derive import singularities_of
+from rigidsym.models.body import BodyDescription, RigidBody
+from rigidsym.models.distribution import Distribution
+from rigidsym.models.rotation import RotationModel
+
+Body = RigidBody | BodyDescription | Distribution
+
+
+def derive(
+    model: RotationModel,
+    only: Collection[str] = (),
+    *,
+    body: Body | None = None,
+    theory: bool = False,
+) -> Derivation:
+    """The kinematics of a rotation model, each step proved; with a body its energies and momenta.
+
+    `only` names the quantities to derive; all there are if it is empty. `theory` puts the
+    equations of the lecture before them.
+
+    Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, AlgebraError for expressions that
+    the ring cannot hold, BodyError for a body that cannot be, ModelError if a name means two
+    things, and QuantityError for quantities that are unknown or that the model or body lacks.
+    """
+    if theory:
+        from rigidsym.mechanics.lecture.derive import NEEDED, with_theory
+
+        return with_theory(derive(model, only and {*only, *NEEDED}, body=body))
+    whole = None if body is None else rigid_body(body)
+    _check_names(only, whole)
+    values = Values(model)
+    turning = [name for name in only if name in QUANTITY_NAMES]
+    found = dict(kinematics.steps(values, turning or only))
+    arguments = values.arguments
+    if whole is not None:
+        with_body = Values(model, whole)
+        arguments = with_body.arguments
+        found |= mass.steps(with_body, [n for n in INERTIA_QUANTITIES if not only or n in only])
+        found |= energy.steps(with_body, [n for n in ENERGY_QUANTITIES if not only or n in only])
+    _check_found(only, found, values, whole)
+    constants = set(arguments["parameters"].symbols) if "parameters" in arguments else set()
+    has_rates = not only or not OF_RATES.isdisjoint(only)
+    return Derivation(
+        name=model.name,
+        title=model.title,
+        model=model,
+        arguments=tuple(arguments.values()),
+        steps=tuple(_numbered(found, _table(values), constants)),
+        singularities=singularities_of(values) if has_rates else None,
+        body=whole,
+    )
+
+
+def _check_names(only: Collection[str], body: RigidBody | None) -> None:
+    of_body = (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if body is not None else ()
+    known = (*QUANTITY_NAMES, *of_body)
+    unknown = ", ".join(name for name in only if name not in known)
+    if unknown:
+        raise QuantityError(f"no quantity {unknown}; there are {', '.join(known)}")
+
+
+def _check_found(
+    only: Collection[str], found: Collection[str], values: Values, body: RigidBody | None
+) -> None:
+    absent = sorted(set(only) - set(found))
+    of_rates = ", ".join(name for name in absent if name in QUANTITY_NAMES)
+    if of_rates:
+        raise QuantityError(
+            f"{values.model.name} has no quantity {of_rates}: its rate matrix has no inverse, "
+            "since its rates do not give every angular velocity"
+        )
+    if absent and body is not None:
+        reasons = (f"no quantity {name}: {mass.WITHOUT[name]}" for name in absent)
+        raise QuantityError(f"{body.name} has {'; '.join(reasons)}")
+
+
+def _table(values: Values) -> Mapping[str, Quantity]:
+    """Every quantity by name, as it is called for this model."""
+    units = set(values.arguments["q_dot"].units)
+    of_rotation = quantities(
+        passive=values.model.passive,
+        coordinates=len(values.model.coordinates),
+        rate_unit=units.pop() if len(units) == 1 else "",
+    )
+    return {**of_rotation, **INERTIA_QUANTITIES, **ENERGY_QUANTITIES}
+
+
+def _numbered(
+    found: Mapping[str, Found], table: Mapping[str, Quantity], constants: Collection[sp.Symbol]
+) -> Iterator[Step]:
+    for number, (name, step) in enumerate(found.items(), start=1):
+        quantity = table[name]
+        if constants and not step.expression.free_symbols.isdisjoint(constants):
+            quantity = replace(quantity, inputs=(*quantity.inputs, "parameters"))
+        if step.definition is not None:
+            quantity = replace(quantity, definition=step.definition)
+        yield Step(
+            number=number,
+            quantity=quantity,
+            expression=step.expression,
+            because=step.because,
+            proofs=step.proofs,
+            vector_form=step.vector_form,
+        )

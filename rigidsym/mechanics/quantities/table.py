@@ -1,0 +1,55 @@
+"""How the tables of quantities are read: a quantity is two lines of text and its formulas."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import cast
+
+from rigidsym.mechanics.derivation import Markup, Quantity, Shape
+from rigidsym.models.rotation import Citation, lecture
+
+Formulas = Mapping[str, tuple[Markup, ...]]  # name: symbol and, if there is one, definition
+_COLUMNS = re.compile(r" {2,}")
+
+
+def read_table(
+    text: str, formulas: Formulas, sources: Mapping[str, Citation] = MappingProxyType({})
+) -> Mapping[str, Quantity]:
+    """The quantities of a table, by name, in its order.
+
+    Two or more spaces separate the columns: name, shape, SI unit, inputs, source; a dash leaves
+    one empty. The words of the quantity fill the next line. A source is one of `sources`, or a
+    section and an equation of the lecture: "1.1 (2)".
+    """
+    lines = [line.strip() for line in text.strip().splitlines()]
+    return MappingProxyType(
+        {
+            quantity.name: quantity
+            for head, about in zip(lines[::2], lines[1::2], strict=True)
+            for quantity in (_read(head, about, formulas, sources),)
+        }
+    )
+
+
+def _read(head: str, about: str, formulas: Formulas, sources: Mapping[str, Citation]) -> Quantity:
+    name, shape, unit, inputs, source = (
+        "" if column == "-" else column for column in _COLUMNS.split(head)
+    )
+    symbol, *definition = formulas[name]
+    return Quantity(
+        name=name,
+        symbol=symbol,
+        about=about,
+        unit=unit,
+        inputs=tuple(inputs.split()),
+        shape=cast(Shape, shape),
+        definition=definition[0] if definition else Markup("", ""),
+        source=(sources.get(source) or _of_lecture(source)) if source else None,
+    )
+
+
+def _of_lecture(source: str) -> Citation:
+    section, _, equation = source.partition(" ")
+    return lecture(equation.strip("()"), f"section {section}")
