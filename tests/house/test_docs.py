@@ -1,0 +1,114 @@
+"""Every block of the documentation runs, and says what the page says that it says.
+
+On a page, blocks run in order, in an empty folder: `python` in one namespace, `sh` as a command,
+and a `code-block` with a caption becomes a file of that name. The lines of a `text` block that
+follows appear in the output, in their order; a line that ends in `...` is its beginning.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from contextlib import redirect_stdout
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.command import ROOT
+
+DOCS = ROOT / "docs"
+PAGES = sorted(path for path in DOCS.rglob("*.md"))
+_BLOCK = re.compile(r"^```(\{code-block\} )?(\w+)\n(?::caption: (\S+)\n\n)?(.*?)^```$", re.M | re.S)
+_LINK = re.compile(r"\]\(([^)#:]+)(?:#[^)]*)?\)")
+
+
+def blocks(page: Path) -> list[tuple[str, str, str]]:
+    """(language, caption, text) of the blocks of a page, without those made from the code."""
+    text = page.read_text(encoding="utf-8")
+    return [(m[2], m[3] or "", m[4]) for m in _BLOCK.finditer(text)]
+
+
+class Reader:
+    """Somebody who types in what a page shows."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.names: dict[str, Any] = {}
+        self.output = ""
+
+    def python(self, text: str) -> None:
+        found = StringIO()
+        with redirect_stdout(found):
+            exec(compile(text, "page", "exec"), self.names)
+        self.output = found.getvalue()
+
+    def sh(self, text: str) -> None:
+        if "pip install" in text:  # the set-up, which the test of the README runs
+            assert text in (ROOT / "README.md").read_text(encoding="utf-8")
+            return
+        commands = self.folder / ".bin"
+        commands.mkdir(exist_ok=True)
+        command = commands / "rigidsym"
+        main = "from rigidsym.commands.cli import main; main()"
+        command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -c "{main}" "$@"\n')
+        command.chmod(0o755)
+        path = f"{commands}:{os.environ['PATH']}"
+        done = subprocess.run(
+            ["bash", "-ec", text],
+            env={**os.environ, "PATH": path, "PYTHONPATH": str(ROOT)},
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        self.output = done.stdout
+
+    def text(self, text: str) -> None:
+        rest = [line.strip() for line in self.output.splitlines()]
+        for line in filter(None, map(str.strip, text.splitlines())):
+            places = [k for k, shown in enumerate(rest) if fits(shown, line)]
+            assert places, f"{line!r} is not in\n{self.output}"
+            rest = rest[places[0] + 1 :]
+
+
+def fits(shown: str, line: str) -> bool:
+    return shown.startswith(line[:-3].rstrip()) if line.endswith("...") else shown == line
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_what_a_page_shows_is_what_happens(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    monkeypatch.setenv("COLUMNS", "100")
+    reader = Reader(tmp_path)
+    for language, caption, text in blocks(page):
+        if caption:
+            (tmp_path / caption).write_text(text, encoding="utf-8")
+        else:
+            getattr(reader, language)(text)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_links_lead_to_files(page):
+    for target in _LINK.findall(re.sub(r"`[^`]*`", "", page.read_text(encoding="utf-8"))):
+        assert (page.parent / target).is_file(), target
+
+
+def test_every_page_is_in_the_contents():
+    index = (DOCS / "index.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"^[a-z_]+(?:/[a-z_]+)?$", index, re.M))
+    pages = {str(page.relative_to(DOCS).with_suffix("")) for page in PAGES}
+    assert pages - {"index"} == named
+
+
+def test_a_line_that_does_not_appear_is_found(tmp_path):
+    reader = Reader(tmp_path)
+    reader.python("print('one'); print('two')")
+    reader.text("one\nt...\n")
+    with pytest.raises(AssertionError, match="'two' is not in"):
+        reader.text("two\ntwo\n")
