@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 import sympy as sp
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from sympy import Rational, cos, cot, pi, sin, sqrt, tan
 
 from helpers.witness import TOLERANCE, mp, number, paths, values_along

@@ -6,8 +6,7 @@ from math import prod
 
 import pytest
 import sympy as sp
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.quotient import Quotient

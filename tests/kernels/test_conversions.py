@@ -11,8 +11,7 @@ from scipy.spatial.transform import Rotation
 import rigidsym as rs
 from helpers.conversion_modules import CHAINS, module
 from helpers.motions import derived
-from helpers.witness import mp
-from helpers.witness import rotation as exact_rotation
+from helpers.witness import mp, rotation as exact_rotation
 from rigidsym.mechanics.conversions.conversions import conversions_of
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.models.matrices import given

@@ -12,8 +12,7 @@ import pytest
 import rigidsym as rs
 from helpers.conversion_modules import module as numpy_module
 from helpers.target_modules import EVERY, row_by_row
-from helpers.witness import distance, hat, mp
-from helpers.witness import rotation as exact_rotation
+from helpers.witness import distance, hat, mp, rotation as exact_rotation
 from rigidsym.models.rotation_text import rotation_from
 
 BACK = ("from_quaternion", "from_rotation_matrix")

@@ -15,8 +15,7 @@ import pytest
 import rigidsym as rs
 from helpers.kernel_modules import EPS, turned_by
 from helpers.motions import derived
-from helpers.target_modules import FOUR, KINEMATICS, error
-from helpers.target_modules import given as given_at
+from helpers.target_modules import FOUR, KINEMATICS, error, given as given_at
 from helpers.witness import evaluate, mp
 from rigidsym.errors import MissingTool
 from rigidsym.kernels.ir import Argument, Kernel, Name, Negative

@@ -12,8 +12,7 @@ from sympy.physics.vector import dynamicsymbols
 from helpers.samples import ONE, TIME, chain, model, phi
 from helpers.witness import CONVENTIONS, agree, evaluate, mp, paths, rotation, turn
 from rigidsym.errors import ModelError
-from rigidsym.models.chain import axis_turn
-from rigidsym.models.chain import chain as chain_of
+from rigidsym.models.chain import axis_turn, chain as chain_of
 from rigidsym.models.euler_angles import AXIS_SEQUENCES, EULER_SEQUENCES, EulerAngles
 from rigidsym.models.rotation import Turn
 from rigidsym.models.so3 import AXES, elementary, hat, time_function

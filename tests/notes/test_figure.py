@@ -8,8 +8,7 @@ from math import cos, hypot, isclose, pi, radians, sin
 
 import pytest
 import sympy as sp
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.derivation import Markup

@@ -12,8 +12,7 @@ import rigidsym as rs
 from helpers.typesetting import BEGIN, END, bound_together
 from rigidsym.errors import MissingTool, ToolFailed
 from rigidsym.mechanics.derive import derive
-from rigidsym.models.chain import axis_turn
-from rigidsym.models.chain import chain as chain_of
+from rigidsym.models.chain import axis_turn, chain as chain_of
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.rotation_text import rotation_from

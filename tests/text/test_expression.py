@@ -9,8 +9,7 @@ from math import prod
 
 import pytest
 import sympy as sp
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 
 from rigidsym.errors import ExpressionError
 from rigidsym.models.so3 import time_function

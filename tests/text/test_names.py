@@ -6,8 +6,7 @@ from datetime import timedelta
 
 import pytest
 import sympy as sp
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from rigidsym.errors import ExpressionError
 from rigidsym.text.expression import MOST_CHARACTERS, parse_expression, parse_turns
