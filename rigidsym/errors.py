@@ -13,10 +13,24 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 
+def printable(text: str) -> str:
+    """The text with control characters escaped, so that it cannot command a terminal."""
+    return "".join(
+        c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode() for c in text
+    )
+
+
 class RigidsymError(Exception):
     """Base of all errors that rigidsym raises on purpose."""
 
     exit_code: ClassVar[int] = 1
+
+    def __str__(self) -> str:
+        return printable(super().__str__())
+
+
+class LimitReached(RigidsymError):
+    """Work that was stopped because it took more time or memory than allowed."""
 
 
 class AlgebraError(RigidsymError):

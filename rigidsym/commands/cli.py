@@ -14,7 +14,8 @@ from typing import Any
 
 import click
 
-from rigidsym.errors import RigidsymError
+from rigidsym.commands.command import message
+from rigidsym.errors import RigidsymError, printable
 from rigidsym.version import __version__
 
 _INTERRUPTED = 130
@@ -41,17 +42,18 @@ def main() -> None:
     try:
         status = commands.main(standalone_mode=False)
     except click.ClickException as error:
+        error.message = printable(error.message)
         error.show()
         status = error.exit_code
     except RigidsymError as error:
-        click.echo(f"rigidsym: {error}", err=True)
+        message(str(error))
         status = error.exit_code
     except (KeyboardInterrupt, click.Abort):
-        click.echo("rigidsym: interrupted", err=True)
+        message("interrupted")
         status = _INTERRUPTED
     except OSError as error:
         place = f"{error.filename}: " if error.filename else ""
-        click.echo(f"rigidsym: {place}{error.strerror or error}", err=True)
+        message(f"{place}{error.strerror or error}")
         status = 1
     sys.exit(status if isinstance(status, int) else 0)
 

@@ -1,4 +1,4 @@
-"""What every command of rigidsym has: an example in its help, and options that count once."""
+"""What every command has: an example in its help, options that count once, limits on its work."""
 
 from __future__ import annotations
 
@@ -6,6 +6,27 @@ from collections.abc import Callable
 from typing import Any
 
 import click
+
+from rigidsym.errors import printable
+from rigidsym.system.limits import memory_limit, time_limit
+
+_POSITIVE = click.FloatRange(min=0, min_open=True)
+_LIMITS = (
+    click.Option(
+        ["--timeout"],
+        type=_POSITIVE,
+        default=300.0,
+        metavar="SECONDS",
+        help="Stop after this time; inf for no limit.  [default: 300]",
+    ),
+    click.Option(
+        ["--memory"],
+        type=_POSITIVE,
+        default=4.0,
+        metavar="GB",
+        help="Stop when this much memory is needed; inf for no limit.  [default: 4]",
+    ),
+)
 
 
 class Command(click.Command):
@@ -20,6 +41,26 @@ class Command(click.Command):
         return super().parse_args(context, args)
 
 
-def command(example: str) -> Callable[[Callable[..., Any]], click.Command]:
+class LimitedCommand(Command):
+    """A command whose time and memory are limited by options."""
+
+    def __init__(self, *arguments: Any, **settings: Any) -> None:
+        super().__init__(*arguments, **settings)
+        self.params += _LIMITS
+
+    def invoke(self, context: click.Context) -> Any:
+        timeout, memory = context.params.pop("timeout"), context.params.pop("memory")
+        with memory_limit(memory), time_limit(timeout, label=f"rigidsym {self.name}"):
+            return super().invoke(context)
+
+
+def command(
+    example: str, *, kind: type[Command] = LimitedCommand
+) -> Callable[[Callable[..., Any]], click.Command]:
     """Make a function a command, with an example at the end of its help."""
-    return click.command(cls=Command, epilog=f"Example: {example}")
+    return click.command(cls=kind, epilog=f"Example: {example}")
+
+
+def message(text: str) -> None:
+    """A message on standard error."""
+    click.echo(f"rigidsym: {printable(text)}", err=True)

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make
+from rigidsym.commands.command import command as make, message
 from rigidsym.commands.options import names_of
 from rigidsym.data.chunk import Missing
 from rigidsym.errors import ModelError
@@ -79,11 +79,11 @@ def command(
     """
     named = {"angles": angles, "columns": columns, "keep": keep}
     options |= {key: names_of(text) for key, text in named.items() if text is not None}
-    made = evaluated(rotation, file, out, **options)
+    made = _evaluated(rotation, file, out, **options)
     click.echo(f"{made.path}: {made.rows} rows; {', '.join(made.columns)}", err=str(out) == "-")
 
 
-def evaluated(
+def _evaluated(
     rotation: str,
     source: Path,
     path: Path,
@@ -115,7 +115,7 @@ def evaluated(
         scheduler=scheduler,
     )
     if scheduler is not None:
-        click.echo(f"rigidsym: connecting to {scheduler}", err=True)
+        message(f"connecting to {scheduler}")
     with bar(source.name) as progress:
         return work.run(progress)
 

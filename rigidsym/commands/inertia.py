@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.command import command as make
+from rigidsym.commands.command import command as make, message
 from rigidsym.data.mass.inertia import inertia_of
 from rigidsym.data.mass.mesh import ENDINGS, mesh_inertia, read_mesh_file
 from rigidsym.data.mass.properties import MassProperties
@@ -64,7 +64,7 @@ def _of_particles(
 ) -> MassProperties:
     names = None if columns is None else [name.strip() for name in columns.split(",")]
     if scheduler is not None:
-        click.echo(f"rigidsym: connecting to {scheduler}", err=True)
+        message(f"connecting to {scheduler}")
     with bar(file.name) as progress:
         return inertia_of(file, columns=names, allow=allow, scheduler=scheduler, progress=progress)
 

@@ -6,7 +6,7 @@ import tomllib
 
 import click
 
-from rigidsym.commands.command import command as make
+from rigidsym.commands.command import Command, command as make
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import quantities
@@ -21,7 +21,7 @@ from rigidsym.system.resources import names, text
 _TURNS = 'such as "z(phi) x(theta) [1,1,0](psi) y(pi/4)"; a name such as alpha0 is a constant'
 
 
-@make("rigidsym list | grep -i quaternion")
+@make("rigidsym list | grep -i quaternion", kind=Command)
 def command() -> None:
     """List rotations, solids, quantities, targets and shipped derivations."""
     click.echo(inventory())

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import click
-
+from rigidsym.commands.command import message
 from rigidsym.errors import SpecError
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.pipeline import NOTE_FORMATS, PAGE, PDF, Output, page_name, read_record
@@ -42,10 +41,10 @@ def report_other_files(output: Output, out: Path) -> None:
     if before is None or _is_same(before, now):
         return
     if before.models != now.models:
-        _say(f"overwriting {folder}, which held a different rotation (use --out to keep both)")
+        message(f"overwriting {folder}, which held a different rotation (use --out to keep both)")
     left = [*_kept(before.kernels, now.kernels, folder), *_kept(before.note, now.note, folder)]
     if left:
-        _say(f"{folder} also holds older files that `check` does not see: {', '.join(left)}")
+        message(f"{folder} also holds older files that `check` does not see: {', '.join(left)}")
 
 
 def _is_same(before: DerivationSpec, now: DerivationSpec) -> bool:
@@ -76,7 +75,3 @@ def _file(output: str, folder: Path) -> Path:
         return folder / f"{name}{TARGETS[output].ending}"
     assert output in NOTE_FORMATS
     return folder / (page_name(name) if output == PAGE else f"{name}.{output}")
-
-
-def _say(message: str) -> None:
-    click.echo(f"rigidsym: {message}", err=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import click
 
-from rigidsym.commands.command import command as make
+from rigidsym.commands.command import command as make, message
 from rigidsym.commands.derive import produce
 from rigidsym.commands.options import PrintingOptions, with_options
 from rigidsym.errors import SpecError
@@ -37,6 +37,6 @@ def _read_all(files: Iterable[str]) -> list[DerivationSpec]:
     if wrong:
         *others, last = wrong
         for other in others:
-            click.echo(f"rigidsym: {other}", err=True)
+            message(str(other))
         raise last
     return specs

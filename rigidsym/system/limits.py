@@ -1,0 +1,100 @@
+"""Limits on work: time and memory, and a word on a terminal that work goes on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import isfinite
+from pathlib import Path
+from time import monotonic
+from types import FrameType
+
+from rigidsym.errors import LimitReached, RequestError
+from rigidsym.system.progress import is_drawing
+
+_TICK = 1.0  # seconds between two looks at the clock
+_MEBIBYTE = 1 << 20
+
+
+class _TimeIsUp(BaseException):
+    """Raised inside the work, past handlers of ordinary exceptions."""
+
+
+@contextmanager
+def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
+    """Stop what runs inside after some seconds; with a label, count the seconds on a terminal.
+
+    Raises LimitReached when the time is up, and RequestError for a time that is not positive or
+    if this is not the main thread, which alone receives signals.
+    """
+    if not seconds > 0:
+        raise RequestError(f"timeout: expected a positive number of seconds, got {seconds}")
+    if threading.current_thread() is not threading.main_thread():
+        raise RequestError("timeout works only in the main thread")
+    start = monotonic()
+    is_shown = bool(label) and sys.stderr.isatty()
+
+    def tick(_signal: int, _frame: FrameType | None) -> None:
+        passed = monotonic() - start
+        if passed >= seconds:
+            raise _TimeIsUp
+        if is_shown and not is_drawing():
+            os.write(2, f"\r{label}: {passed:.0f} s".encode())
+
+    first = min(_TICK, seconds)
+    handler = signal.signal(signal.SIGALRM, tick)
+    before = signal.setitimer(signal.ITIMER_REAL, first, first if isfinite(first) else _TICK)
+    try:
+        yield
+    except _TimeIsUp:
+        raise LimitReached(
+            f"stopped after {seconds:g} s; a longer time limit allows more"
+        ) from None
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, *before)
+        signal.signal(signal.SIGALRM, handler)
+        if is_shown and monotonic() - start > _TICK:
+            os.write(2, b"\r\x1b[K")
+
+
+@contextmanager
+def memory_limit(gigabytes: float) -> Iterator[None]:
+    """Stop what runs inside when it needs this much more memory than is in use now.
+
+    Raises LimitReached. Where the system cannot limit memory, there is no limit.
+    """
+    used = _memory_in_use()
+    if used is None or not isfinite(gigabytes):
+        yield
+        return
+    import resource
+
+    before = resource.getrlimit(resource.RLIMIT_DATA)
+    most = used + int(gigabytes * 1024 * _MEBIBYTE)
+    if before[1] != resource.RLIM_INFINITY:
+        most = min(most, before[1])
+    resource.setrlimit(resource.RLIMIT_DATA, (most, before[1]))
+    try:
+        yield
+    except MemoryError:
+        raise LimitReached(
+            f"stopped at {gigabytes:g} GB of memory; a higher memory limit allows more"
+        ) from None
+    finally:
+        resource.setrlimit(resource.RLIMIT_DATA, before)
+
+
+def _memory_in_use() -> int | None:
+    """Bytes of data of this process; None if the system does not say."""
+    try:
+        status = Path("/proc/self/status").read_text(encoding="ascii", errors="replace")
+    except OSError:
+        return None
+    for line in status.splitlines():
+        if line.startswith("VmData:"):
+            return int(line.split()[1]) * 1024
+    return None
