@@ -16,12 +16,9 @@ from dataclasses import replace
 import sympy as sp
 
 from rigidsym.errors import QuantityError
-from rigidsym.mechanics.derivation import OF_RATES, Derivation, Found, Quantity, Step
-from rigidsym.mechanics.energy import derive as energy
+from rigidsym.mechanics.derivation import OF_RATES, Argument, Derivation, Found, Quantity, Step
 from rigidsym.mechanics.kinematics import derive as kinematics
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.mass import derive as mass
-from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES, quantities
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
@@ -53,18 +50,20 @@ def derive(
         from rigidsym.mechanics.lecture.derive import NEEDED, with_theory
 
         return with_theory(derive(model, only and {*only, *NEEDED}, body=body))
-    whole = None if body is None else rigid_body(body)
-    _check_names(only, whole)
+    _check_names(only, has_body=body is not None)
     values = Values(model)
     turning = [name for name in only if name in QUANTITY_NAMES]
     found = dict(kinematics.steps(values, turning or only))
-    arguments = values.arguments
-    if whole is not None:
-        with_body = Values(model, whole)
-        arguments = with_body.arguments
-        found |= mass.steps(with_body, [n for n in INERTIA_QUANTITIES if not only or n in only])
-        found |= energy.steps(with_body, [n for n in ENERGY_QUANTITIES if not only or n in only])
-    _check_found(only, found, values, whole)
+    absent = ", ".join(name for name in turning if name not in found)
+    if absent:
+        raise QuantityError(
+            f"{model.name} has no quantity {absent}: its rate matrix has no inverse, since its "
+            "rates do not give every angular velocity"
+        )
+    whole, arguments = None, values.arguments
+    if body is not None:
+        whole, arguments, of_body = _of_body(model, body, only)
+        found |= of_body
     constants = set(arguments["parameters"].symbols) if "parameters" in arguments else set()
     has_rates = not only or not OF_RATES.isdisjoint(only)
     return Derivation(
@@ -78,27 +77,31 @@ def derive(
     )
 
 
-def _check_names(only: Collection[str], body: RigidBody | None) -> None:
-    of_body = (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if body is not None else ()
+def _of_body(
+    model: RotationModel, body: Body, only: Collection[str]
+) -> tuple[RigidBody, Mapping[str, Argument], dict[str, Found]]:
+    """The body, integrated, the arguments of its quantities, and what was found of them."""
+    from rigidsym.mechanics.energy import derive as energy
+    from rigidsym.mechanics.mass import derive as mass
+    from rigidsym.mechanics.mass.bodies import rigid_body
+
+    whole = rigid_body(body)
+    values = Values(model, whole)
+    found = dict(mass.steps(values, [n for n in INERTIA_QUANTITIES if not only or n in only]))
+    absent = [name for name in INERTIA_QUANTITIES if name in only and name not in found]
+    if absent:
+        reasons = (f"no quantity {name}: {mass.WITHOUT[name]}" for name in absent)
+        raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
+    found |= energy.steps(values, [n for n in ENERGY_QUANTITIES if not only or n in only])
+    return whole, values.arguments, found
+
+
+def _check_names(only: Collection[str], *, has_body: bool) -> None:
+    of_body = (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if has_body else ()
     known = (*QUANTITY_NAMES, *of_body)
     unknown = ", ".join(name for name in only if name not in known)
     if unknown:
         raise QuantityError(f"no quantity {unknown}; there are {', '.join(known)}")
-
-
-def _check_found(
-    only: Collection[str], found: Collection[str], values: Values, body: RigidBody | None
-) -> None:
-    absent = sorted(set(only) - set(found))
-    of_rates = ", ".join(name for name in absent if name in QUANTITY_NAMES)
-    if of_rates:
-        raise QuantityError(
-            f"{values.model.name} has no quantity {of_rates}: its rate matrix has no inverse, "
-            "since its rates do not give every angular velocity"
-        )
-    if absent and body is not None:
-        reasons = (f"no quantity {name}: {mass.WITHOUT[name]}" for name in absent)
-        raise QuantityError(f"{body.name} has {'; '.join(reasons)}")
 
 
 def _table(values: Values) -> Mapping[str, Quantity]:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from rigidsym.data.mass.properties import MassProperties
 from rigidsym.models.body import Parameter, RigidBody, given_inertia
+
+if TYPE_CHECKING:
+    from rigidsym.data.mass.properties import MassProperties
 
 _DIGITS = 30  # with which exact sums are evaluated
 _ROUNDING = 1e-14  # of the largest moment: smaller numbers are what rounding leaves
@@ -20,6 +23,7 @@ def in_numbers(body: RigidBody) -> MassProperties | None:
     import numpy as np  # which no derivation needs
 
     from rigidsym.data.mass.principal_axes import principal_axes_of
+    from rigidsym.data.mass.properties import MassProperties
 
     mass, centre, inertia = map(body.in_numbers, (body.mass, body.centre, body.inertia))
     if not all(entry.is_number for entry in (mass, *centre, *inertia)):
