@@ -60,7 +60,8 @@ def derive(
             f"{model.name} has no quantity {absent}: its rate matrix has no inverse, since its "
             "rates do not give every angular velocity"
         )
-    whole, arguments = None, values.arguments
+    whole: RigidBody | None = None
+    arguments: Mapping[str, Argument] = values.arguments
     if body is not None:
         whole, arguments, of_body = _of_body(model, body, only)
         found |= of_body
