@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Collection
+from contextlib import nullcontext
 from dataclasses import dataclass, fields, replace
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,7 @@ from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.formula.manner import DEFAULT, Manner
+from rigidsym.system.limits import time_limit
 from rigidsym.text.names import offer
 
 if TYPE_CHECKING:
@@ -140,6 +142,7 @@ def derive(
     *,
     body: Body | None = None,
     theory: bool = False,
+    timeout: float | None = None,
 ) -> Motion:
     """Derive and prove the kinematics of a rotation; `only` names the quantities wanted.
 
@@ -147,10 +150,11 @@ def derive(
     a `body`, its kinetic energy and angular momentum follow, in principal axes or any others; a
     description or a distribution of mass is integrated first.
     `theory` adds equations 1 to 16 of the lecture, which hold for every body and rotation.
+    `timeout` limits the time, in seconds.
 
     Raises NotARotation if R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over; AlgebraError for
-    expressions that the ring cannot hold; QuantityError for an unknown quantity; TypeError for
-    arguments of the wrong type.
+    expressions that the ring cannot hold; QuantityError for an unknown quantity; LimitReached
+    when the time is up; TypeError for arguments of the wrong type.
     """
     rotation = rotation_from(model) if isinstance(model, str) else model
     if not isinstance(rotation, RotationModel):
@@ -163,7 +167,8 @@ def derive(
     for name in wanted:
         if name not in QUANTITIES:
             raise QuantityError(f"no quantity {name!r}; {offer(name, QUANTITIES)}")
-    derivation = derivation_of(rotation, wanted, body=body, theory=theory)
+    with nullcontext() if timeout is None else time_limit(timeout):
+        derivation = derivation_of(rotation, wanted, body=body, theory=theory)
     return Motion(**{f.name: getattr(derivation, f.name) for f in fields(Derivation)})
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import click
 
 from rigidsym.commands.command import message
-from rigidsym.errors import RigidsymError, printable
+from rigidsym.errors import RigidsymError
 from rigidsym.version import __version__
 
 _INTERRUPTED = 130
@@ -42,8 +42,9 @@ def main() -> None:
     try:
         status = commands.main(standalone_mode=False)
     except click.ClickException as error:
-        error.message = printable(error.message)
-        error.show()
+        context = getattr(error, "ctx", None)
+        hint = f"\nsee {context.command_path} --help" if context else ""
+        message(error.format_message() + hint)
         status = error.exit_code
     except RigidsymError as error:
         message(str(error))

@@ -79,11 +79,11 @@ def command(
     """
     named = {"angles": angles, "columns": columns, "keep": keep}
     options |= {key: names_of(text) for key, text in named.items() if text is not None}
-    made = _evaluated(rotation, file, out, **options)
+    made = evaluated(rotation, file, out, **options)
     click.echo(f"{made.path}: {made.rows} rows; {', '.join(made.columns)}", err=str(out) == "-")
 
 
-def _evaluated(
+def evaluated(
     rotation: str,
     source: Path,
     path: Path,

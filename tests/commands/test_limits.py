@@ -1,0 +1,147 @@
+"""Work is bounded in time and memory, an interrupt ends it at once, and text stays text."""
+
+from __future__ import annotations
+
+import os
+import pty
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from time import monotonic, sleep
+
+import pytest
+
+import rigidsym as rs
+from helpers.command import RIGIDSYM, ROOT, call
+from rigidsym.errors import LimitReached, RequestError, RigidsymError
+from rigidsym.system.limits import memory_limit, time_limit
+
+ENDLESS = """\
+[rotation]
+matrix = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
+coordinates = ["a", "b", "c", "d", "e"]
+constraints = [
+    "a + b + c + d + e", "a*b + b*c + c*d + d*e + e*a", "a*b*c + b*c*d + c*d*e + d*e*a + e*a*b",
+    "a*b*c*d + b*c*d*e + c*d*e*a + d*e*a*b + e*a*b*c", "a*b*c*d*e - 1",
+]
+"""
+
+
+def test_a_derivation_stops_when_its_time_is_up(tmp_path):
+    (tmp_path / "own.toml").write_text(ENDLESS)
+    start = monotonic()
+    done = call("run", "own.toml", "--timeout", "0.5", cwd=tmp_path, status=1)
+    assert done.stderr == "rigidsym: stopped after 0.5 s; a longer time limit allows more\n"
+    assert monotonic() - start < 20
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_time_limit_holds_in_python():
+    with pytest.raises(LimitReached, match=r"stopped after 0\.05 s"), time_limit(0.05):
+        sleep(60)
+    with pytest.raises(LimitReached):
+        rs.derive("z(a) x(b) z(c) x(d) z(e) x(f) z(g) x(h)", timeout=0.01)
+    assert rs.derive("z(a)", timeout=60).is_proved
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("seconds", [0, -1, float("nan")])
+def test_a_time_limit_is_positive(seconds):
+    with pytest.raises(RequestError, match="expected a positive number of seconds"):
+        rs.derive("ZXZ", timeout=seconds)
+
+
+def test_a_time_limit_needs_the_main_thread():
+    caught = []
+
+    def work() -> None:
+        with pytest.raises(RequestError, match="only in the main thread") as error:
+            rs.derive("ZXZ", timeout=9)
+        caught.append(error)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert caught
+
+
+def test_memory_is_bounded():
+    program = (
+        "from rigidsym.system.limits import memory_limit\n"
+        "with memory_limit(0.1):\n    b'x' * (1 << 30)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert "LimitReached: stopped at 0.1 GB of memory" in done.stderr
+    with memory_limit(0.5):
+        assert len(b"x" * (1 << 20)) == 1 << 20
+
+
+def test_an_interrupt_ends_a_derivation_within_a_second(tmp_path):
+    (tmp_path / "own.toml").write_text(ENDLESS)
+    with subprocess.Popen(
+        [*RIGIDSYM, "run", "own.toml"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        sleep(3)
+        process.send_signal(signal.SIGINT)
+        start = monotonic()
+        _, errors = process.communicate()
+        assert monotonic() - start < 5  # a second, on a machine with nothing else to do
+    assert (process.returncode, errors.strip()) == (130, "rigidsym: interrupted")
+
+
+def test_a_terminal_shows_that_work_goes_on(tmp_path):
+    (tmp_path / "own.toml").write_text(ENDLESS)
+    controller, terminal = pty.openpty()
+    command = [*RIGIDSYM, "run", "own.toml", "--timeout", "2.5"]
+    with subprocess.Popen(
+        command, cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, stderr=terminal
+    ) as process:
+        os.close(terminal)
+        shown = b""
+        while piece := _read(controller):
+            shown += piece
+        assert process.wait() == 1
+    os.close(controller)
+    assert b"rigidsym run: 1 s" in shown
+    assert shown.endswith(
+        b"\r\x1b[Krigidsym: stopped after 2.5 s; a longer time limit allows more\r\n"
+    )
+
+
+def _read(controller: int) -> bytes:
+    try:
+        return os.read(controller, 65536)
+    except OSError:  # the terminal was closed at the other end
+        return b""
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("derive", "Z\x1b[2JX"),
+        ("derive", "ZXZ", "--only", "\x1b]0;title\x07"),
+        ("derive", "ZXZ", "--derivative", "\x1b[2J:q"),
+        ("derive", "ZXZ", "--angles", "\x1b[2J,b,c"),
+        ("run", "\x1b[2J.toml"),
+        ("\x1b[2J",),
+        ("eval", "ZXZ", "\x1b[2J.csv", "--out", "a.npy"),
+    ],
+)
+def test_no_message_commands_a_terminal(tmp_path, arguments):
+    status = 3 if arguments[0] == "run" else 2
+    done = call(*arguments, cwd=tmp_path, status=status)
+    assert "\x1b" not in done.stdout + done.stderr
+    assert "\\x1b" in done.stderr or "\\u001b" in done.stderr
+
+
+def test_the_text_of_an_error_is_printable():
+    assert str(RigidsymError("a\x1b[2J\u202eb\nφ̇")) == "a\\x1b[2J\\u202eb\nφ̇"
+    assert Path(__file__).is_file()
