@@ -289,17 +289,18 @@ def check_text(path: Path, begin: bytes) -> None:
 
 def is_number(field: str) -> bool:
     """Whether NumPy reads it too, which takes neither 1_000 nor digits beyond ASCII."""
-    return bool(field.strip()) and _number(field) is not None
+    try:
+        float(field)
+    except ValueError:
+        return False
+    return field.isascii() and "_" not in field
 
 
 def _number(field: str) -> float | None:
     """NaN for a number that is missing; None for what is not a number."""
     if field.lower() in _MISSING:
         return float("nan")
-    try:
-        return float(field) if field.isascii() and "_" not in field else None
-    except ValueError:
-        return None
+    return float(field) if is_number(field) else None
 
 
 def _decoded(line: bytes) -> str:

@@ -26,7 +26,7 @@ _SPELLINGS = (
     ("h hr hour hours", "", "s", 3600.0),
 )
 _RATES = {"dps": _DEGREE, "mdps": _DEGREE / 1e3, "cdps": _DEGREE / 100, "rpm": 2 * pi / 60}
-_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻µμ·⋅∙×", "0123456789-uu****")
+_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻µμ.·⋅∙×", "0123456789-uu*****")
 _FACTOR = re.compile(r"([^\d*/^ ()-]+)(?:\^|\*\*)?(-?\d+)?")
 
 

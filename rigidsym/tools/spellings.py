@@ -47,12 +47,21 @@ OMEGAS: tuple[Names, ...] = (
 )
 
 
-def of_component(argument: str, name: str, place: int) -> list[str]:
-    """How the component of an argument of a function may be called, its own name first."""
-    if argument == "q_dot":
-        return [name, *(form.format(name.removesuffix("_dot")) for form in RATES)]
-    if argument == "q_ddot":
-        return [name, *(form.format(name.removesuffix("_ddot")) for form in _ACCELERATIONS)]
-    groups = {"omega": OMEGAS, "p": QUATERNIONS[:-3], "R": MATRICES}
-    found = groups.get(argument.removesuffix("_space").removesuffix("_body"), ())
-    return [name, *(group[place] for group in found)]
+_GROUPS = {
+    "omega_space": OMEGAS,
+    "omega_body": OMEGAS,
+    "quaternion": QUATERNIONS[:5],
+    "matrix": MATRICES,
+}
+
+
+def groups_of(argument: str, names: Names) -> tuple[Names, ...]:
+    """How the components of an argument of a function may be called together, own names first."""
+    return names, *_GROUPS.get(argument, ())
+
+
+def of_component(argument: str, name: str) -> list[str]:
+    """How one component may be called, whatever the others are called; its own name first."""
+    forms = {"q_dot": RATES, "q_ddot": _ACCELERATIONS}.get(argument, ())
+    bare = name.removesuffix("_dot").removesuffix("_ddot")
+    return [name, *(form.format(bare) for form in forms)]

@@ -10,7 +10,7 @@ from rigidsym.errors import DataError, RequestError
 from rigidsym.text.names import offer
 from rigidsym.tools.evaluate.functions import Argument, is_angle
 from rigidsym.tools.evaluate.work import Input
-from rigidsym.tools.spellings import of_component
+from rigidsym.tools.spellings import groups_of, of_component
 
 DEGREE = pi / 180
 
@@ -75,14 +75,20 @@ def _by_order(arguments: Sequence[Argument], width: int) -> tuple[int, ...]:
 
 
 def _by_name(arguments: Sequence[Argument], header: ColumnNames) -> tuple[int, ...]:
-    places = {
-        name: header.find(of_component(argument.name, name, place))
-        for argument in arguments
-        for place, name in enumerate(argument.names)
-    }
-    if missing := [name for name, place in places.items() if place is None]:
+    columns: list[int] = []
+    missing: list[str] = []
+    for argument in arguments:
+        groups = groups_of(argument.name, argument.names)
+        group = next((group for group in groups if all(map(header.has, group))), argument.names)
+        for name in group:
+            column = header.find(of_component(argument.name, name))
+            if column is None:
+                missing.append(name)
+            else:
+                columns.append(column)
+    if missing:
         raise DataError(
             f"no column {', '.join(missing)} among {', '.join(header.names)}; "
             "--columns names the columns in their order"
         )
-    return tuple(place for place in places.values() if place is not None)
+    return tuple(columns)

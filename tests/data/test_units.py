@@ -1,0 +1,136 @@
+"""Units in headers: every common spelling is converted, and what is not a unit is refused."""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+
+from rigidsym.data.columns import ColumnNames
+from rigidsym.data.units import conversion, is_angular, unit_of
+from rigidsym.errors import DataError
+
+DEGREE = pi / 180
+ANGLES = {
+    "rad": 1,
+    "mrad": 1e-3,
+    "µrad": 1e-6,
+    "μrad": 1e-6,
+    "urad": 1e-6,
+    "Radians": 1,
+    "deg": DEGREE,
+    "°": DEGREE,
+    "Degrees": DEGREE,
+    "DEG": DEGREE,
+    "cdeg": DEGREE / 100,
+    "mdeg": DEGREE / 1000,
+    "arcmin": DEGREE / 60,
+    "′": DEGREE / 60,
+    "arcsec": DEGREE / 3600,
+    "mas": DEGREE / 3600e3,
+    "turn": 2 * pi,
+    "turns": 2 * pi,
+    "rev": 2 * pi,
+    "gon": pi / 200,
+    "gradian": pi / 200,
+}
+TIMES = {"s": 1, "sec": 1, "ms": 1e-3, "min": 60, "h": 3600, "hr": 3600, "hour": 3600}
+RATES = {
+    "dps": DEGREE,
+    "rpm": 2 * pi / 60,
+    "rev/min": 2 * pi / 60,
+    "rad s^-1": 1,
+    "rad s-1": 1,
+    "rad·s⁻¹": 1,
+    "rad*s**-1": 1,
+    "deg.s^-1": DEGREE,
+    "degrees per second": DEGREE,
+    "deg per hour": DEGREE / 3600,
+    "mdps": DEGREE / 1000,
+}
+
+
+@pytest.mark.parametrize("unit", ANGLES)
+def test_angles_become_radians(unit):
+    assert conversion(unit, "rad") == pytest.approx(ANGLES[unit], rel=1e-15)
+    assert is_angular(unit)
+
+
+@pytest.mark.parametrize("time", TIMES)
+@pytest.mark.parametrize("form", ["{}/{}", "{} / {}", "{} {}^-1", "{} per {}"])
+@pytest.mark.parametrize("unit", ["rad", "°", "mrad", "turns"])
+def test_rates_become_radians_per_second(unit, form, time):
+    expected = ANGLES[unit] / TIMES[time]
+    assert conversion(form.format(unit, time), "rad/s") == pytest.approx(expected, rel=1e-15)
+
+
+@pytest.mark.parametrize("unit", RATES)
+def test_rates_with_names_of_their_own(unit):
+    assert conversion(unit, "rad/s") == pytest.approx(RATES[unit], rel=1e-15)
+
+
+@pytest.mark.parametrize("unit", ["deg/s^2", "°/s²", "deg/s/s", "deg s^-2"])
+def test_accelerations(unit):
+    assert conversion(unit, "rad/s^2") == pytest.approx(DEGREE, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("unit", "expected", "factor"),
+    [("mm", "m", 1e-3), ("g", "kg", 1e-3), ("g cm^2", "kg m^2", 1e-7), ("kg/(m s)", "kg/m/s", 1)],
+)
+def test_lengths_and_masses(unit, expected, factor):
+    assert conversion(unit, expected) == pytest.approx(factor, rel=1e-15)
+
+
+@pytest.mark.parametrize("unit", ["grad", "rps", "foo", "deg/fortnight", "Hz", "mil", "filtered"])
+def test_an_unknown_unit_is_refused_with_its_name(unit):
+    with pytest.raises(DataError, match=f"unknown unit '{unit}'"):
+        unit_of(unit)
+
+
+@pytest.mark.parametrize(
+    ("unit", "expected"), [("deg", "rad/s"), ("deg/s", "rad"), ("1/s", "rad/s"), ("m", "kg")]
+)
+def test_a_unit_of_another_quantity_is_refused(unit, expected):
+    with pytest.raises(DataError, match=f"expected a unit such as {expected}, got {unit}"):
+        conversion(unit, expected)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "yaw [deg]",
+        "Yaw (deg)",
+        "yaw_deg",
+        "yaw deg",
+        "yaw / deg",
+        "yaw/°",
+        '"yaw, deg"',
+        "att.yaw [deg]",
+        "/imu/yaw [deg]",
+        "ATT.yaw_deg",
+    ],
+)
+def test_a_name_is_found_with_its_unit_however_it_is_written(name):
+    header = ColumnNames(["time", name])
+    assert header.find(["yaw"]) == 1
+    assert header.factor(1, "rad") == pytest.approx(DEGREE)
+
+
+def test_an_index_is_no_unit():
+    header = ColumnNames(["q[0]", "q[1]", "q[2]", "q[3]"])
+    assert [header.find([f"q{k}"]) for k in range(4)] == [0, 1, 2, 3]
+    assert header.factor(0, "") is None
+
+
+@pytest.mark.parametrize(
+    "names", [["yaw", "pitch", "yaw"], ["yaw", "Yaw [deg]"], ["a.yaw", "b.yaw"], ["YAW", "y a w"]]
+)
+def test_a_name_that_occurs_twice_is_refused(names):
+    with pytest.raises(DataError, match="two columns are named yaw"):
+        ColumnNames(names).find(["yaw"])
+
+
+def test_the_full_name_is_preferred_to_the_end_of_a_path():
+    assert ColumnNames(["desired.yaw", "yaw"]).find(["yaw"]) == 1
+    assert ColumnNames(["position.x", "orientation.x"]).find(["x"]) is None

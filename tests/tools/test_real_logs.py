@@ -1,0 +1,347 @@
+"""Logs as instruments, spreadsheets and exporters write them, each as a file made for it."""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import time
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import rigidsym as rs
+from helpers.log_files import command, run
+from rigidsym.data.readers import reader_of
+from rigidsym.errors import DataError
+from rigidsym.tools.evaluate.evaluate import evaluation
+from rigidsym.tools.identify.identify import identify_file
+
+ANGLES = np.array([[10.0, 20.0, 30.0], [-40.0, 50.5, 60.0], [1.5, -2.5, 3.5]])  # degrees
+ATTITUDE = rs.EulerAngles("ZYX", angles=("yaw", "pitch", "roll"))
+MATRIX = Rotation.from_euler("ZYX", ANGLES, degrees=True).as_matrix().reshape(-1, 9)
+ROWS = [",".join(map(repr, row)) for row in ANGLES.tolist()]
+
+
+@pytest.fixture(scope="module")
+def motion() -> rs.Motion:
+    return rs.derive(ATTITUDE)
+
+
+def matrices(motion, path, **options) -> np.ndarray:
+    result = path.with_name("result.npy")
+    evaluation(motion, ("rotation_matrix",), path, result, **options).run()
+    return np.load(result)
+
+
+def text(path, *lines, encoding="utf-8", end="\n"):
+    path.write_bytes(end.join([*lines, ""]).encode(encoding))
+    return path
+
+
+HEADER = "yaw [deg],pitch [deg],roll [deg]"
+SEMICOLONS = [row.replace(",", ";").replace(".", ",") for row in ROWS]
+FILES = {
+    "a comment before the header": ("# flight 7", HEADER, *ROWS),
+    "comments everywhere": ("# flight 7", "", "# rig 2", HEADER, "# start", *ROWS, "# end"),
+    "a header in a comment": (f"# {HEADER}", *ROWS),
+    "a header in a comment between others": ("# flight 7", f"# {HEADER}", "# start", *ROWS),
+    "the header of rostopic echo -p": (
+        "%time,field.yaw_deg,field.pitch_deg,field.roll_deg",
+        *(f"1700000000123456789,{row}" for row in ROWS),
+    ),
+    "names in quotes with commas": ('"yaw, deg","pitch, deg","roll, deg"', *ROWS),
+    "all fields in quotes": (
+        '"yaw [deg]","pitch [deg]","roll [deg]"',
+        *('"' + row.replace(",", '","') + '"' for row in ROWS),
+    ),
+    "a text column with commas in quotes": (
+        f"note,{HEADER}",
+        *(f'"calm, then gusts",{row}' for row in ROWS),
+    ),
+    "decimal commas": (HEADER.replace(",", ";"), *SEMICOLONS),
+    "decimal commas between tabs": (
+        HEADER.replace(",", "\t"),
+        *(row.replace(";", "\t") for row in SEMICOLONS),
+    ),
+    "units in a second line": ("yaw,pitch,roll", "deg,deg,deg", *ROWS),
+    "units in brackets in a second line": (
+        "t,yaw,pitch,roll",
+        "[s],[°],[°],[°]",
+        *(f"{k},{row}" for k, row in enumerate(ROWS)),
+    ),
+    "a second line without all units": (
+        "n,yaw,pitch,roll",
+        "-,deg,deg,deg",
+        *(f"{k},{row}" for k, row in enumerate(ROWS)),
+    ),
+    "blanks": ("yaw_deg pitch_deg roll_deg", *(row.replace(",", "   ") for row in ROWS)),
+    "a separator at the end of each row": (HEADER, *(f"{row}," for row in ROWS)),
+    "blank lines and spaces": ("", HEADER, *(f"  {row.replace(',', ' , ')}  \n" for row in ROWS)),
+    "an ArduPilot attitude": (
+        "timestamp,TimeUS,DesRoll,Roll,DesPitch,Pitch,DesYaw,Yaw",
+        *(
+            f"1700000000.5,{k},0,{roll},0,{pitch},0,{yaw}"
+            for k, (yaw, pitch, roll) in enumerate(ANGLES.tolist())
+        ),
+    ),
+    "an ArduPilot attitude with the message": (
+        "timestamp,ATT.Roll,ATT.Pitch,ATT.Yaw,ATT.AEKF",
+        *(f"0.5,{roll},{pitch},{yaw},3" for yaw, pitch, roll in ANGLES.tolist()),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_eval_reads(motion, tmp_path, name):
+    found = matrices(motion, text(tmp_path / "log.csv", *FILES[name]), degrees="Ardu" in name)
+    np.testing.assert_allclose(found, MATRIX, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "end"), [("utf-8-sig", "\n"), ("utf-8-sig", "\r\n"), ("utf-8", "\r\n")]
+)
+@pytest.mark.parametrize("lines", [(HEADER, *ROWS), tuple(ROWS)], ids=["header", "no header"])
+def test_byte_order_marks_and_ends_of_lines_of_windows(motion, tmp_path, encoding, end, lines):
+    path = text(tmp_path / "log.csv", *lines, encoding=encoding, end=end)
+    np.testing.assert_allclose(matrices(motion, path, degrees=True), MATRIX, atol=1e-15)
+
+
+def test_structured_npy_files(motion, tmp_path):
+    kinds = [("stamp", "i8"), ("name", "U4"), ("roll", "f4"), ("pitch", "f8"), ("yaw", ">f8")]
+    table = np.zeros(3, kinds)
+    table["yaw"], table["pitch"], table["roll"] = ANGLES.T
+    np.save(tmp_path / "log.npy", table)
+    found = matrices(motion, tmp_path / "log.npy", degrees=True)
+    np.testing.assert_allclose(found, MATRIX, atol=1e-7)
+
+
+QUATERNION = Rotation.from_matrix(MATRIX.reshape(-1, 3, 3)).as_quat(scalar_first=True)
+PX4 = (
+    "timestamp,q[0],q[1],q[2],q[3],delta_q_reset[0],delta_q_reset[1]",
+    *(f"{k},{','.join(map(repr, row))},1,0" for k, row in enumerate(QUATERNION.tolist())),
+)
+ROS = (
+    "Time,header.seq,header.frame_id,orientation.x,orientation.y,orientation.z,orientation.w,"
+    "orientation_covariance_0,angular_velocity.x,angular_velocity.y,angular_velocity.z",
+    *(
+        f"1700000000.5,{k},imu,{x!r},{y!r},{z!r},{w!r},0,0.1,0.2,0.3"
+        for k, (w, x, y, z) in enumerate(QUATERNION.tolist())
+    ),
+)
+
+
+@pytest.mark.parametrize("lines", [PX4, ROS], ids=["PX4", "ROS"])
+def test_angles_from_the_quaternions_of_px4_and_ros(motion, tmp_path, lines):
+    result = tmp_path / "angles.csv"
+    path = text(tmp_path / "log.csv", *lines)
+    made = evaluation(motion, ("from_quaternion",), path, result, degrees=True).run()
+    assert made.columns == ("yaw [deg]", "pitch [deg]", "roll [deg]")
+    reader = reader_of(result)
+    (chunk,) = reader.chunks(range(3))
+    np.testing.assert_allclose(chunk.table, ANGLES, atol=1e-12)
+
+
+def test_the_rates_of_px4_and_the_matrix_as_conversions(motion, tmp_path):
+    gyro = "timestamp,gyro_rad[0],gyro_rad[1],gyro_rad[2],yaw_deg,pitch_deg,roll_deg"
+    lines = [f"{k},0.1,0.2,0.3,{row}" for k, row in enumerate(ROWS)]
+    path = text(tmp_path / "log.csv", gyro, *lines)
+    result = tmp_path / "rates.npy"
+    name = "rates_from_angular_velocity_body"
+    evaluation(motion, (name,), path, result).run()
+    kernel = getattr(motion.kernels().load(), name)
+    np.testing.assert_allclose(np.load(result), kernel(np.radians(ANGLES), (0.1, 0.2, 0.3)))
+    names = ",".join(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
+    lines = [",".join(map(repr, row)) for row in MATRIX.tolist()]
+    path = text(tmp_path / "matrices.csv", names, *lines)
+    both = ("from_rotation_matrix",)
+    evaluation(motion, both, path, tmp_path / "angles.npy", degrees=True).run()
+    np.testing.assert_allclose(np.load(tmp_path / "angles.npy"), ANGLES, atol=1e-12)
+
+
+def test_units_are_converted_column_by_column_whatever_degrees_says(motion, tmp_path):
+    header = "yaw [cdeg],pitch [mrad],roll [arcmin],yaw_rate [rpm],pitch_rate [deg/h],roll_rate"
+    row = "1000,349.0658503988659,1800,60,3600,0.5"
+    path = text(tmp_path / "log.csv", header, row)
+    velocity = motion.kernels().load().angular_velocity_body
+    for degrees, last in ((False, 0.5), (True, np.radians(0.5))):
+        result = tmp_path / "result.npy"
+        evaluation(motion, ("angular_velocity_body",), path, result, degrees=degrees).run()
+        expected = velocity(np.radians([10, 20, 30]), (2 * np.pi, np.radians(1), last))
+        expected = np.degrees(expected) if degrees else expected
+        np.testing.assert_allclose(np.load(result), [expected], rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("header", "message"),
+    [
+        ("yaw [grad],pitch,roll", r"column yaw \[grad\]: unknown unit 'grad'"),
+        (
+            "yaw [deg/s],pitch,roll",
+            r"column yaw \[deg/s\]: expected a unit such as (rad|deg), got",
+        ),
+        ("yaw,pitch,roll,yaw", "two columns are named yaw: yaw, yaw"),
+        ("yaw,pitch,roll,Yaw [deg]", r"two columns are named yaw: yaw, Yaw \[deg\]"),
+    ],
+)
+def test_what_is_not_certain_is_refused(motion, tmp_path, header, message):
+    path = text(tmp_path / "log.csv", header, ",".join(["1"] * len(header.split(","))))
+    with pytest.raises(DataError, match=message):
+        matrices(motion, path)
+    with_matrix = f"{header},{','.join(f'r{i}{j}' for i in '123' for j in '123')}"
+    path = text(tmp_path / "log.csv", with_matrix, ",".join(["1"] * len(with_matrix.split(","))))
+    with pytest.raises(DataError, match=message):
+        identify_file(path)
+
+
+# --- missing numbers ------------------------------------------------------------------------
+
+GAPS = (HEADER, ROWS[0], "-40.0,,60.0", "NaN,1,2", "1,N/A,null", ROWS[2])
+
+
+def test_missing_numbers_are_an_error_unless_a_policy_says_otherwise(motion, tmp_path):
+    path = text(tmp_path / "log.csv", *GAPS)
+    with pytest.raises(DataError, match=r"log\.csv, line 3: pitch is missing; --missing nan"):
+        matrices(motion, path)
+    found = matrices(motion, path, missing="drop")
+    np.testing.assert_allclose(found, MATRIX[[0, 2]], atol=1e-15)
+    found = matrices(motion, path, missing="nan")
+    np.testing.assert_allclose(found[[0, 4]], MATRIX[[0, 2]], atol=1e-15)
+    assert np.isnan(found[1:4]).any(axis=1).all()
+
+
+def test_missing_numbers_of_arrays_and_parquet_follow_the_same_policy(motion, tmp_path):
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    np.save(tmp_path / "log.npy", np.where(ANGLES == 50.5, np.nan, ANGLES))
+    columns = {"yaw": [10.0, -40.0, 1.5], "pitch": [20.0, None, -2.5], "roll": [30.0, 60.0, 3.5]}
+    parquet.write_table(pyarrow.table(columns), tmp_path / "log.parquet")
+    for path in (tmp_path / "log.npy", tmp_path / "log.parquet"):
+        with pytest.raises(DataError, match=f"{path.name}, row 2: pitch is missing"):
+            matrices(motion, path)
+        found = matrices(motion, path, missing="drop", degrees=True)
+        np.testing.assert_allclose(found, MATRIX[[0, 2]], atol=1e-15)
+
+
+def test_identify_drops_samples_with_missing_numbers_on_request(tmp_path):
+    names = ",".join(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
+    lines = [f"{a},{','.join(map(repr, m))}" for a, m in zip(ROWS, MATRIX.tolist(), strict=True)]
+    lines[1] = lines[1].replace("50.5", "")
+    path = text(tmp_path / "log.csv", f"yaw,pitch,roll,{names}", *lines)
+    with pytest.raises(DataError, match="line 3: angles: a number that is missing"):
+        identify_file(path)
+    found = identify_file(path, drops_missing=True)
+    assert (found.fits, found.samples) == (True, 2)
+
+
+@pytest.mark.parametrize("unit", ["mrad", "cdeg", "arcmin", "turn", "gon", "rad", "deg"])
+def test_identify_converts_units(tmp_path, unit):
+    from rigidsym.data.units import conversion
+
+    names = ",".join(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
+    angles = ANGLES / conversion(unit, "deg")
+    table = np.hstack([angles, MATRIX])
+    header = f"yaw [{unit}],pitch [{unit}],roll [{unit}],{names}"
+    found = identify_file(
+        text(tmp_path / "log.csv", header, *(",".join(map(repr, r)) for r in table.tolist()))
+    )
+    (answer,) = found.answers
+    assert answer.reading.sequence == "ZYX"
+    assert answer.reading.degrees == ("rad" not in unit)
+
+
+# --- the command in a pipe ------------------------------------------------------------------
+
+
+def test_standard_input_and_output_with_kept_columns_and_names_of_angles():
+    log = "\n".join(
+        [
+            "# flight 7",
+            f'time,"note, free",{HEADER}',
+            *(f'{k},"a, b",{row}' for k, row in enumerate(ROWS)),
+        ]
+    )
+    options = ("--angles", "yaw,pitch,roll", "--keep", "time,note", "--quantity", "quaternion")
+    asked = command("ZYX", "-", "--out", "-", *options)
+    asked[asked.index("time,note")] = "time"
+    done = subprocess.run(asked, input=log, capture_output=True, text=True, check=True)
+    head, *rows = done.stdout.splitlines()
+    assert head == "time,qw,qx,qy,qz"
+    table = np.array([row.split(",") for row in rows], float)
+    assert table[:, 0].tolist() == [0, 1, 2]
+    angle = np.abs(np.sum(table[:, 1:] * QUATERNION, axis=1))
+    np.testing.assert_allclose(angle, 1, atol=1e-15)
+    assert "standard output: 3 rows" in done.stderr
+
+
+def test_a_result_reads_back_as_the_next_input():
+    log = "\n".join([HEADER, *ROWS])
+    there = command(
+        "ZYX", "-", "--out", "-", "--angles", "yaw,pitch,roll", "--quantity", "quaternion"
+    )
+    back = command("ZYX", "-", "--out", "-", "--quantity", "from_quaternion", "--degrees")
+    first = subprocess.run(there, input=log, capture_output=True, text=True, check=True)
+    second = subprocess.run(back, input=first.stdout, capture_output=True, text=True, check=True)
+    found = np.loadtxt(io.StringIO(second.stdout), delimiter=",", skiprows=1)
+    np.testing.assert_allclose(found, ANGLES, atol=1e-12)
+
+
+@pytest.mark.parametrize("ending", [".csv", ".parquet", ".npy"])
+def test_time_stamps_of_nanoseconds_keep_every_digit_or_are_refused(motion, tmp_path, ending):
+    stamps = [f"{1700000000123456789 + k},{row}" for k, row in enumerate(ROWS)]
+    path = text(tmp_path / "log.csv", f"stamp,{HEADER}", *stamps)
+    work = evaluation(motion, ("quaternion",), path, tmp_path / f"r{ending}", keep=["stamp"])
+    if ending == ".npy":
+        with pytest.raises(DataError, match=r"integers beyond 2\^53"):
+            work.run()
+        return
+    work.run()
+    if ending == ".csv":
+        lines = (tmp_path / "r.csv").read_text(encoding="utf-8").splitlines()
+        assert [line.partition(",")[0] for line in lines[1:]] == [s[:19] for s in stamps]
+    else:
+        from pyarrow import parquet
+
+        table = parquet.read_table(tmp_path / "r.parquet")
+        assert list(map(str, table["stamp"].to_pylist())) == [s[:19] for s in stamps]
+
+
+def test_a_column_to_keep_that_is_not_there_is_named(motion, tmp_path):
+    path = text(tmp_path / "log.csv", HEADER, *ROWS)
+    with pytest.raises(DataError, match="no column time among yaw"):
+        matrices(motion, path, keep=["time"])
+
+
+# --- bounds ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", ["numbers", "names", "later"])
+def test_a_line_without_end_is_refused_at_once(tmp_path, kind):
+    line = {"numbers": "1," * 20_000_000, "names": "ab" * 20_000_000, "later": "1," * 9_000_000}
+    before = "yaw,pitch,roll\n1,2,3\n" if kind == "later" else ""
+    (tmp_path / "log.csv").write_text(before + line[kind])
+    start = time.monotonic()
+    done = run("ZYX", tmp_path / "log.csv", "--out", tmp_path / "r.npy")
+    assert time.monotonic() - start < 10
+    assert done.returncode == 3
+    assert "longer than 1 MB; expected one row a line" in done.stderr or kind == "later"
+    assert len(done.stderr) < 500
+
+
+def test_too_many_columns_are_refused(tmp_path):
+    (tmp_path / "log.csv").write_text("1," * 100_000)
+    with pytest.raises(DataError, match="100001 columns; at most 10000 are read"):
+        reader_of(tmp_path / "log.csv")
+
+
+def test_the_example_of_an_unquoted_decimal_comma_is_no_number(motion, tmp_path):
+    path = text(tmp_path / "log.csv", "yaw,pitch,roll", "0,5,1,5,2,5")
+    with pytest.raises(DataError, match="line 2: 6 fields, expected 3"):
+        matrices(motion, path)
+
+
+def test_a_position_is_not_taken_for_a_part_of_the_quaternion(motion, tmp_path):
+    path = text(tmp_path / "log.csv", "q0,q1,q2,q3,x,y,z", "1,0,0,0,5,6,7")
+    evaluation(motion, ("from_quaternion",), path, tmp_path / "r.npy").run()
+    assert not np.load(tmp_path / "r.npy").any()
