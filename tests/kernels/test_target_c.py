@@ -286,3 +286,77 @@ def test_two_over_pi_is_right_to_the_last_bit():
     with mp.workdps(420):
         value = sum(mp.mpf(2) ** (32 * (1 - k)) * word for k, word in enumerate(two_over_pi()))
         assert 0 <= 2 / mp.pi - value < mp.mpf(2) ** (-32 * 38)
+
+
+MODES = """
+#include <math.h>
+#include <stdio.h>
+#include "euler_zxz_intrinsic.h"
+
+enum { N = 64 };
+static double q[3 * N], R[9 * N], one[9];
+static float qf[3 * N], Rf[9 * N], onef[9];
+
+int main(void)
+{
+    double worst = 0.0;
+    for (int k = 0; k < N; k++) {
+        q[3 * k + 1] = 0.37 * k - 5.0;
+        q[3 * k] = 1000.1 * k;
+        q[3 * k + 2] = -0.01 * k;
+    }
+    for (int k = 0; k < 3 * N; k++) {
+        qf[k] = (float)q[k];
+    }
+    euler_zxz_intrinsic_rotation_matrix_array(N, q, 3, 1, R, 9, 1);
+    euler_zxz_intrinsic_rotation_matrix_arrayf(N, qf, 3, 1, Rf, 9, 1);
+    for (int k = 0; k < N; k++) {
+        const double exact = cos(q[3 * k + 1]), far = sin(q[3 * k]) * sin(q[3 * k + 1]);
+        euler_zxz_intrinsic_rotation_matrix(q + 3 * k, one);
+        euler_zxz_intrinsic_rotation_matrixf(qf + 3 * k, onef);
+        worst = fmax(worst, fabs(R[9 * k + 8] - exact));
+        worst = fmax(worst, fabs(one[8] - exact));
+        worst = fmax(worst, fabs(R[9 * k + 2] - far));
+        worst = fmax(worst, 1e-10 * fabs(Rf[9 * k + 8] - exact));
+        worst = fmax(worst, 1e-10 * fabs(onef[8] - exact));
+    }
+    printf("%.3g", worst);
+    return 0;
+}
+"""
+REFUSED = {
+    "gcc": (
+        "-ffast-math",
+        "-Ofast",
+        "-funsafe-math-optimizations",
+        "-fassociative-math -fno-signed-zeros -fno-trapping-math",
+        "-freciprocal-math",
+        "-ffinite-math-only",
+    ),
+    "clang": ("-ffast-math", "-Ofast", "-ffinite-math-only"),
+}
+TAKEN = (
+    "-O0",
+    "-O3 -march=native -ffp-contract=fast -fno-math-errno -fno-trapping-math",
+    "-O3 -fno-signed-zeros",
+)
+TAKEN_BY_CLANG = (  # which has no macro for them: a pragma takes their effect away
+    "-O3 -march=native -funsafe-math-optimizations",
+    "-O3 -fassociative-math -fno-signed-zeros -fno-trapping-math",
+)
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_modes_that_change_values_are_refused_or_have_no_effect(sources, compiler):
+    source = sources / f"{NAME}.c"
+    for flags in REFUSED[compiler]:
+        command = (compiler, "-O2", *flags.split(), "-c", source.name, "-o", "refused.o")
+        done = subprocess.run(command, cwd=sources, capture_output=True, text=True, check=False)
+        assert done.returncode != 0, flags
+        assert "compile without -ffast-math" in done.stderr, flags
+    (sources / "modes.c").write_text(MODES, encoding="utf-8")
+    for flags in (*TAKEN, *(TAKEN_BY_CLANG if compiler == "clang" else ())):
+        run(compiler, "-O2", "-c", "modes.c", "-o", "modes.o", cwd=sources)
+        run(compiler, *flags.split(), "-c", source.name, "-o", "taken.o", cwd=sources)
+        run(compiler, "modes.o", "taken.o", "-o", "modes", "-lm", cwd=sources)
+        assert float(run("./modes", cwd=sources)) < 4e-16, flags
