@@ -20,6 +20,7 @@ from rigidsym.commands.cli import commands
 from rigidsym.errors import KernelError, QuantityError, SpecError
 from rigidsym.kernels.lowering.derivatives import read_request, read_requests
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.pipeline import output_of, read_record, read_spec
 
 MODELS = ("ZXZ", "zyx", "rotation_vector", "modified_rodrigues", "quaternion")
@@ -110,6 +111,33 @@ def test_removable_singularities_stay_removable():
 def half_cross(v) -> np.ndarray:
     """d(−v × v̇/2)/dv: what Ω′ is to first order in v."""
     return 0.5 * np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+
+
+TOGETHER = ("angular_velocity_body", "angular_velocity_space", "rotation_matrix")
+
+
+@pytest.mark.parametrize("name", [*rs.EULER_SEQUENCES, *PARAMETRISATIONS, *ALONE])
+def test_products_of_several_quantities_agree_with_their_jacobians_in_one_module(name):
+    motion = rs.derive(name, only=TOGETHER)
+    asked = [f"{q} by q{kind}" for q in TOGETHER for kind in ("", " jvp", " vjp")]
+    module = motion.kernels(derivatives=asked).load()
+    random = np.random.default_rng(8)
+    for quantity in TOGETHER:
+        step = motion.step(quantity)
+        inputs = [
+            random.uniform(0.2, 1, len(motion.argument(v).names)) for v in step.quantity.inputs
+        ]
+        tangent = random.normal(size=len(motion.argument("q").names))
+        weights = random.normal(size=step.expression.shape[0] * step.expression.shape[1])
+        value, jacobian = getattr(module, f"{quantity}_jacobian_q")(*inputs)
+        rows = jacobian.reshape(-1, len(tangent))
+        for kind, vector, expected in (
+            ("jvp", tangent, (rows @ tangent).reshape(value.shape)),
+            ("vjp", weights, weights @ rows),
+        ):
+            same, product = getattr(module, f"{quantity}_{kind}_q")(*inputs, vector)
+            np.testing.assert_allclose(same, value, atol=1e-13)
+            np.testing.assert_allclose(product, expected, atol=1e-12)
 
 
 @pytest.mark.parametrize("leading", [(), (5,), (2, 3)])

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import product
 from math import prod
 
@@ -37,7 +38,7 @@ Asked = Iterable[str] | Mapping[str, str | Iterable[str]]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Request:
+class DerivativeRequest:
     """The derivative of one quantity by one vector of its inputs."""
 
     quantity: str
@@ -54,7 +55,7 @@ class Request:
         return f"{self.quantity} by {self.vector}{kind}"
 
 
-def read_request(text: str) -> Request:
+def read_request(text: str) -> DerivativeRequest:
     """The request in "QUANTITY by VECTOR [jvp|vjp]", or with colons between its words.
 
     Raises KernelError for any other text.
@@ -62,10 +63,10 @@ def read_request(text: str) -> Request:
     found = _TEXT.fullmatch(text.strip())
     if not found or (found[3] or "jacobian") not in KINDS:
         raise KernelError(f"no derivative {text!r}; {_EXPECTED}")
-    return Request(quantity=found[1], vector=found[2], kind=found[3] or "jacobian")
+    return DerivativeRequest(quantity=found[1], vector=found[2], kind=found[3] or "jacobian")
 
 
-def read_requests(asked: Asked) -> tuple[Request, ...]:
+def read_requests(asked: Asked) -> tuple[DerivativeRequest, ...]:
     """The requests, each once, in their order; {"angular_velocity_body": ("q", "q_dot jvp")} too.
 
     Raises KernelError for a text that is none.
@@ -80,7 +81,7 @@ def read_requests(asked: Asked) -> tuple[Request, ...]:
 class Derivative:
     """One derivative, ready to be lowered."""
 
-    request: Request
+    request: DerivativeRequest
     step: Step
     vectors: tuple[Argument, ...]  # the inputs of the quantity, then the vector of the product
     given: Argument | None  # that vector
@@ -128,7 +129,9 @@ class Derivative:
         return [sp.Add(*map(sp.Mul, line, self.given.symbols)) for line in lines]
 
 
-def derivatives_of(derivation: Derivation, requests: Iterable[Request]) -> tuple[Derivative, ...]:
+def derivatives_of(
+    derivation: Derivation, requests: Iterable[DerivativeRequest]
+) -> tuple[Derivative, ...]:
     """The derivatives that are asked for, ready to be lowered.
 
     Raises QuantityError for a quantity that is not in the derivation, and KernelError for a
@@ -137,7 +140,7 @@ def derivatives_of(derivation: Derivation, requests: Iterable[Request]) -> tuple
     return tuple(_derivative(derivation, request) for request in requests)
 
 
-def _derivative(derivation: Derivation, request: Request) -> Derivative:
+def _derivative(derivation: Derivation, request: DerivativeRequest) -> Derivative:
     step = derivation.step(request.quantity)
     inputs = step.quantity.inputs
     if request.vector not in inputs:
@@ -162,11 +165,17 @@ def _is_bound(model: RotationModel, by: Argument) -> bool:
     return any(symbols.intersection(sp.preorder_traversal(c)) for c in model.constraints)
 
 
+@cache
+def _symbols(names: tuple[str, ...]) -> tuple[sp.Dummy, ...]:
+    """The components of a vector of a product: the same for all products with this vector."""
+    return tuple(map(sp.Dummy, names))
+
+
 def _tangent(by: Argument) -> Argument:
     return replace(
         by,
         name=f"{by.name}_tangent",
-        symbols=tuple(map(sp.Dummy, by.names)),
+        symbols=_symbols(by.names),
         names=tuple(f"{name}_tangent" for name in by.names),
         about=f"a direction in the space of {by.name}",
     )
@@ -178,7 +187,7 @@ def _cotangent(step: Step) -> Argument:
     names = tuple(f"weight_{k}" for k in range(1, count + 1))
     return Argument(
         name=name,
-        symbols=tuple(map(sp.Dummy, names)),
+        symbols=_symbols(names),
         names=names,
         notation=tuple(Markup(text, text) for text in names),
         units=("",) * count,
