@@ -18,6 +18,7 @@ myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
 html_theme = "furo"
 html_title = f"rigidsym {version}"
+html_extra_path = ["derivation.schema.json"]
 html_static_path = ["_static"]
 html_css_files = ["math.css"]
 html_math_renderer = "mathml"

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from html import escape
 from typing import Any
 
 import from_code
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
 
 from rigidsym.notes.formats.mathml import mathml
+
+_FROM_CODE = re.compile(r"^```\{from-code\} (\w+)\n```$", re.M)
 
 
 def inline(translator: Any, node: nodes.math) -> None:
@@ -26,17 +28,12 @@ def display(translator: Any, node: nodes.math_block) -> None:
     raise nodes.SkipNode
 
 
-class FromCode(SphinxDirective):
-    """`{from-code} NAME`: the Markdown that the function of this name in from_code.py returns."""
-
-    required_arguments = 1
-
-    def run(self) -> list[nodes.Node]:
-        text = getattr(from_code, self.arguments[0])()
-        return self.parse_text_to_nodes(text, allow_section_headings=True)
+def fill(_app: Sphinx, _page: str, source: list[str]) -> None:
+    """Put the Markdown that `from_code.NAME()` returns in place of ```{from-code} NAME."""
+    source[0] = _FROM_CODE.sub(lambda match: getattr(from_code, match[1])(), source[0])
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
     app.add_html_math_renderer("mathml", (inline, None), (display, None))
-    app.add_directive("from-code", FromCode)
+    app.connect("source-read", fill)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -5,8 +5,10 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Iterable, Sequence
+from types import NoneType
 
 import click
+from schema import rows, schema
 
 import rigidsym
 from rigidsym import errors
@@ -49,7 +51,9 @@ def _plain(text: str) -> str:
 
 
 def commands() -> str:
-    return "\n".join(_command(cli.commands[name]) for name in sorted(cli.commands))
+    context = click.Context(cli)
+    found = [cli.get_command(context, name) for name in cli.list_commands(context)]
+    return "\n".join(_command(command) for command in found if command)
 
 
 def _command(command: click.Command) -> str:
@@ -123,6 +127,14 @@ def targets() -> str:
     )
 
 
+# derivation files
+
+
+def derivation_file() -> str:
+    found = [(literal(key), kind, _plain(about)) for key, kind, about in rows(schema())]
+    return table(("key", "value", "meaning"), found)
+
+
 # errors
 
 
@@ -147,6 +159,8 @@ def _documented(name: str) -> str:
     value = getattr(rigidsym, name)
     if inspect.isclass(value) and issubclass(value, Exception):
         return f"## {name}\n\n{prose(inspect.getdoc(value) or '')}\n"
+    if name == "__version__":
+        return ""
     if not callable(value):
         return f"## {name}\n\n`rigidsym.{name}`: {type(value).__name__} of {len(value)} names.\n"
     members = _members(value) if inspect.isclass(value) else []
@@ -162,7 +176,20 @@ def _documented(name: str) -> str:
 
 
 def _signature(value: object) -> str:
-    return str(inspect.signature(value)).replace("rigidsym.", "")  # type: ignore[arg-type]
+    """Names and simple defaults; the docstring says what each may be."""
+    signature = inspect.signature(value)  # type: ignore[arg-type]
+    bare = [_bare(parameter) for parameter in signature.parameters.values()]
+    return str(signature.replace(parameters=bare, return_annotation=inspect.Signature.empty))
+
+
+def _bare(parameter: inspect.Parameter) -> inspect.Parameter:
+    is_simple = isinstance(parameter.default, str | int | float | tuple | NoneType)
+    default = parameter.default if is_simple else "..."
+    has_default = parameter.default is not inspect.Parameter.empty
+    return parameter.replace(
+        annotation=inspect.Parameter.empty,
+        default=default if has_default else inspect.Parameter.empty,
+    )
 
 
 def _members(cls: type) -> list[str]:

@@ -7,18 +7,25 @@ follows appear in the output, in their order; a line that ends in `...` is its b
 
 from __future__ import annotations
 
+import importlib
+import json
 import os
 import re
 import subprocess
 import sys
+import tomllib
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import pytest
 
 from helpers.command import ROOT
+from rigidsym.models.solids import SHAPES
+from rigidsym.pipeline import vocabulary
+from rigidsym.spec import derivation_file, distribution_table, rotation_table
 
 DOCS = ROOT / "docs"
 PAGES = sorted(path for path in DOCS.rglob("*.md"))
@@ -112,3 +119,65 @@ def test_a_line_that_does_not_appear_is_found(tmp_path):
     reader.text("one\nt...\n")
     with pytest.raises(AssertionError, match="'two' is not in"):
         reader.text("two\ntwo\n")
+
+
+# the schema of derivation files
+
+
+@pytest.fixture(scope="module")
+def schema():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(DOCS))
+        return importlib.import_module("schema").schema()
+
+
+def test_the_schema_is_that_of_the_code(schema, request):
+    path = DOCS / "derivation.schema.json"
+    if request.config.getoption("--update-golden"):
+        path.write_text(json.dumps(schema, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    assert json.loads(path.read_text(encoding="utf-8")) == schema
+
+
+FILES = {path.stem: path.read_text(encoding="utf-8") for path in ROOT.glob("derivations/*.toml")}
+FILES |= {
+    f"{page.stem}-{caption}": text
+    for page in PAGES
+    for _, caption, text in blocks(page)
+    if caption.endswith(".toml")
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_the_schema_takes_what_the_reader_takes(name, schema):
+    jsonschema.validate(tomllib.loads(FILES[name]), schema)
+
+
+@pytest.mark.parametrize(
+    ("path", "keys"),
+    [
+        ((), derivation_file._FILE),
+        (("rotation",), rotation_table.KEYS),
+        (("output",), derivation_file._OUTPUT),
+        (("notation",), (*vocabulary().choices, "frames")),
+    ],
+    ids=lambda value: "-".join(value) or "top",
+)
+def test_the_schema_has_the_keys_of_the_reader(path, keys, schema):
+    for step in path:
+        schema = schema["properties"][step]
+    assert set(schema["properties"]) == set(keys)
+
+
+def test_the_schema_has_every_key_of_a_body(schema):
+    shapes = [{"shape": shape} for shape in (*SHAPES, "polyhedron", "given")]
+    tables = [*shapes, {"particles": "cloud.npy"}, {"mesh": "a.stl"}, {"inertia": []}]
+    keys = {key for table in tables for key in distribution_table.keys_of(table, next(iter(table)))}
+    body = schema["properties"]["body"]["properties"]
+    assert set(body) == keys | {"parts", "principal_moments", "allow"}
+    assert set(body["parts"]["items"]["properties"]) == keys | {*distribution_table._PLACE}
+
+
+@pytest.mark.parametrize("text", ["rotation = 3", "[rotation]\nsequenc = 'ZXZ'", "[notation]"])
+def test_the_schema_refuses_what_the_reader_refuses(text, schema):
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(tomllib.loads(text), schema)

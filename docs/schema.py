@@ -1,0 +1,220 @@
+"""The JSON Schema of derivation files, `docs/derivation.schema.json`, and its table.
+
+Editors check and complete TOML by it. Names of quantities, targets and shapes come from the code;
+a test compares the file with this module and the schema with the reader.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from rigidsym.models.solids import SHAPES
+from rigidsym.pipeline import vocabulary
+
+Schema = dict[str, Any]
+VOCABULARY = vocabulary()
+
+
+def text(about: str, *choices: str) -> Schema:
+    return {"type": "string", "description": about} | ({"enum": [*choices]} if choices else {})
+
+
+def flag(about: str) -> Schema:
+    return {"type": "boolean", "default": False, "description": about}
+
+
+def texts(about: str, *choices: str) -> Schema:
+    items: Schema = {"type": "string"} | ({"enum": [*choices]} if choices else {})
+    return {"type": "array", "items": items, "description": about}
+
+
+def listed(about: str, items: Schema, count: int | None = None) -> Schema:
+    size = {} if count is None else {"minItems": count, "maxItems": count}
+    return {"type": "array", "items": items, "description": about} | size
+
+
+def either(about: str, *kinds: Schema) -> Schema:
+    return {"description": about, "anyOf": [*kinds]}
+
+
+def obj(about: str, properties: Schema, **more: Any) -> Schema:
+    return {
+        "type": "object",
+        "description": about,
+        "properties": properties,
+        "additionalProperties": False,
+        **more,
+    }
+
+
+NUMBER: Schema = {"type": ["number", "string"]}
+
+
+def number(about: str) -> Schema:
+    return NUMBER | {"description": about}
+
+
+def schema() -> Schema:
+    properties = {
+        "title": text("heading of the note, one line; by default that of the rotation"),
+        "theory": flag("begin the note with the equations that hold for every body and rotation"),
+        "rotation": _rotation(),
+        "parameters": {
+            "type": "object",
+            "description": "what is known of the symbols of the body, one entry each",
+            "additionalProperties": _parameter(),
+        },
+        "body": _body(),
+        "notation": _notation(),
+        "output": _output(),
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "rigidsym derivation file",
+        **obj("A rotation, a body, and what to print.", properties),
+        "anyOf": [{"required": ["rotation"]}, {"required": ["body"]}],
+    }
+
+
+def _rotation() -> Schema:
+    sequence = either(
+        'a convention ("ZXZ", "313"), turns ("z(phi) x(theta)") or a name; or a list of these',
+        {"type": "string"},
+        {"type": "array", "items": {"type": "string"}},
+    )
+    return obj(
+        "The rotation; without it, the angles of the lecture, ZXZ.",
+        {
+            "sequence": sequence,
+            "angles": texts("names of the coordinates, in their order"),
+            "constants": texts("names in turns that are constants"),
+            "scalar_last": flag("order quaternions as (x, y, z, w)"),
+            "matrix": listed("R itself: three rows of three expressions", texts("a row"), 3),
+            "coordinates": texts("the names in `matrix` that move"),
+            "constraints": texts("expressions in the coordinates of `matrix` that are zero"),
+            "passive": flag("present Rᵀ, from space to body components"),
+        },
+    )
+
+
+def _parameter() -> Schema:
+    return obj(
+        "A symbol.",
+        {
+            "positive": flag("whether its value is positive"),
+            "about": text("what it means"),
+            "unit": text("its unit"),
+            "value": {"type": "number", "description": "its value, where numbers are printed"},
+        },
+    )
+
+
+def _distribution() -> Schema:
+    """The keys of a shape, of particles and of a mesh."""
+    triple = listed("three coordinates", NUMBER, 3)
+    lengths = {length.key: length for shape in SHAPES.values() for length in shape.lengths}
+    named = {key: _length(key, len(length.names)) for key, length in lengths.items()}
+    particle = obj(
+        "A particle.", {"mass": number("its mass"), "at": triple}, required=["mass", "at"]
+    )
+    return {
+        "shape": text("a solid; see Rotations and solids", *SHAPES, "polyhedron", "given"),
+        **named,
+        "mass": number("the mass; a symbol by default"),
+        "density": number("the density, instead of the mass"),
+        "vertices": listed("corners of a polyhedron", triple),
+        "faces": listed("its faces, each a list of corner numbers", {"type": "array"}),
+        "coordinates": texts("of a given solid: the names of its coordinates"),
+        "place": listed("of a given solid: the position in terms of them", NUMBER, 3),
+        "bounds": listed("of a given solid: a pair for each coordinate, the outermost first", {}),
+        "element": number("of a given solid: the volume element, by default the Jacobian"),
+        "particles": either(
+            "point masses, or a file of them",
+            {"type": "string"},
+            {"type": "array", "items": particle},
+        ),
+        "columns": texts("the columns of a file of particles"),
+        "mesh": text("a closed mesh: an STL, OBJ or PLY file"),
+        "scale": number("of a mesh: metres in one unit of the file"),
+        "inertia": listed("the inertia tensor, three rows", listed("a row", NUMBER, 3), 3),
+        "centre": listed("the centre of mass, with `inertia`", NUMBER, 3),
+    }
+
+
+def _length(key: str, count: int) -> Schema:
+    about = "a length of the shape; a symbol by default"
+    if key == "corners":
+        return listed("four corners of three coordinates", {"type": "array"}, 4)
+    return number(about) if count == 1 else listed(f"{count} lengths of the shape", NUMBER, count)
+
+
+def _body() -> Schema:
+    part = obj(
+        "A part of a composite.",
+        {
+            **_distribution(),
+            "label": text("its name in the note"),
+            "at": listed("where its origin is moved", NUMBER, 3),
+            "turned": either(
+                "a rotation at rest, applied before `at`",
+                {"type": "string"},
+                obj(
+                    "A rotation by name.",
+                    {"rotation": text("the rotation"), "values": listed("its angles", NUMBER)},
+                ),
+            ),
+            "hole": flag("subtract this part"),
+        },
+    )
+    return obj(
+        "The body: exactly one of shape, particles, mesh, parts, inertia, principal_moments.",
+        {
+            **_distribution(),
+            "parts": listed("a composite of such tables", part),
+            "principal_moments": listed("the three principal moments", NUMBER, 3),
+            "allow": flag("accept a body that is not physical"),
+        },
+    )
+
+
+def _notation() -> Schema:
+    choices = {
+        key: text(f"by default {values[0]}", *values) for key, values in VOCABULARY.choices.items()
+    }
+    frames = texts('names of the frames of space and body, such as ["inertial", "spacecraft"]')
+    return obj("The notation of notes and terminal.", choices | {"frames": frames})
+
+
+def _output() -> Schema:
+    return obj(
+        "What to print.",
+        {
+            "quantities": texts("all by default; see Quantities", *VOCABULARY.quantities),
+            "kernels": texts("languages of the functions, numpy by default", *VOCABULARY.kernels),
+            "note": texts("formats of the note, tex and html by default", *VOCABULARY.note),
+            "conversions": flag("add functions to and from quaternions and matrices"),
+            "derivatives": texts('Jacobians, such as "angular_velocity_body by q"'),
+        },
+    )
+
+
+def rows(table: Schema, path: str = "") -> Iterator[tuple[str, str, str]]:
+    """(key, type, meaning) of every key, tables before what is in them."""
+    for key, entry in table["properties"].items():
+        place = f"{path}{key}"
+        yield place, _kind(entry), entry.get("description", "")
+        if entry.get("properties"):
+            yield from rows(entry, f"{place}.")
+        elif key == "parameters":
+            yield from rows(entry["additionalProperties"], f"{place}.NAME.")
+
+
+def _kind(entry: Schema) -> str:
+    if "anyOf" in entry:
+        return " or ".join(map(_kind, entry["anyOf"]))
+    kind = entry.get("type")
+    if isinstance(kind, list):
+        return "number or expression"
+    names = {"object": "table", "array": "list", "boolean": "true or false", "string": "text"}
+    return names.get(kind or "", kind or "any")
