@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from rigidsym.errors import BodyError, SpecError
+from rigidsym.errors import BodyError, ModelError, SpecError
 from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derivation import Proof
@@ -76,9 +76,17 @@ def output_of(spec: DerivationSpec) -> Output:
 
 def read(source: str) -> DerivationSpec:
     """A derivation file, by path or shipped name, or else a rotation such as "ZXZ"."""
-    if source in resources.names("derivations", ".toml") or Path(source).suffix == ".toml":
+    shipped = resources.names("derivations", ".toml")
+    if source in shipped or Path(source).suffix == ".toml":
         return read_file(source)
-    return spec_for(source)
+    try:
+        return spec_for(source)
+    except ModelError as error:
+        if source.isidentifier():
+            raise ModelError(
+                f"{error}\nor a derivation file, NAME.toml or one of {', '.join(shipped)}"
+            ) from None
+        raise
 
 
 def read_file(file: str) -> DerivationSpec:

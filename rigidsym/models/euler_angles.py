@@ -67,7 +67,7 @@ def EulerAngles(
 
 
 def euler_sequence(text: str) -> str:
-    """The sequence in letters: `313` becomes `ZXZ`. Raises ModelError for what is not one."""
+    """The sequence in letters: `313` becomes `ZXZ`. Raises ModelError for any other text."""
     letters = text.translate(_DIGITS)
     if letters not in EULER_SEQUENCES:
         raise ModelError(f"{text!r} is not an Euler sequence: {_what_is_wrong(text)}")
@@ -76,18 +76,19 @@ def euler_sequence(text: str) -> str:
 
 def _what_is_wrong(text: str) -> str:
     letters = text.translate(_DIGITS)
-    if letters.upper() == letters or letters.lower() == letters:
-        if len(letters) == 3 and set(letters.lower()) <= set(AXES):
-            return "two turns in a row are about one axis; neighbours must differ"
+    if letters not in (letters.upper(), letters.lower()):
+        return "upper case is intrinsic and lower case extrinsic; do not mix them"
+    if len(letters) != 3 or not set(letters.lower()) <= set(AXES):
         return "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
-    return "upper case is intrinsic and lower case extrinsic; do not mix them"
+    place = 1 if letters[0] == letters[1] else 2
+    return f"consecutive axes must differ: {text[place]} follows {text[place - 1]}"
 
 
 def _three_names(angles: Sequence[str]) -> Sequence[str]:
     try:
         plain = [check_name(angle) for angle in angles]
     except ExpressionError as error:
-        raise ModelError(f"an angle has no good name: {error}") from error
+        raise ModelError(str(error)) from error
     if len(plain) != 3 or len(set(plain)) != 3:
         raise ModelError(f"Euler angles need three different names, got {', '.join(angles)}")
     return plain

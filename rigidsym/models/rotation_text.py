@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from difflib import get_close_matches
 from typing import Any
 
 import sympy as sp
@@ -23,11 +24,13 @@ from rigidsym.models.matrices import given
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.models.so3 import AXES, time_function
 from rigidsym.text.expression import names_in, parse_expression, parse_turns
-from rigidsym.text.names import check_name, offer
+from rigidsym.text.names import check_name
 
 LONGEST = 200  # characters of a sequence or of turns
-_AT_REST = re.compile(r".*\D0")  # a name that ends in nought: alpha0, b_0; not a_10
-_A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name from the list'
+_AT_REST = re.compile(r".*\D0")  # a name that ends in 0: alpha0, b_0; not a_10
+_AXES_OF_DIGITS = str.maketrans("123", "XYZ")
+_ALIASES = {"mrp": "modified_rodrigues", "quat": "quaternion", "rotvec": "rotation_vector"}
+_A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name'
 
 
 def rotation_from(
@@ -38,10 +41,10 @@ def rotation_from(
     scalar_last: bool = False,
     passive: bool = False,
 ) -> RotationModel:
-    """The model that a text asks for: an Euler sequence, turns, a parametrisation, a preset.
+    """The model in a text: an Euler sequence, turns, a parametrisation, a preset.
 
     `names` are those of the coordinates; turns name theirs themselves. In turns a name is a
-    coordinate, unless it is among `constants` or ends in nought (`alpha0`, but not `a_10`), and
+    coordinate, unless it is among `constants` or ends in 0 (`alpha0`, but not `a_10`), and
     the components of an axis are constants. Raises ModelError or ExpressionError, which say what
     was expected.
     """
@@ -52,6 +55,8 @@ def rotation_from(
     if constants and "(" not in text:
         raise ModelError(f"{text} has no constants; they go with turns such as z(phi) x(incline)")
     name = text.strip().lower().replace("-", "_").replace(" ", "_")
+    if name in _ALIASES:
+        name = asked["sequence"] = _ALIASES[name]
     if "(" in text:
         model = _turned(text, names, constants, passive)
     elif name in PARAMETRISATIONS:
@@ -63,7 +68,7 @@ def rotation_from(
             _sequence(text), DEFAULT_ANGLES if names is None else names, passive=passive
         )
     if scalar_last and not (name in PARAMETRISATIONS and PARAMETRISATIONS[name].has_scalar):
-        raise ModelError(f"{text} has no scalar that could stand last")
+        raise ModelError(f"scalar-last applies only to quaternions, and {text} is none")
     if model.request and name not in PRESETS:
         return model  # Euler angles know what asks for them
     kept = {key: value for key, value in asked.items() if value or key == "sequence"}
@@ -129,13 +134,24 @@ def request_of(model: RotationModel) -> Mapping[str, Any]:
 
 
 def _sequence(text: str) -> str:
-    try:
+    """The Euler sequence in a text; for any other text, what it may have meant."""
+    letters = text.translate(_AXES_OF_DIGITS)
+    if len(letters) == 3 and set(letters.lower()) <= {"x", "y", "z"}:
         return euler_sequence(text)
-    except ModelError as error:
-        if len(text) <= 3 or text.lower() in map(str.lower, EULER_SEQUENCES):
-            raise
-        known = (*PARAMETRISATIONS, *PRESETS)
-        raise ModelError(f"{error}; or a name, {offer(text.lower(), known)}") from None
+    raise ModelError(f"{text!r} is not a rotation\n{_meant(text)}")
+
+
+def _meant(text: str) -> str:
+    turns = re.findall(r"([xyz]) +(\w+)", text)
+    if turns and " ".join(f"{axis} {angle}" for axis, angle in turns) == " ".join(text.split()):
+        return f"did you mean {' '.join(f'{axis}({angle})' for axis, angle in turns)}?"
+    if set(text.lower()) <= {"x", "y", "z"}:
+        turned = " ".join(f"{a}({b})" for a, b in zip(text.lower(), "abcdefgh", strict=False))
+        return f"an Euler sequence has three axes; for another number write turns: {turned}"
+    near = get_close_matches(text.lower(), [*PARAMETRISATIONS, *PRESETS], n=1)
+    if near:
+        return f"did you mean {near[0]}?"
+    return f"expected {_A_ROTATION} (`rigidsym list`)"
 
 
 def _parametrised(

@@ -1,10 +1,10 @@
-"""Text to SymPy, by a whitelist walk over Python's ast. Nothing of the text is ever run.
+"""Text to SymPy, by a whitelist walk over Python's ast. The text is never run.
 
 The text is read in three passes. `_tokens` cuts it into numbers, names and operators, and refuses
-every other character. `_check_order` sees that values and operators alternate and that brackets
-close. What is left goes to Python's ast with each name and number masked, since Python would take
-`lambda` for a keyword, read letters by compatibility (NFKC) and round 0.1; the walk finds the true
-text of a name or number by its column. The arithmetic is that of `rigidsym.text.limits`.
+every other character. `_check_order` checks that values and operators alternate and that brackets
+close. The rest goes to Python's ast with each name and number masked, since Python would take
+`lambda` for a keyword, normalise letters (NFKC) and round 0.1; the walk finds the original text of
+a name or number by its column. The arithmetic is that of `rigidsym.text.limits`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from rigidsym.text.limits import FUNCTIONS, Sized, apply, operate
 from rigidsym.text.names import GREEK_LETTERS, offer, spelled
 
 MOST_CHARACTERS = 2000
-_DEEPEST = 50  # brackets one inside the other
+_DEEPEST = 50  # nested brackets
 _MOST_DIGITS = 40  # of one number, and the largest power of ten it may carry
 
 _LETTER = "A-Za-z_" + GREEK_LETTERS
@@ -42,24 +42,24 @@ _HINTS = {
     "÷": "write /",
     "−": "write -",
     "√": "write sqrt(...)",
-    "[": "only ( and ) group",
-    "{": "only ( and ) group",
-    "=": "an expression is expected, not an equation",
-    "%": "an angle is in radians: write pi/180 times degrees",
-    "°": "an angle is in radians: write pi/180 times degrees",
+    "[": "group with ( and )",
+    "{": "group with ( and )",
+    "=": "expected an expression, not an equation",
+    "%": "angles are in radians; for degrees write pi/180*...",
+    "°": "angles are in radians; for degrees write pi/180*...",
 }
 
-_TURN = re.compile(r"([xyz]|\[[^\[\]()]*\])\s*\(")
+_TURN = re.compile(r"([xyz]|\[[^\[\]]*\])\s*\(")
 _BETWEEN_TURNS = re.compile(r"\s*(\*?)\s*")
 
 
 def parse_expression(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
-    """The expression that a text stands for, in the declared names, `pi` and numbers.
+    """The expression in a text, with the declared names, `pi` and numbers.
 
-    Numbers are exact (0.1 is 1/10), Greek letters stand for their names (φ for phi), and an
-    exponent is a rational number. Known functions: `rigidsym.text.limits.FUNCTIONS`.
+    Numbers are exact (0.1 is 1/10), Greek letters are short for their names (φ for phi), and
+    exponents are rational numbers. Known functions: `rigidsym.text.limits.FUNCTIONS`.
 
-    Raises ExpressionError, with the column, for all else, and for what is too large to work with.
+    Raises ExpressionError, with the column, for any other text and for one that is too large.
     """
     _check_length(text)
     tokens = _tokens(text)
@@ -69,14 +69,14 @@ def parse_expression(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
         return walk.value(ast.parse(_masked(tokens), mode="eval").body).expression
     except (RecursionError, MemoryError):
         raise ExpressionError(
-            "too many operations one inside the other; expected a shorter expression"
+            "operations are nested too deeply; expected a shorter expression"
         ) from None
 
 
 def parse_turns(text: str) -> tuple[tuple[str, str], ...]:
     """(axis, text of the angle) of each turn in `z(phi) x(theta) [1,1,0](psi)`, left to right.
 
-    Turns stand side by side or with `*` between them; an axis is x, y, z, or its components in
+    Turns follow one another, with or without `*`; an axis is x, y, z, or its components in
     square brackets. Raises ExpressionError with the column.
     """
     _check_length(text)
@@ -136,11 +136,11 @@ def _tokens(text: str) -> list[_Token]:
 def _unknown_character(text: str, place: int) -> ExpressionError:
     character = text[place]
     hint = _HINTS.get(character, "expected a number, a name, ( ) or one of + - * / **")
-    return ExpressionError(f"{character!r} is not taken; {hint}", column=place + 1)
+    return ExpressionError(f"unexpected {character!r}; {hint}", column=place + 1)
 
 
 def _check_order(tokens: list[_Token], text: str) -> None:
-    """Values and operators alternate, brackets close, commas stand between arguments."""
+    """Values and operators alternate, brackets close, commas separate arguments."""
     open_: list[tuple[_Token, bool]] = []  # a bracket, and whether it opens a function's arguments
     before: _Token | None = None
     for token in tokens:
@@ -152,17 +152,17 @@ def _check_order(tokens: list[_Token], text: str) -> None:
             open_.append((token, before is not None and before.kind == "name"))
             if len(open_) > _DEEPEST:
                 raise ExpressionError(
-                    f"more than {_DEEPEST} brackets one inside the other", column=token.start + 1
+                    f"more than {_DEEPEST} nested brackets", column=token.start + 1
                 )
         elif token.text == ")":
             if not open_:
-                raise ExpressionError("this ) closes nothing", column=token.start + 1)
+                raise ExpressionError("unmatched )", column=token.start + 1)
             open_.pop()
         before = token
     if not _ends_value(before):
         raise _expected("a number, a name or (", text, len(text))
     if open_:
-        raise ExpressionError("this ( is never closed", column=open_[-1][0].start + 1)
+        raise ExpressionError("unclosed (", column=open_[-1][0].start + 1)
 
 
 def _ends_value(token: _Token | None) -> bool:
@@ -177,7 +177,7 @@ def _check_after_value(before: _Token | None, token: _Token, *, in_call: bool) -
         )
     if token.text == "," and not in_call:
         raise ExpressionError(
-            "a comma stands between the arguments of a function only; a decimal takes a point",
+            "a comma may only separate arguments of a function; decimals have a point",
             column=token.start + 1,
         )
 
@@ -208,7 +208,7 @@ def _closing(text: str, place: int) -> int:
         depth += {"(": 1, ")": -1}.get(text[at], 0)
         if depth == 0:
             return at
-    raise ExpressionError("this ( is never closed", column=place)
+    raise ExpressionError("unclosed (", column=place)
 
 
 class _Walk:
@@ -231,10 +231,10 @@ class _Walk:
             return _number(self._tokens[node.col_offset])
         if isinstance(node, ast.Name):
             return self._name(self._tokens[node.col_offset])
-        raise ExpressionError(f"{type(node).__name__} is not taken", column=node.col_offset)
+        raise ExpressionError(f"{type(node).__name__} is not allowed", column=node.col_offset)
 
     def _chain(self, node: ast.expr) -> Sized:
-        """Operations in a row, a + b - c + ...: a loop, so that a long sum is no deep one."""
+        """Operations in a row, a + b - c + ...: a loop, so that a long sum is not deep."""
         operations: list[ast.BinOp] = []
         while isinstance(node, ast.BinOp):
             operations.append(node)

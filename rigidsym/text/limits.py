@@ -1,8 +1,8 @@
-"""Arithmetic on expressions that refuses what is too large before it is computed.
+"""Arithmetic on expressions that refuses results too large before they are computed.
 
-SymPy computes at once: 9**9**9 in full, the sign of sin(exp(1e40)) to as many digits as it takes,
-the prime factors of a number under a root. Whoever reads a text that strangers wrote works with
-these operations instead; each takes the column of the text, for the message.
+SymPy computes at once: 9**9**9 in full, the sign of sin(exp(1e40)) to as many digits as needed,
+the prime factors of a number under a root. Texts from strangers are read with these operations
+instead; each takes the column in the text, for its message.
 """
 
 from __future__ import annotations
@@ -70,12 +70,12 @@ class Sized:
 
 
 def operate(operation: ast.operator, left: Sized, right: Sized, column: int) -> Sized:
-    """left + right, -, *, / or **; raises ExpressionError for another and for what is too large."""
+    """left + right, -, *, / or **; raises ExpressionError for others and if it is too large."""
     if isinstance(operation, ast.Pow):
         return _power(left, right, column)
     compute = _OPERATIONS.get(type(operation))
     if compute is None:
-        raise ExpressionError(f"{type(operation).__name__} is not taken", column=column)
+        raise ExpressionError(f"{type(operation).__name__} is not allowed", column=column)
     if isinstance(operation, ast.Div) and right.expression == 0:
         raise ExpressionError("division by zero", column=column)
     bits = left.bits + right.bits + 1
@@ -91,7 +91,7 @@ def _power(base: Sized, exponent: Sized, column: int) -> Sized:
     power = exponent.expression
     if not power.is_Rational:
         raise ExpressionError(
-            "expected a number for an exponent, such as 2 or (1/2); of e, write exp(...)",
+            "expected a number as exponent, such as 2 or (1/2); for powers of e write exp(...)",
             column=column,
         )
     if abs(power) > _HIGHEST_EXPONENT or power.q > _HIGHEST_EXPONENT:
@@ -102,9 +102,7 @@ def _power(base: Sized, exponent: Sized, column: int) -> Sized:
     if power < 0 and base.expression == 0:
         raise ExpressionError("division by zero", column=column)
     if power.q > 1 and _longest_number(base.expression) > _LONGEST_ROOT:
-        raise ExpressionError(
-            "too large to work with: a root of a number with too many digits", column=column
-        )
+        raise ExpressionError("too large: a root of a number with too many digits", column=column)
     times = ceil(abs(power))
     degree, bits = base.degree * times, base.bits * times + 1
     terms = comb(base.terms + times - 1, times)
@@ -124,7 +122,7 @@ def _bits(number: sp.Rational) -> int:
 
 
 def apply(function: str, arguments: Sequence[Sized], column: int) -> Sized:
-    """The value of one of FUNCTIONS; raises ExpressionError where it is not finite and real."""
+    """The value of one of FUNCTIONS; raises ExpressionError if it is not finite and real."""
     if function == "sqrt":
         return _power(arguments[0], Sized.number(sp.Rational(1, 2)), column)
     expressions = [argument.expression for argument in arguments]
@@ -139,30 +137,28 @@ def apply(function: str, arguments: Sequence[Sized], column: int) -> Sized:
 
 
 def _check_argument(argument: Sized, column: int) -> None:
-    """Refuse what SymPy, looking for signs and real parts, takes for ever over: sin(exp(1e40))."""
+    """Refuse arguments whose sign or real part SymPy would seek for ever: sin(exp(1e40))."""
     most = _LARGEST_CONSTANT
     numbers = [term for term in sp.Add.make_args(argument.expression) if term.is_number]
     if argument.degree > _HIGHEST_INSIDE:
         fault = f"a degree above {_HIGHEST_INSIDE} inside a function"
     elif any(number.has(sp.Function) for number in numbers):
-        fault = "a function of a function of numbers alone"
+        fault = "a function of a function of numbers"
     elif any(not -most <= number <= most for number in numbers):
         fault = f"a number outside -{most} to {most} inside a function"
     else:
         return
-    raise ExpressionError(f"too large to work with: {fault}", column=column)
+    raise ExpressionError(f"too large: {fault}", column=column)
 
 
 def _check_size(degree: int, terms: int, bits: int, column: int) -> None:
     for (name, most), size in zip(_LIMITS.items(), (degree, terms, bits), strict=True):
         if size > most:
-            raise ExpressionError(
-                f"too large to work with: multiplied out, a {name} above {most}", column=column
-            )
+            raise ExpressionError(f"too large: expanded, its {name} exceeds {most}", column=column)
 
 
 def _check_value(value: sp.Expr, what: str, column: int) -> None:
     if value.has(sp.zoo, sp.oo, -sp.oo, sp.nan):
-        raise ExpressionError(f"{what} of this has no finite value", column=column)
+        raise ExpressionError(f"{what} of this is not finite", column=column)
     if value.has(sp.I) or (value.is_number and value.is_real is False):
         raise ExpressionError(f"{what} of this is not a real number", column=column)

@@ -11,6 +11,8 @@ from rigidsym.errors import ExpressionError
 from rigidsym.text.limits import FUNCTIONS
 
 _LONGEST = 40
+_FEW = 10  # known names that a message lists
+_SHOWN = 3  # of more than a few
 
 _GREEK = {
     "α": "alpha",
@@ -84,13 +86,13 @@ def check_name(text: str) -> str:
         raise ExpressionError(f"expected a name of 1 to {_LONGEST} letters, got {len(name)}")
     fault = _fault(name)
     if fault:
-        raise ExpressionError(f"{text!r} cannot be a name here: {fault}")
+        raise ExpressionError(f"{text!r} is not a valid name: {fault}")
     return name
 
 
 def _fault(name: str) -> str:
     if not _FORM.fullmatch(name):
-        return "expected letters (Latin or Greek) and digits, a letter first, joined by single _"
+        return "expected a letter (Latin or Greek), then letters, digits and single underscores"
     if name in _TAKEN:
         return f"{name} is {_TAKEN[name]}"
     if keyword.iskeyword(name) and name != "lambda":
@@ -103,9 +105,11 @@ def _fault(name: str) -> str:
 
 
 def offer(name: str, known: Iterable[str]) -> str:
-    """What to add to a message about an unknown name: the nearest known ones, or all of them."""
+    """The end of a message about an unknown name: the nearest known ones, or a few of them."""
     known = list(known)
     near = get_close_matches(name, known, n=2) if len(name) <= _LONGEST else []
     if near:
         return f"did you mean {' or '.join(near)}?"
-    return f"known: {', '.join(known)}" if known else "no names are known here"
+    if len(known) <= _FEW:
+        return f"known: {', '.join(known)}" if known else "no names are known here"
+    return f"known: {', '.join(known[:_SHOWN])} and {len(known) - _SHOWN} more (`rigidsym list`)"

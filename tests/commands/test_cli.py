@@ -124,7 +124,7 @@ def test_a_wrong_file_tells_all_faults_and_writes_nothing(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "status", "message"),
     [
-        (("derive", "zxq"), 2, "'zxq' is not an Euler sequence"),
+        (("derive", "zxq"), 2, "'zxq' is not a rotation"),
         (("derive", "ZxZ"), 2, "do not mix"),
         (("derive", "ZXZ", "--angles", "a,a,b"), 2, "three different names"),
         (("derive", "ZXZ", "--angles", "phi,theta"), 2, "three different names"),

@@ -21,7 +21,7 @@ def _run(*arguments: str) -> str:
 
 
 def _checked(out: Path) -> set[str]:
-    """The files that `check` finds as derived."""
+    """The files that `check` finds up to date."""
     done = CliRunner().invoke(commands, ["check", str(out)])
     lines = [line.partition(": ") for line in done.output.splitlines()]
     return {Path(name).name for name, _, finding in lines if finding == "up to date"}

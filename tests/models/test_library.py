@@ -135,11 +135,11 @@ def test_what_was_asked_for_can_be_asked_for_again(text):
         ("[1,1](phi)", "expected three"),
         ("[1,1,0,0](phi)", "expected three"),
         ("z(pi/4)", "does not move"),
-        ("z(phi", "never closed"),
+        ("z(phi", "unclosed"),
         ("quaternoin", "did you mean quaternion"),
         ("goldstien", "did you mean goldstein"),
         ("z(phi_dot)", "reads as a rate"),
-        ("z(sin(phi)", "never closed"),
+        ("z(sin(phi)", "unclosed"),
     ],
 )
 def test_a_rotation_that_cannot_be_read_says_why(text, message):
@@ -148,7 +148,7 @@ def test_a_rotation_that_cannot_be_read_says_why(text, message):
 
 
 def test_wrong_options_are_refused():
-    with pytest.raises(ModelError, match="no scalar that could stand last"):
+    with pytest.raises(ModelError, match="scalar-last applies only to quaternions"):
         rotation_from("ZXZ", scalar_last=True)
     with pytest.raises(ModelError, match="expected 4 different names"):
         rotation_from("quaternion", names=["a", "b", "c"])

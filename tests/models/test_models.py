@@ -55,9 +55,9 @@ class TestCatalogue:
     @pytest.mark.parametrize(
         ("sequence", "part"),
         [
-            ("ZZX", "neighbours must differ"),
-            ("zxx", "neighbours must differ"),
-            ("133", "neighbours must differ"),
+            ("ZZX", "consecutive axes must differ"),
+            ("zxx", "consecutive axes must differ"),
+            ("133", "consecutive axes must differ"),
             ("ZxZ", "do not mix"),
             ("3x3", "'3x3'"),
             ("ZX", "expected three axes"),

@@ -172,12 +172,12 @@ def test_the_specification_of_one_rotation():
 @pytest.mark.parametrize(
     ("sequence", "angles", "message"),
     [
-        ("ZZX", None, "two turns in a row"),
+        ("ZZX", None, "consecutive axes must differ: Z follows Z"),
         ("ZXZ", [], "three different names"),
         ("ZXZ", ["a", "b", "b"], "three different names"),
         ("ZXZ", ["a", "b", "t"], "t is the time"),
         ("z(a) x(b) z(c)", ["a", "b", "c"], "names its angles itself; leave the other names out"),
-        ("z(a) x(b", None, "column 7: this \\( is never closed"),
+        ("z(a) x(b", None, "column 7: unclosed \\("),
     ],
 )
 def test_a_wrong_rotation_is_a_wrong_use(sequence, angles, message):
@@ -232,8 +232,8 @@ def test_wrong_data_has_every_fault_at_once():
         "nam: unknown key; did you mean name?",
         "name: missing; expected the name of the derivation",
         'note: expected a list of names such as ["tex"], got the number 1',
-        "rotations[0].sequence: 'ZZX' is not an Euler sequence: two turns in a row are about one "
-        "axis; neighbours must differ",
+        "rotations[0].sequence: 'ZZX' is not an Euler sequence: consecutive axes must differ: Z "
+        "follows Z",
         "rotations[1].seqence: unknown key; did you mean sequence?",
         'rotations[1].sequence: missing; expected a sequence such as "ZXZ", or a list of sequences',
     ]

@@ -19,7 +19,7 @@ from rigidsym.text.limits import FUNCTIONS, Sized, operate
 PHI, THETA, LAMBDA = (time_function(name) for name in ("phi", "theta", "lambda"))
 M, G = sp.symbols("m g", positive=True)
 NAMES = {"phi": PHI, "theta": THETA, "lambda": LAMBDA, "m": M, "g": G}
-NOT_TAKEN = r" is not taken$"
+NOT_TAKEN = r" is not allowed$"
 
 
 def refused(text: str) -> ExpressionError:
@@ -89,9 +89,9 @@ def test_declared_names_come_before_the_number_pi():
         ("phi // 2", 6, "expected a number, a name or (, found '/'"),
         ("sin(*phi)", 5, "expected a number, a name or (, found '*'"),
         ("sin(phi,)", 9, "expected a number, a name or (, found ')'"),
-        ("(phi", 1, "this ( is never closed"),
-        ("sin((phi)", 4, "this ( is never closed"),
-        ("phi)", 4, "this ) closes nothing"),
+        ("(phi", 1, "unclosed ("),
+        ("sin((phi)", 4, "unclosed ("),
+        ("phi)", 4, "unmatched )"),
         ("2phi", 2, "expected an operator before 'phi', such as *"),
         ("φφ φ", 4, "expected an operator before 'φ', such as *"),
         ("2(phi)", 2, "expected an operator before '(', such as *"),
@@ -100,27 +100,27 @@ def test_declared_names_come_before_the_number_pi():
         ("1_000", 2, "expected an operator before '_000', such as *"),
         ("phi if g else m", 5, "expected an operator before 'if', such as *"),
         ("phi and g", 5, "expected an operator before 'and', such as *"),
-        ("phi^2", 4, "'^' is not taken; write ** for a power"),
-        ("φ²", 2, "'²' is not taken; write **2"),
-        ("phi·g", 4, "'·' is not taken; write *"),
-        ("phi − g", 5, "'−' is not taken; write -"),
-        ("90°", 3, "'°' is not taken; an angle is in radians: write pi/180 times degrees"),
-        ("phi = 2", 5, "'=' is not taken; an expression is expected, not an equation"),
-        ("[phi]", 1, "'[' is not taken; only ( and ) group"),
+        ("phi^2", 4, "unexpected '^'; write ** for a power"),
+        ("φ²", 2, "unexpected '²'; write **2"),
+        ("phi·g", 4, "unexpected '·'; write *"),
+        ("phi − g", 5, "unexpected '−'; write -"),
+        ("90°", 3, "unexpected '°'; angles are in radians; for degrees write pi/180*..."),
+        ("phi = 2", 5, "unexpected '='; expected an expression, not an equation"),
+        ("[phi]", 1, "unexpected '['; group with ( and )"),
         (
             "phi.real",
             4,
-            "'.' is not taken; expected a number, a name, ( ) or one of + - * / **",
+            "unexpected '.'; expected a number, a name, ( ) or one of + - * / **",
         ),
         (
             "lambda: 1",
             7,
-            "':' is not taken; expected a number, a name, ( ) or one of + - * / **",
+            "unexpected ':'; expected a number, a name, ( ) or one of + - * / **",
         ),
         (
             "1, 2",
             2,
-            "a comma stands between the arguments of a function only; a decimal takes a point",
+            "a comma may only separate arguments of a function; decimals have a point",
         ),
         ("thta", 1, "unknown name 'thta'; did you mean theta?"),
         ("φ + ω", 5, "unknown name 'ω'; known: phi, theta, lambda, m, g"),
@@ -132,10 +132,10 @@ def test_declared_names_come_before_the_number_pi():
         ("1/0", 3, "division by zero"),
         ("g/(phi - φ)", 4, "division by zero"),
         ("0**-1", 4, "division by zero"),
-        ("tan(pi/2)", 1, "tan of this has no finite value"),
-        ("sec(pi/2)", 1, "sec of this has no finite value"),
-        ("log(0)", 1, "log of this has no finite value"),
-        ("atan2(0, 0)", 1, "atan2 of this has no finite value"),
+        ("tan(pi/2)", 1, "tan of this is not finite"),
+        ("sec(pi/2)", 1, "sec of this is not finite"),
+        ("log(0)", 1, "log of this is not finite"),
+        ("atan2(0, 0)", 1, "atan2 of this is not finite"),
         ("g + sqrt(-2)", 5, "a power of this is not a real number"),
         ("sqrt(-m)", 1, "a power of this is not a real number"),
         ("(-8)**(1/3)", 8, "a power of this is not a real number"),
@@ -143,17 +143,17 @@ def test_declared_names_come_before_the_number_pi():
         (
             "2**phi",
             4,
-            "expected a number for an exponent, such as 2 or (1/2); of e, write exp(...)",
+            "expected a number as exponent, such as 2 or (1/2); for powers of e write exp(...)",
         ),
         (
             "*".join(["(phi + theta)"] * 11),
             142,
-            "too large to work with: multiplied out, a number of terms above 2000",
+            "too large: expanded, its number of terms exceeds 2000",
         ),
         (
             "(phi**8)**9",
             11,
-            "too large to work with: multiplied out, a degree above 64",
+            "too large: expanded, its degree exceeds 64",
         ),
         ("phi**65", 6, "expected an exponent between -64 and 64"),
         ("phi**(1/65)", 7, "expected an exponent between -64 and 64"),

@@ -33,7 +33,7 @@ def test_names_that_are_taken(text, name):
     assert check_name(text) == name
 
 
-FORM = "expected letters (Latin or Greek) and digits, a letter first, joined by single _"
+FORM = "expected a letter (Latin or Greek), then letters, digits and single underscores"
 
 
 @pytest.mark.parametrize(
@@ -63,7 +63,7 @@ FORM = "expected letters (Latin or Greek) and digits, a letter first, joined by 
 def test_names_that_are_not_taken(text, fault):
     with pytest.raises(ExpressionError) as caught:
         check_name(text)
-    assert caught.value.message == f"{text!r} cannot be a name here: {fault}"
+    assert caught.value.message == f"{text!r} is not a valid name: {fault}"
 
 
 @pytest.mark.parametrize("text", ["", "a" * 41])
@@ -124,7 +124,7 @@ A_TURN = "expected a turn: x(...), y(...), z(...) or [1,1,0](...), found"
         ("z(a) *", 7, "expected a turn after *, found the end"),
         ("z(a) * * x(b)", 8, f"{A_TURN} '*'"),
         ("z(a) x( )", 9, "expected an angle, found ')'"),
-        ("z((a)", 2, "this ( is never closed"),
+        ("z((a)", 2, "unclosed ("),
         ("z(a" * 1000, 1, f"a text of 3000 characters; expected at most {MOST_CHARACTERS}"),
     ],
 )
