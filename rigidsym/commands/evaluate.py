@@ -13,8 +13,9 @@ from rigidsym.commands.command import command as make, message
 from rigidsym.commands.options import names_of
 from rigidsym.data.chunk import Missing
 from rigidsym.errors import ModelError
+from rigidsym.mechanics.derive import Body
 from rigidsym.models.rotation import RotationModel
-from rigidsym.motion import Body, Motion, derive
+from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import integrated, read
 from rigidsym.spec.derivation_spec import spec_for
 from rigidsym.system.progress import bar

@@ -57,6 +57,7 @@ class TextReader:
 
     def __init__(self, path: Path, stream: BinaryIO | None = None) -> None:
         self.path, self.source = path, str(path)
+        self.quotes = True  # whether messages show fields that are not numbers
         self._stream = stream and io.BufferedReader(stream)  # type: ignore[type-var]
         self._size = 0 if stream else path.stat().st_size
         self._ahead: list[bytes] = []  # lines that were read to find the header
@@ -229,6 +230,9 @@ class TextReader:
             return table if len(text.split()) == self.width * len(table) else None
         return table if text.count(self.separator) == (self.width - 1) * len(table) else None
 
+    def _quoted(self, field: str) -> str:
+        return f": {field[:40]!r}" if self.quotes else ""
+
     def _by_field(self, rows: Sequence[str], before: int, columns: Sequence[int]) -> Table:
         """The numbers of each line, NaN for those that are missing.
 
@@ -256,7 +260,8 @@ class TextReader:
                 marks.clear()
             values = [_number(point) for point in points]
             faults += [
-                f"line {number}: field {column + 1}: {field!r} is not a number{_hint(field)}"
+                f"line {number}: field {column + 1}{self._quoted(field)} is not a number"
+                + _hint(field)
                 for column, field, value in zip(columns, found, values, strict=True)
                 if value is None
             ]

@@ -122,6 +122,24 @@ def test_other_columns_and_comments_are_left_alone(tmp_path):
     assert (inertia_of(tmp_path / "cloud.csv").inertia == np.diag([0, 2, 2])).all()
 
 
+@pytest.mark.parametrize(
+    "content", ["root:x:0:0:root:/root:/bin/bash\n", "machine host login me\n", "user 12 34\n"]
+)
+def test_a_file_of_something_else_is_described_and_not_quoted(tmp_path, content):
+    (tmp_path / "cloud.txt").write_text(content * 3)
+    with pytest.raises(BodyError) as error:
+        inertia_of(tmp_path / "cloud.txt")
+    said = str(error.value).removeprefix(str(tmp_path / "cloud.txt"))
+    assert not {*content.replace(":", " ").split()} & {*said.replace(":", " ").split()}
+    assert f"{len(content) * 3} bytes without a column named x" in said or "field 1 is not" in said
+
+
+def test_units_of_particles_are_converted(tmp_path):
+    (tmp_path / "cloud.csv").write_text("x [mm],y [mm],z [mm],mass [g]\n0,0,0,500\n2000,0,0,500\n")
+    found = inertia_of(tmp_path / "cloud.csv")
+    np.testing.assert_allclose([found.mass, found.inertia[1, 1]], [1.0, 1.0], rtol=1e-15)
+
+
 def test_what_is_no_file_of_numbers_is_a_body_error(tmp_path):
     for file in ("cloud.npy", "cloud.parquet"):
         (tmp_path / file).write_bytes(b"")

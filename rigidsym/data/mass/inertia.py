@@ -51,12 +51,18 @@ def inertia_of(
         reader = ArrayReader(np.asarray(particles)) if path is None else reader_of(path)
         name = named
         if isinstance(reader, TextReader):
-            name = lambda row: f"{reader.source}, {reader.place(row)}"  # noqa: E731
+            name = partial(_line, reader)
+            reader.quotes = reader.names is not None  # else it may be another kind of text
         blocks = _blocks(reader, columns, name, progress)
         return mass_properties(cloud_of(blocks, name, allow=allow))
     except (BodyError, DataError) as error:
-        place = "" if path is None or str(path) in str(error) else f"{path}: "
-        raise BodyError(f"{place}{error}") from None
+        if path is None or str(path) in str(error):
+            raise BodyError(str(error)) from None
+        raise BodyError(f"{path}: {error}") from None
+
+
+def _line(reader: TextReader, row: int) -> str:
+    return f"{reader.source}, {reader.place(row)}"
 
 
 def mass_properties(cloud: Cloud) -> MassProperties:

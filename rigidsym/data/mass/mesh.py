@@ -6,8 +6,11 @@ Mass Properties (2002), whose integrals are those over the unit simplex.
 
 from __future__ import annotations
 
+import logging
+import struct
 from dataclasses import dataclass
 from pathlib import Path
+from warnings import catch_warnings
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +22,21 @@ from rigidsym.errors import BodyError, MissingExtra
 
 Array = NDArray[np.float64]
 ENDINGS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf")
+_FAILURES = (  # of trimesh, whose readers trust the counts and types in a file
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    LookupError,
+    MemoryError,
+    NameError,
+    OSError,
+    RuntimeError,
+    StopIteration,
+    TypeError,
+    ValueError,
+    struct.error,
+)
 _SIMPLEX = 1 / 6, 1 / 24, 1 / 120  # ∫ 1, ∫ u, ∫ u v over the unit simplex; ∫ u² is twice the last
 
 
@@ -39,20 +57,31 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
         import trimesh
     except ImportError:
         raise MissingExtra("reading meshes", "mesh") from None
+    log = logging.getLogger("trimesh")
+    if not log.handlers:
+        log.addHandler(logging.NullHandler())  # else Python prints tracebacks that trimesh logs
     if not path.is_file():
         raise BodyError(f"{path}: no such mesh")
+    if path.suffix.lower() not in ENDINGS:
+        raise BodyError(f"{path}: the name of a mesh ends in {', '.join(ENDINGS)}")
     try:
-        loaded = trimesh.load(path, force="mesh", process=True)
-    except (ValueError, IndexError, KeyError, TypeError, NotImplementedError) as error:
-        raise BodyError(f"{path}: cannot be read as a mesh: {error}") from None
-    loaded.merge_vertices(merge_tex=True, merge_norm=True)
-    vertices = np.asarray(loaded.vertices, dtype=float) * scale
-    faces = np.asarray(loaded.faces, dtype=np.int64)
+        with np.errstate(all="ignore"), catch_warnings(action="ignore"):
+            loaded = trimesh.load(path, force="mesh", process=True, skip_materials=True)
+            loaded.merge_vertices(merge_tex=True, merge_norm=True)
+            vertices = np.asarray(loaded.vertices, dtype=float).reshape(-1, 3) * scale
+            faces = np.asarray(loaded.faces, dtype=np.int64).reshape(-1, 3)
+    except ImportError as error:
+        raise MissingExtra(f"reading {path.name} ({error})", "mesh") from None
+    except _FAILURES:
+        kind, size = path.suffix[1:].upper(), path.stat().st_size
+        raise BodyError(f"{path}: its {size} bytes cannot be read as a mesh in {kind}") from None
     if not len(faces):
         raise BodyError(f"{path}: no triangles in it")
     if not np.isfinite(vertices).all():
         wrong = int(np.argmin(np.isfinite(vertices).all(axis=1)))
-        raise BodyError(f"{path}: corner {wrong} is not finite: {vertices[wrong].tolist()}")
+        raise BodyError(f"{path}: vertex {wrong} is not finite: {vertices[wrong].tolist()}")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise BodyError(f"{path}: a triangle with a vertex that is not in the file")
     return Mesh(vertices=vertices, faces=faces)
 
 
@@ -73,26 +102,27 @@ def mesh_inertia(
         check_closed(mesh)
     inside = mesh.vertices.mean(axis=0)
     triangles = (mesh.vertices - inside)[mesh.faces]
-    six = np.linalg.det(triangles)
-    volume = float(six.sum() * _SIMPLEX[0])
-    if not volume > 0:
-        raise BodyError(
-            f"mesh: the surface is inside out: its volume is {volume:.6g} m³; turn its faces over"
-            if volume
-            else "mesh: it holds no volume"
-        )
-    corners = triangles.sum(axis=1)
-    first = (six[:, None] * corners).sum(axis=0) * _SIMPLEX[1]
-    own = np.einsum("t,tpi,tpj->ij", six, triangles, triangles, optimize=True)
-    both = np.einsum("t,ti,tj->ij", six, corners, corners, optimize=True)
-    second = (own + both) * _SIMPLEX[2] - np.outer(first, first) / volume
-    factor = mass / volume if mass is not None else density
-    assert factor is not None
-    second = (second + second.T) * (factor / 2)
-    inertia = inertia_from(second)
+    with np.errstate(all="ignore"):  # numbers that are too large are looked for below
+        six = np.linalg.det(triangles)
+        volume = float(six.sum() * _SIMPLEX[0])
+        if volume <= 0:
+            raise BodyError(
+                f"mesh: the surface is inside out: its volume is {volume:.6g} m³; flip its faces"
+                if volume
+                else "mesh: it holds no volume"
+            )
+        corners = triangles.sum(axis=1)
+        first = (six[:, None] * corners).sum(axis=0) * _SIMPLEX[1]
+        own = np.einsum("t,tpi,tpj->ij", six, triangles, triangles, optimize=True)
+        both = np.einsum("t,ti,tj->ij", six, corners, corners, optimize=True)
+        second = (own + both) * _SIMPLEX[2] - np.outer(first, first) / volume
+        factor = np.float64(mass) / volume if density is None else density
+        inertia = inertia_from((second + second.T) * (factor / 2))
+    if not np.isfinite(inertia).all():
+        raise BodyError("mesh: its moments are too large or too small for double precision")
     return MassProperties(
         count=len(mesh.faces),
-        mass=volume * factor,
+        mass=float(volume * factor),
         centre=inside + first / volume,
         inertia=inertia,
         principal=principal_axes_of(inertia),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -51,7 +52,14 @@ class ParticleColumns:
                         f"{reader.width}; --columns names them"
                     )
                 named = ("m", *_AXES)[4 - reader.width :]
-            return cls._named(ColumnNames(named))
+            header = ColumnNames(named)
+            if not any(map(header.has, (*_AXES, *_MASSES))):  # perhaps not to be shown
+                size = f"{Path(reader.source).stat().st_size} bytes" if reader.source else ""
+                raise BodyError(
+                    f"{size or 'an array'} without a column named x, y, z or m; "
+                    "--columns names them in their order"
+                )
+            return cls._named(header)
         except DataError as error:
             raise BodyError(str(error)) from None
 
@@ -63,8 +71,6 @@ class ParticleColumns:
         others = [name for k, name in enumerate(header.plain) if k not in columns]
         if None in found:
             missing = _AXES[found.index(None)]
-            if not columns:  # another kind of text, perhaps one that should not be shown
-                raise BodyError(f"none of its {len(header.names)} columns is named x, y, z or m")
             near = get_close_matches(missing, others, n=1)
             raise BodyError(
                 f"no column {missing} among {', '.join(header.names)}; "

@@ -1,0 +1,103 @@
+"""Files of meshes with bytes changed, lost or doubled: a body or a message, never a traceback."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from rigidsym.data.mass.mesh import ENDINGS, mesh_inertia, read_mesh_file
+from rigidsym.errors import BodyError, MissingExtra
+
+MUTATIONS = 80  # of each format
+
+
+def exported(ending: str) -> bytes:
+    content = trimesh.creation.box(extents=(1, 2, 3)).export(file_type=ending)
+    return content.encode() if isinstance(content, str) else content
+
+
+def mutated(content: bytes, rng: np.random.Generator) -> bytes:
+    """One to four bytes or stretches of a file changed."""
+    some = bytearray(content)
+    for _ in range(rng.integers(1, 5)):
+        at = int(rng.integers(len(some) or 1))
+        length = int(rng.integers(1, 20))
+        kind = rng.integers(6)
+        if kind == 0:
+            some[at : at + 1] = rng.bytes(1)
+        elif kind == 1:
+            del some[at : at + length]
+        elif kind == 2:
+            some[at:at] = some[at : at + length]
+        elif kind == 3:
+            some[at : at + length] = rng.bytes(length)
+        elif kind == 4:
+            del some[at:]
+        else:
+            words = (b"nan", b"-1", b"1e999", b"99999999999", b"\xff\xfe", b"\0", b"/", b"\n")
+            some[at : at + 3] = words[rng.integers(len(words))]
+    return bytes(some)
+
+
+@pytest.mark.parametrize("ending", ["stl", "stl_ascii", "obj", "ply", "off", "glb"])
+def test_a_broken_mesh_is_a_body_or_a_message(tmp_path, ending):
+    content = exported(ending)
+    rng = np.random.default_rng(sum(ending.encode()))
+    path = tmp_path / f"part.{ending.removesuffix('_ascii')}"
+    refused = 0
+    for _ in range(MUTATIONS):
+        path.write_bytes(mutated(content, rng))
+        try:
+            mesh_inertia(read_mesh_file(path), density=1.0, allow=True)
+        except (BodyError, MissingExtra):
+            refused += 1
+    assert 0 < refused < MUTATIONS
+
+
+def test_what_trimesh_logs_stays_silent(tmp_path):
+    path = tmp_path / "part.stl"
+    path.write_bytes(exported("stl_ascii").replace(b"facet normal 0", b"facet normal ?"))
+    program = "from rigidsym.commands.cli import main; main()"
+    asked = [sys.executable, "-c", program, "inertia", str(path), "--density", "1"]
+    done = subprocess.run(asked, capture_output=True, text=True, check=False)
+    assert "Traceback" not in done.stderr
+    assert done.stdout.startswith("12 faces") or done.returncode == 3
+
+
+def test_a_mesh_in_an_encoding_that_needs_an_extra_is_a_message(tmp_path):
+    path = tmp_path / "part.obj"
+    path.write_bytes("o schräg\n".encode("latin-1") + exported("obj"))
+    try:
+        count = len(read_mesh_file(path).faces)
+    except MissingExtra as error:
+        count = 12 if "pip install 'rigidsym[mesh]'" in str(error) else 0
+    assert count == 12
+
+
+def test_a_file_that_is_no_mesh_is_described_and_not_quoted(tmp_path):
+    secret = tmp_path / "secret.stl"
+    secret.write_text("root:x:0:0:root:/root:/bin/bash\n" * 9)
+    with pytest.raises(BodyError) as error:
+        read_mesh_file(secret)
+    assert "root:" not in str(error.value).removeprefix(str(secret))
+    with pytest.raises(BodyError, match=r"the name of a mesh ends in \.stl, \.obj"):
+        read_mesh_file(Path("/etc/passwd"))
+
+
+def test_lengths_beyond_double_precision_are_a_message():
+    from rigidsym.data.mass.mesh import Mesh
+
+    box = trimesh.creation.box()
+    for size in (1e200, 1e-200):
+        mesh = Mesh(vertices=np.array(box.vertices) * size, faces=np.array(box.faces))
+        with pytest.raises(BodyError, match=r"precision|no volume"):
+            mesh_inertia(mesh, density=1.0)
+
+
+def test_every_known_ending_is_tried():
+    assert set(ENDINGS) == {".stl", ".obj", ".ply", ".off", ".glb", ".gltf"}
