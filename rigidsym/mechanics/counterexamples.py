@@ -31,7 +31,7 @@ def is_nonzero_somewhere(entry: sp.Expr, constraints: Sequence[sp.Expr]) -> bool
     if constraints and entry.has(sp.Derivative):
         return False
     unknowns = _unknowns([entry, *constraints])
-    return any(abs(_value(entry, point)) > _ZERO for point in _points(unknowns, constraints))
+    return any(abs(_value(entry, point)) > _ZERO for point in points(unknowns, constraints))
 
 
 def _unknowns(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
@@ -40,7 +40,8 @@ def _unknowns(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
     return sorted(found, key=str)
 
 
-def _points(unknowns: Sequence[sp.Expr], constraints: Sequence[sp.Expr]) -> Iterator[Point]:
+def points(unknowns: Sequence[sp.Expr], constraints: Sequence[sp.Expr]) -> Iterator[Point]:
+    """Points, the same in every run, that obey the constraints."""
     generator = random.Random(20)
     for _ in range(_POINTS):
         point = {u: sp.Rational(generator.randint(1, 999), 1000) for u in unknowns}

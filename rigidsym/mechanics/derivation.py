@@ -123,6 +123,14 @@ class Found:
     definition: Markup | None = None  # if the step says better what it follows from
 
 
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """A named intermediate quantity: symbol = expression, in inputs and names defined before it."""
+
+    symbol: sp.Symbol
+    expression: sp.Expr
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Step:
     """One quantity, derived: its textbook form, how it follows, and what was proved of it."""
@@ -252,6 +260,7 @@ class Derivation:
     singularities: Singularities | None  # None where no quantity of the rates was asked for
     body: RigidBody | None = None  # what turns, where energy and momentum were asked for
     theory: tuple[Statement, ...] = ()  # the equations that the steps rest on, where asked for
+    definitions: tuple[Definition, ...] = ()  # intermediate quantities that the steps name
 
     def step(self, quantity: str) -> Step:
         """The step that defines a quantity; raises QuantityError for one that is not here."""
@@ -271,6 +280,13 @@ class Derivation:
         numbered = tuple(replace(step, number=place) for place, step in enumerate(kept, start=1))
         kept_singularities = None if chosen.isdisjoint(OF_RATES) else self.singularities
         return replace(self, steps=numbered, singularities=kept_singularities)
+
+    def spelled(self, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+        """The matrix in inputs only, with what is named put in for its name."""
+        values: dict[sp.Symbol, sp.Expr] = {}
+        for definition in self.definitions:
+            values[definition.symbol] = definition.expression.xreplace(values)
+        return matrix.xreplace(values) if values else matrix
 
     @property
     def subject(self) -> str:
@@ -296,7 +312,8 @@ class Derivation:
             raise AttributeError(name)
         for step in self.steps:
             if step.quantity.name == name:
-                return step.expression[0] if step.quantity.is_scalar else step.expression
+                value = self.spelled(step.expression)
+                return value[0] if step.quantity.is_scalar else value
         raise AttributeError(f"{type(self).__name__} {self.name!r} has no quantity {name!r}")
 
     def __dir__(self) -> list[str]:

@@ -1,7 +1,8 @@
 """The door of the room: a rotation, and perhaps a body that turns so, become a Derivation.
 
 1. A body that is only described is integrated (`mass.bodies`).
-2. The kinematics of the rotation follow from R(q) (`kinematics.derive`).
+2. The kinematics of the rotation follow from R(q) (`kinematics.derive`), or for a long product
+   of turns turn by turn (`kinematics.turn_by_turn`).
 3. The inertia of the body, its energy and its momentum follow (`mass.derive`, `energy.derive`).
 4. The steps are numbered, and described by the tables of `quantities`.
 5. Where the rates fail is found (`singularities.derive`).
@@ -10,14 +11,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
 
 from rigidsym.errors import QuantityError
-from rigidsym.mechanics.derivation import OF_RATES, Argument, Derivation, Found, Quantity, Step
+from rigidsym.mechanics.derivation import (
+    OF_RATES,
+    Argument,
+    Definition,
+    Derivation,
+    Found,
+    Quantity,
+    Singularities,
+    Step,
+)
 from rigidsym.mechanics.kinematics import derive as kinematics
+from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES, quantities
@@ -26,6 +37,8 @@ from rigidsym.mechanics.singularities.derive import singularities_of
 from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.distribution import Distribution
 from rigidsym.models.rotation import RotationModel
+
+_STUDIED = 5  # turns up to which the minors of W are few enough to solve for their zeros
 
 Body = RigidBody | BodyDescription | Distribution
 
@@ -52,8 +65,11 @@ def derive(
         return with_theory(derive(model, only and {*only, *NEEDED}, body=body))
     _check_names(only, has_body=body is not None)
     values = Values(model)
+    turns = TurnByTurn(model) if is_shorter(model) else None
     turning = [name for name in only if name in QUANTITY_NAMES]
-    found = dict(kinematics.steps(values, turning or only))
+    found = dict(
+        turns.steps(turning or only) if turns else kinematics.steps(values, turning or only)
+    )
     absent = ", ".join(name for name in turning if name not in found)
     if absent:
         raise QuantityError(
@@ -65,7 +81,9 @@ def derive(
     if body is not None:
         whole, arguments, of_body = _of_body(model, body, only)
         found |= of_body
+    definitions = turns.definitions([step.expression for step in found.values()]) if turns else ()
     constants = set(arguments["parameters"].symbols) if "parameters" in arguments else set()
+    constants |= _resting_on(constants, definitions)
     has_rates = not only or not OF_RATES.isdisjoint(only)
     return Derivation(
         name=model.name,
@@ -73,9 +91,28 @@ def derive(
         model=model,
         arguments=tuple(arguments.values()),
         steps=tuple(_numbered(found, _table(values), constants)),
-        singularities=singularities_of(values) if has_rates else None,
+        singularities=_singularities(values, turns) if has_rates else None,
         body=whole,
+        definitions=definitions,
     )
+
+
+def _singularities(values: Values, turns: TurnByTurn | None) -> Singularities:
+    """Where the rates fail; of many turns only what vanishes there."""
+    if turns is None or len(values.model.turns) <= _STUDIED:
+        return singularities_of(values)
+    return turns.singularities()
+
+
+def _resting_on(
+    constants: Collection[sp.Symbol], definitions: Sequence[Definition]
+) -> set[sp.Symbol]:
+    """The named intermediate quantities that depend on a constant."""
+    found: set[sp.Symbol] = set()
+    for definition in definitions:
+        if not definition.expression.free_symbols.isdisjoint({*constants, *found}):
+            found.add(definition.symbol)
+    return found
 
 
 def _of_body(

@@ -215,7 +215,7 @@ class RotationModel:
     @property
     def constants(self) -> tuple[sp.Symbol, ...]:
         """The symbols in R or its conditions that do not move: fixed angles, parts of an axis."""
-        return _constants((self.matrix, *self.constraints))
+        return _constants(self._parts)
 
     @property
     def coordinate_units(self) -> tuple[str, ...]:

@@ -25,7 +25,7 @@ def exactly(sequence: str, name: str, arrays: list[np.ndarray]) -> list[list]:
     symbols = [s for a in QUANTITIES[name][0] for s in motion.argument(a).symbols]
     points = zip(*(array.tolist() for array in arrays), strict=True)
     values = (dict(zip(symbols, map(mp.mpf, itertools.chain(*p)), strict=True)) for p in points)
-    return [list(evaluate(motion.step(name).expression, known)) for known in values]
+    return [list(evaluate(motion.spelled(motion.step(name).expression), known)) for known in values]
 
 
 def worst_error(found: np.ndarray, exact: list[list], scales: np.ndarray | None = None) -> float:

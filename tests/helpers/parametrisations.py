@@ -203,7 +203,7 @@ class Moving:
         values = dict(self.values)
         for name, vector in given.items():
             values |= zip(self.motion.argument(name).symbols, vector, strict=True)
-        return evaluate(self.motion.step(quantity).expression, values)
+        return evaluate(self.motion.spelled(self.motion.step(quantity).expression), values)
 
     @property
     def is_passive(self) -> bool:

@@ -65,7 +65,8 @@ def exact(rotation: str, name: str, point) -> np.ndarray:
     step = motion(rotation).step(name)
     symbols = [s for n in step.quantity.inputs for s in motion(rotation).argument(n).symbols]
     flat = [mp.mpf(float(x)) for vector in point for x in vector]
-    values = evaluate(step.expression, dict(zip(symbols, flat, strict=True)))
+    spelled = motion(rotation).spelled(step.expression)
+    values = evaluate(spelled, dict(zip(symbols, flat, strict=True)))
     return np.array(list(values), dtype=object)
 
 

@@ -156,7 +156,7 @@ def test_rotations_compose(first: str, second: str):
     values = values_on(whole, nearly_straight(len(whole.model.coordinates)))
 
     def part(text: str, quantity: str):
-        return evaluate(motion_of(text).step(quantity).expression, values)
+        return evaluate(motion_of(text).spelled(motion_of(text).step(quantity).expression), values)
 
     R = [part(text, "rotation_matrix") for text in (first, second, f"{first} {second}")]
     omega = [part(text, "angular_velocity_space") for text in (first, second, f"{first} {second}")]

@@ -142,6 +142,7 @@ def derivatives_of(
 
 def _derivative(derivation: Derivation, request: DerivativeRequest) -> Derivative:
     step = derivation.step(request.quantity)
+    step = replace(step, expression=derivation.spelled(step.expression))
     inputs = step.quantity.inputs
     if request.vector not in inputs:
         raise KernelError(f"{request}: {request.quantity} takes {' and '.join(inputs)} alone")

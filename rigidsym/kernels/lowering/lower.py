@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
+from types import MappingProxyType
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -121,6 +122,7 @@ class _Lowering:
         self._vectors = {vector.name: vector for vector in derivation.arguments}
         self.arguments = {vector.name: _named(vector, names) for vector in derivation.arguments}
         self._names = names
+        self._definitions = {d.symbol: d.expression for d in derivation.definitions}
         model = derivation.model
         inputs = [symbol for vector in derivation.arguments for symbol in vector.symbols]
         self._given = [*model.matrix, *inputs, *_roots(derivation)]
@@ -227,7 +229,7 @@ class _Lowering:
                 self._vectors[argument.name].symbols, argument.components, strict=True
             )
         }
-        reader = _Reader(name, known)
+        reader = _Reader(name, known, self._definitions)
         weighted = [reader.weighted(entry) for entry in entries]
         reader.graph.share(node for _, node in weighted)
         names = self._names.copy()
@@ -279,10 +281,16 @@ def _over(scale: sp.Rational) -> str:
 class _Reader:
     """From SymPy to one graph; inputs are its atoms, by their names."""
 
-    def __init__(self, kernel: str, inputs: Mapping[sp.Expr, str]) -> None:
+    def __init__(
+        self,
+        kernel: str,
+        inputs: Mapping[sp.Expr, str],
+        definitions: Mapping[sp.Expr, sp.Expr] = MappingProxyType({}),
+    ) -> None:
         self.graph = Graph()
         self._kernel = kernel
         self._inputs = inputs
+        self._definitions = definitions
         self._known: dict[sp.Expr, Monomial] = {
             symbol: (Fraction(1), (self.graph.atom(name),)) for symbol, name in inputs.items()
         }
@@ -299,6 +307,8 @@ class _Reader:
         return known
 
     def _read(self, expression: sp.Expr) -> Monomial:
+        if expression in self._definitions:
+            return self._monomial(self._definitions[expression])
         if expression.is_Rational:
             return Fraction(int(expression.p), int(expression.q)), ()
         if expression.is_number and expression.is_real:

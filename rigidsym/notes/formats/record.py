@@ -57,6 +57,10 @@ def record(
         **({"theory": _theory(derivation)} if derivation.theory else {}),
         "arguments": [_argument(argument) for argument in derivation.arguments],
         "quantities": [_step(step, names) for step in derivation.steps],
+        "definitions": [
+            {"name": d.symbol.name, "expression": _plain(d.expression, names)}
+            for d in derivation.definitions
+        ],
         "singularities": _singularities(derivation.singularities, names),
         **({"body": _body(derivation.body, names)} if derivation.body else {}),
         **({"conversions": _conversions(conversions, names)} if conversions else {}),

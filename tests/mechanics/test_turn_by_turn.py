@@ -1,0 +1,180 @@
+"""Long products of turns by recursion: the expanded form, true at 50 digits, linear in n."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+from helpers.witness import mp
+from rigidsym.algebra.codec import codec_for
+from rigidsym.mechanics.derive import derive
+from rigidsym.mechanics.kinematics.recursion_proofs import residuals
+from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn, is_shorter
+from rigidsym.mechanics.kinematics.workspace import Values
+
+LETTERS = "zxzyxyzxyzxyzxzyxyzx"
+TOLERANCE = mp.mpf(10) ** -40
+
+
+def chain(count: int, *, oblique: int = 0) -> rs.RotationModel:
+    """`count` turns about coordinate axes, or about axes of small whole numbers by a seed."""
+    generator = random.Random(oblique)
+    axes = [
+        "[{},{},{}]".format(*(generator.randint(1, 3) for _ in range(3))) if oblique else letter
+        for letter in LETTERS[:count]
+    ]
+    return rs.rotation_from(" ".join(f"{axis}(q{k})" for k, axis in enumerate(axes, 1)))
+
+
+def spelled(work: TurnByTurn, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    values: dict[sp.Symbol, sp.Expr] = {}
+    for definition in work.definitions([matrix]):
+        values[definition.symbol] = definition.expression.xreplace(values)
+    return matrix.xreplace(values)
+
+
+@pytest.mark.parametrize(
+    ("count", "oblique"), [*((n, 0) for n in range(1, 7)), *((n, 1) for n in range(1, 4))]
+)
+def test_the_recursion_is_the_expanded_form_in_the_ring(count, oblique):
+    model = chain(count, oblique=oblique)
+    work, values = TurnByTurn(model), Values(model)
+    found = dict(work.steps())
+    for name, expanded in (
+        ("rotation_matrix", values.R),
+        ("angular_velocity_space", values.omega_space),
+        ("angular_velocity_body", values.omega_body),
+        ("rate_matrix_space", values.rate_matrix_space),
+        ("rate_matrix_body", values.rate_matrix_body),
+        ("angular_acceleration_space", values.omega_space.dt()),
+        ("angular_acceleration_body", values.omega_body.dt()),
+    ):
+        entries = map(values.codec.encode, spelled(work, found[name].expression))
+        assert not any(e - x for e, x in zip(entries, expanded.entries, strict=True)), name
+
+
+def numbers(model: rs.RotationModel) -> dict[sp.Expr, sp.Expr]:
+    generator = random.Random(7)
+    return {
+        sp.diff(q, "t", order) if order else q: sp.Rational(generator.randint(-900, 900), 300)
+        for q in model.coordinates
+        for order in range(3)
+    }
+
+
+def axis_turn(direction, angle):
+    """Rodrigues' formula in numbers of 50 digits."""
+    x, y, z = direction
+    skew = mp.matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return mp.eye(3) + mp.sin(angle) * skew + (1 - mp.cos(angle)) * skew * skew
+
+
+@pytest.mark.parametrize(("count", "oblique"), [(5, 0), (6, 3), (9, 4), (20, 0), (20, 5)])
+def test_all_quantities_are_true_at_fifty_digits(count, oblique):
+    model = chain(count, oblique=oblique)
+    derivation = derive(model)
+    assert derivation.is_proved
+    at = numbers(model)
+    t = sp.Symbol("t")
+    values = {k: mp.mpf(v.p) / v.q for k, v in at.items()}
+    known = dict(values)
+    for argument in derivation.arguments:
+        known |= {s: mp.mpf(k) / 7 for k, s in enumerate(argument.symbols, 1) if s.is_Symbol}
+    for definition in derivation.definitions:
+        known[definition.symbol] = value_of(definition.expression, known)
+
+    def found(name):
+        expression = derivation.step(name).expression
+        rows = [[value_of(entry, known) for entry in row] for row in expression.tolist()]
+        return mp.matrix(rows)
+
+    directions = [[value_of(sp.sympify(e), known) for e in turn.direction] for turn in model.turns]
+    turned, columns = mp.eye(3), []
+    velocity, acceleration = mp.matrix(3, 1), mp.matrix(3, 1)
+    for q, direction in zip(model.coordinates, directions, strict=True):
+        axis = turned * mp.matrix(direction)
+        columns.append(axis)
+        rate, second = values[sp.diff(q, t)], values[sp.diff(q, t, 2)]
+        acceleration += second * axis + rate * cross(velocity, axis)
+        velocity += rate * axis
+        turned = turned * axis_turn(direction, values[q])
+    rates = mp.matrix(3, count)
+    for place, column in enumerate(columns):
+        rates[:, place] = column
+    for name, expected in (
+        ("rotation_matrix", turned),
+        ("angular_velocity_space", velocity),
+        ("angular_velocity_body", turned.T * velocity),
+        ("rate_matrix_space", rates),
+        ("rate_matrix_body", turned.T * rates),
+        ("inverse_rate_matrix_space", rates.T * mp.inverse(rates * rates.T)),
+        ("angular_acceleration_space", acceleration),
+        ("angular_acceleration_body", turned.T * acceleration),
+    ):
+        assert mp.norm(found(name) - expected) < TOLERANCE, name
+
+
+def cross(a, b):
+    return mp.matrix(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
+
+
+def value_of(expression, known):
+    """A number of 50 digits for sums, products, powers, sines and cosines of what is known."""
+    if expression in known:
+        return known[expression]
+    if expression.is_Rational:
+        return mp.mpf(int(expression.p)) / int(expression.q)
+    parts = [value_of(argument, known) for argument in expression.args]
+    if expression.is_Add:
+        return mp.fsum(parts)
+    if expression.is_Mul:
+        return mp.fprod(parts)
+    if expression.is_Pow:
+        return mp.power(*parts)
+    return {sp.sin: mp.sin, sp.cos: mp.cos}[expression.func](*parts)
+
+
+def test_a_wrong_definition_is_not_proved():
+    model = chain(5)
+    work = TurnByTurn(model)
+    broken = work.recursion.partial[3]
+    (symbol,) = [s for s in broken.free_symbols if s.name == "P3_11"]
+    work.recursion._groups["P3"][symbol] += symbol
+    assert any(not r.is_zero() for _, r in residuals(work.recursion, "product"))
+    with pytest.raises(rs.RigidsymError, match="is false"):
+        work.rotation_matrix()
+
+
+def test_operations_and_definitions_grow_linearly():
+    counts = {n: len(derive(chain(n)).definitions) for n in (6, 12, 18)}
+    assert counts[18] - counts[12] == counts[12] - counts[6]
+
+
+def test_three_and_four_turns_keep_their_expanded_form():
+    for model in (rs.EulerAngles("ZXZ"), chain(3), chain(4)):
+        assert not is_shorter(model)
+        assert derive(model).definitions == ()
+    assert is_shorter(chain(5))
+
+
+def test_the_attributes_of_a_motion_are_in_the_coordinates_only():
+    motion = rs.derive(chain(5))
+    allowed = {q.func for q in motion.model.coordinates}
+    matrix = motion.rotation_matrix
+    assert not matrix.free_symbols - {sp.Symbol("t")}
+    assert {f.func for f in matrix.atoms(sp.core.function.AppliedUndef)} == allowed
+    codec = codec_for([*matrix], order=0)
+    residual = [codec.encode(entry) for entry in matrix * matrix.T - sp.eye(3)]
+    assert not any(residual)
+
+
+def test_turns_whose_axes_stay_in_a_plane_have_no_right_inverse():
+    flat = TurnByTurn(rs.rotation_from("z(a) z(b) z(c) x(d)"))
+    assert "inverse_rate_matrix_space" not in dict(flat.steps())
+    full = TurnByTurn(rs.rotation_from("z(a) z(b) z(c) x(d) z(e)"))
+    assert "inverse_rate_matrix_space" in dict(full.steps())
