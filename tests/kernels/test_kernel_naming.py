@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import re
+import shutil
+import subprocess
+
+import numpy as np
 import pytest
 import sympy as sp
 
 import rigidsym as rs
+from helpers.target_modules import EVERY
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.lowering.naming import Names, identifier
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.rotation import RotationModel, lecture
 from rigidsym.models.so3 import elementary, time_function
 from rigidsym.motion import derive
@@ -63,3 +70,43 @@ def test_names_of_a_person_clash_with_nothing(names):
     kernels = lower(turned_by(*names), {"lambda", "np"}).kernels
     for kernel in kernels:  # each Kernel refuses a name that is defined twice
         assert not {"lambda", "np"} & {*kernel.components, *(a.name for a in kernel.assignments)}
+
+
+WORDS = [
+    ("lambda", "eps", "y0"),
+    ("λ", "double", "M_PI"),
+    ("eps_row", "least", "far"),
+    ("new", "this", "arguments"),
+    ("signed", "j1", "NULL"),
+]
+
+
+@pytest.mark.parametrize("target", EVERY)
+@pytest.mark.parametrize("names", WORDS, ids=" ".join)
+def test_words_of_languages_are_renamed_so_that_every_module_loads(names, target):
+    motion = rs.derive(rs.EulerAngles("ZXZ", angles=names), only=["angular_velocity_body"])
+    plain = rs.derive("ZXZ", only=["angular_velocity_body"]).kernels().load()
+    module = motion.kernels(target, conversions=True).load()
+    given = [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]]
+    found = module.angular_velocity_body(*given)
+    np.testing.assert_allclose(found, plain.angular_velocity_body(*given), rtol=1e-6)
+
+
+def test_words_of_languages_are_renamed_alike_in_every_target():
+    motion = rs.derive(rs.EulerAngles("ZXZ", angles=("lambda", "eps", "y0")))
+    program = lower(motion)
+    assert program.arguments[0].components == ("lambda_", "eps", "y0_")
+    for target in TARGETS:
+        source = " ".join(motion.kernels(target).files.values())
+        assert re.search(r"\blambda_, eps, y0_", source)
+
+
+@pytest.mark.skipif(not shutil.which("g++"), reason="no g++")
+def test_a_c_header_is_taken_by_cpp_beside_cmath(tmp_path):
+    for names in WORDS:
+        motion = rs.derive(rs.EulerAngles("ZXZ", angles=names), only=["rotation_matrix"])
+        header = motion.kernels("c", conversions=True).write(tmp_path).with_suffix(".h")
+        source = tmp_path / "use.cpp"
+        source.write_text(f'#include <cmath>\n#include "{header.name}"\nint main() {{}}\n', "utf-8")
+        command = ["g++", "-Wall", "-Wextra", "-Wshadow", "-Werror", "-fsyntax-only", str(source)]
+        assert subprocess.run(command, capture_output=True, check=False).returncode == 0

@@ -11,26 +11,23 @@ from math import pi
 from types import ModuleType
 
 from rigidsym.kernels.conversions.conversions import ConversionProgram, Formula
-from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program
+from rigidsym.kernels.ir import Kernel, Program
 from rigidsym.kernels.lowering.sincos import two_over_pi
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.c.function import Function, function, show
 from rigidsym.kernels.targets.c.module_files import module_files
 from rigidsym.kernels.targets.c.precision import PRECISIONS
+from rigidsym.kernels.targets.numpy import printer as numpy
 from rigidsym.kernels.targets.text import remarks, statements
 from rigidsym.kernels.targets.text.layout import filled
 from rigidsym.system import resources
 
 _WORDS = (
-    "auto break case char const continue default do double else enum extern float for goto if "
-    "inline int long register restrict return short signed sizeof static struct switch typedef "
-    "union unsigned void volatile while asm typeof "
-    "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf nan "
-    "NULL NAN INFINITY HUGE_VAL HUGE_VALF HUGE_VALL SIZE_MAX PTRDIFF_MAX math_errhandling "
-    "size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED PICK always wrapped wrappedf tile "
-    "found rows count at i j "
+    "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf nan NULL "
+    "SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED PICK always "
+    "wrapped wrappedf tile found rows count at i j"
 )
-RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
+RESERVED = numpy.RESERVED | {*_WORDS.split()}  # the Python module's, too
 _WIDTH = 92
 _TILE = 32  # orientations that are evaluated side by side
 _WHOLE = frozenset({1, 2, 3, 4, 8})  # lengths of rows that compilers put together by whole vectors

@@ -42,13 +42,10 @@ from rigidsym.system import resources
 
 TEMPLATE = "javascript/module.mjs.jinja"
 _WORDS = (
-    "arguments await break case catch class const continue debugger default delete do else "
-    "enum eval export extends false finally for function if implements import in instanceof "
-    "interface let new null package private protected public return static super switch this "
-    "throw true try typeof undefined var void while with yield Infinity Math NaN RangeError "
-    "TypeError ArrayBuffer Float64Array Array atan2 hypot out at "
+    "Infinity Math NaN RangeError TypeError Number ArrayBuffer Float64Array Array atan2 hypot tan "
+    "out at"
 )
-RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS, "tan"})
+RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
 
 _show = partial(infix, functions={name: name for name in FUNCTIONS})
 

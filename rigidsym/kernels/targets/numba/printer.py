@@ -75,13 +75,14 @@ def _series(order: int) -> dict[str, Any]:
 
 def _compiled(kernel: Kernel) -> dict[str, Any]:
     """The loop over a block: rows of components in, rows of entries out."""
-    rows = [*kernel.components, *(f"_out{k}" for k in range(len(kernel.outputs)))]
-    lines = [f"{name} = _{name}[_i]" for name in kernel.components]
+    rows = [*(f"_{name}_row" for name in kernel.components)]
+    rows += [f"_out{k}" for k in range(len(kernel.outputs))]
+    lines = [f"{name} = _{name}_row[_i]" for name in kernel.components]
     lines += _lines(kernel)
     lines += [f"_out{k}[_i] = {_show(output)}" for k, output in enumerate(kernel.outputs)]
     return {
         "name": kernel.name,
-        "rows": ", ".join(f"_{name}" if name in kernel.components else name for name in rows),
+        "rows": ", ".join(rows),
         "body": "\n".join(f"        {line}" for line in lines),
     }
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import keyword
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.abc import ExecutionLoader
 from importlib.util import module_from_spec, spec_from_loader
@@ -14,7 +13,7 @@ from rigidsym.kernels.ir import FUNCTIONS, Argument, Call, Guarded, Kernel, Name
 from rigidsym.kernels.targets.text.layout import WIDTH, bracketed, exploded
 from rigidsym.kernels.targets.text.remarks import bound, cost, headline, poles, table
 
-RESERVED = frozenset({*keyword.kwlist, *FUNCTIONS, "l", "O", "I"})  # linters refuse the last three
+RESERVED = frozenset({*FUNCTIONS, "l", "O", "I"})  # linters refuse the last three
 
 
 def module_from(name: str, source: str) -> ModuleType:
