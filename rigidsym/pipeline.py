@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
-from rigidsym.errors import BodyError, ModelError, SpecError
+from rigidsym.errors import BodyError, ModelError, RequestError, SpecError
 from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derivation import Proof
@@ -74,19 +74,25 @@ def output_of(spec: DerivationSpec) -> Output:
 # 1. read
 
 
-def read(source: str) -> DerivationSpec:
-    """A derivation file, by path or shipped name, or else a rotation such as "ZXZ"."""
+def read(source: str, **options: Any) -> DerivationSpec:
+    """A derivation file, by path or shipped name, or else a rotation such as "ZXZ".
+
+    `options` are those of `spec_for`; a derivation file takes none.
+    """
     shipped = resources.names("derivations", ".toml")
     if source in shipped or Path(source).suffix == ".toml":
+        if options:
+            raise RequestError(
+                f"{source} is a derivation file and has its own {', '.join(options)}"
+            )
         return read_file(source)
     try:
-        return spec_for(source)
+        return spec_for(source, **options)
     except ModelError as error:
-        if source.isidentifier():
-            raise ModelError(
-                f"{error}\nor a derivation file, NAME.toml or one of {', '.join(shipped)}"
-            ) from None
-        raise
+        if not source.isidentifier():
+            raise
+        files = f"NAME.toml or one of {', '.join(shipped)}"
+        raise ModelError(f"{error}\nor a derivation file, {files}") from None
 
 
 def read_file(file: str) -> DerivationSpec:

@@ -9,14 +9,20 @@ from pathlib import Path
 import click
 
 from rigidsym.commands.command import command as make
-from rigidsym.commands.options import FolderOptions, option, with_options
+from rigidsym.commands.options import (
+    FolderOptions,
+    RotationOptions,
+    SelectionOptions,
+    option,
+    with_options,
+)
 from rigidsym.commands.page import write_files
 from rigidsym.kernels.targets.c.build import build
 from rigidsym.pipeline import integrated, read
 
 
 @dataclass(frozen=True, kw_only=True)
-class BuildOptions(FolderOptions):
+class BuildOptions(FolderOptions, SelectionOptions, RotationOptions):
     """All options of `build`."""
 
     portable: bool = option(
@@ -45,6 +51,7 @@ def _built(source: str, options: BuildOptions) -> Iterator[Path]:
     if Path(source).suffix == ".c":
         yield build(Path(source), portable=options.portable)
         return
-    for single in integrated(read(source)).singles():
+    spec = options.selected(integrated(read(source, **options.of_rotation())))
+    for single in spec.singles():
         folder = write_files(replace(single, kernels=("c",)), options.out)
         yield build(folder / f"{single.name}.c", portable=options.portable)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import sys
 from collections.abc import Iterable, Iterator, Sequence
@@ -11,13 +12,21 @@ from pathlib import Path
 import click
 
 from rigidsym.commands.command import command as make
-from rigidsym.commands.options import PrintingOptions, RotationOptions, with_options
+from rigidsym.commands.options import (
+    MOST_LINES,
+    PrintingOptions,
+    RotationOptions,
+    option,
+    with_options,
+)
 from rigidsym.commands.output_folder import report_other_files, with_existing_files
 from rigidsym.errors import RigidsymError
+from rigidsym.motion import Motion
 from rigidsym.notes.formats.pdf import typeset
+from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
-from rigidsym.pipeline import PDF, Output, integrated, output_of
-from rigidsym.spec.derivation_spec import DerivationSpec
+from rigidsym.pipeline import PDF, Output, integrated, motion_of, output_of
+from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.system.files import write_bytes, write_text
 from rigidsym.system.progress import counter
 
@@ -25,6 +34,12 @@ from rigidsym.system.progress import counter
 @dataclass(frozen=True, kw_only=True)
 class DeriveOptions(PrintingOptions, RotationOptions):
     """All options of `derive`."""
+
+    equations: str | None = option(
+        "--format",
+        type=click.Choice(["latex", "text", "json"]),
+        help="Print the equations in this format, and write no files; see --only.",
+    )
 
 
 @make('rigidsym derive "z(yaw) y(pitch) x(roll)" --target numpy,c --pdf')
@@ -37,7 +52,18 @@ def command(rotation: str, options: DeriveOptions) -> None:
     fixed axes), turns such as "z(phi) x(theta) [1,1,0](psi)", or a name such as quaternion;
     `rigidsym list` shows all of them.
     """
-    produce([options.spec(rotation)], options)
+    spec = spec_for(rotation, **options.of_rotation())
+    if options.equations is None:
+        produce([spec], options)
+    else:
+        click.echo(_equations(motion_of(options.applied_to(spec)), options.equations))
+
+
+def _equations(motion: Motion, form: str) -> str:
+    """The equations of a motion, for a paper or a program."""
+    if form == "json":
+        return json.dumps(record(motion, {})["quantities"], indent=1, ensure_ascii=False)
+    return "\n\n".join(step.latex() if form == "latex" else step.text() for step in motion.steps)
 
 
 def produce(specs: Sequence[DerivationSpec], options: PrintingOptions) -> None:
@@ -49,10 +75,12 @@ def produce(specs: Sequence[DerivationSpec], options: PrintingOptions) -> None:
     for output in _outputs([with_existing_files(single, options.out) for single in singles]):
         written, problem = _write(output, options.out)
         missing = missing or problem
-        if options.as_json:
+        if options.quiet:
+            click.echo("\n".join(map(str, written)))
+        elif options.as_json:
             click.echo(output.record_text, nl=False)
         elif len(singles) == 1:
-            _show(output, written)
+            _show(output, written, full=options.full)
         else:
             click.echo(_summary(output, written))
     if missing:
@@ -95,10 +123,15 @@ def _write(output: Output, out: Path) -> tuple[list[Path], RigidsymError | None]
     return [*written, write_bytes(folder / f"{output.name}.pdf", paper.pdf)], None
 
 
-def _show(output: Output, written: list[Path]) -> None:
+def _show(output: Output, written: list[Path], *, full: bool) -> None:
     width = min(shutil.get_terminal_size((88, 24)).columns, 120)
     motion = output.motion
-    click.echo(show(motion, width=width, manner=motion.notation, conversions=output.conversions))
+    text = show(motion, width=width, manner=motion.notation, conversions=output.conversions)
+    lines = text.split("\n")
+    left = 0 if full else max(0, len(lines) - MOST_LINES)
+    click.echo("\n".join(lines[: len(lines) - left]))
+    if left:
+        click.echo(f"\n... and {left} more lines: use --full, or read the note")
     click.echo("\nWritten: " + "\n         ".join(str(path) for path in written))
 
 

@@ -17,7 +17,6 @@ from rigidsym.mechanics.derive import Body
 from rigidsym.models.rotation import RotationModel
 from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import integrated, read
-from rigidsym.spec.derivation_spec import spec_for
 from rigidsym.system.progress import bar
 from rigidsym.tools.evaluate.evaluate import Evaluated, evaluation
 from rigidsym.tools.evaluate.functions import derived_for
@@ -123,9 +122,8 @@ def evaluated(
 
 def _subject(rotation: str, angles: Sequence[str] | None) -> tuple[RotationModel, Body | None]:
     """The rotation, and the body of a derivation file that has one."""
-    if angles is not None and Path(rotation).suffix == ".toml":
-        raise click.UsageError(f"--angles: {rotation} names its own")
-    spec = integrated(read(rotation) if angles is None else spec_for(rotation, angles=angles))
+    options = {} if angles is None else {"angles": angles}
+    spec = integrated(read(rotation, **options))
     if len(spec.models) != 1:
         raise ModelError(f"{rotation} has {len(spec.models)} rotations; expected one")
     return spec.models[0], spec.body

@@ -17,10 +17,11 @@ from rigidsym.kernels.lowering.derivatives import read_requests
 from rigidsym.kernels.targets import check_target
 from rigidsym.motion import QUANTITIES
 from rigidsym.notes.formula.manner import CHOICES, DEFAULT
-from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
+from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.resources import overridden_by
 from rigidsym.text.names import offer
 
+MOST_LINES = 150  # that a terminal shows by default
 _OPTION = "click option"
 
 
@@ -95,15 +96,15 @@ class RotationOptions:
         "--passive", is_flag=True, help="Present the direction cosine matrix A = Rᵀ."
     )
 
-    def spec(self, rotation: str) -> DerivationSpec:
-        """The specification of a rotation, read with these options."""
-        return spec_for(
-            rotation,
-            angles=None if self.angles is None else names_of(self.angles),
-            constants=names_of(self.constants) if self.constants else (),
-            scalar_last=self.scalar_last,
-            passive=self.passive,
-        )
+    def of_rotation(self) -> dict[str, Any]:
+        """The options that were given, as `spec_for` takes them."""
+        given = {
+            "angles": None if self.angles is None else names_of(self.angles),
+            "constants": names_of(self.constants) if self.constants else (),
+            "scalar_last": self.scalar_last,
+            "passive": self.passive,
+        }
+        return {name: value for name, value in given.items() if value}
 
 
 def _notation(name: str, about: str) -> Any:
@@ -137,8 +138,8 @@ class NotationOptions:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OutputOptions:
-    """What is derived and printed."""
+class SelectionOptions:
+    """What is derived."""
 
     only: tuple[str, ...] = option(
         "--only",
@@ -147,17 +148,34 @@ class OutputOptions:
         metavar="NAME,...",
         help="Derive these quantities only; `rigidsym list` shows the names. May be repeated.",
     )
+    conversions: bool = option(
+        "--conversions",
+        is_flag=True,
+        help="Add conversions to and from quaternion and matrix, and `unwrap`.",
+    )
+
+    def selected(self, spec: DerivationSpec) -> DerivationSpec:
+        """The specification with the quantities chosen here."""
+        only = split(self.only)
+        for name in only:
+            _check_quantity(name, "--only")
+        return replace(
+            spec,
+            quantities=only or spec.quantities,
+            conversions=spec.conversions or self.conversions,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputOptions:
+    """What is printed, and what the terminal shows."""
+
     target: tuple[str, ...] = option(
         "--target",
         multiple=True,
         metavar="NAME,...",
         help="Languages of the kernels; `rigidsym list` shows them. May be repeated.  "
         "[default: numpy]",
-    )
-    conversions: bool = option(
-        "--conversions",
-        is_flag=True,
-        help="Add conversions to and from quaternion and matrix, and `unwrap`.",
     )
     derivative: tuple[str, ...] = option(
         "--derivative",
@@ -168,10 +186,14 @@ class OutputOptions:
     )
     pdf: bool = option("--pdf", is_flag=True, help="Also typeset the note; needs TeX.")
     as_json: bool = option("--json", is_flag=True, help="Print the results as JSON.")
+    quiet: bool = option("--quiet", is_flag=True, help="Print only the names of the files written.")
+    full: bool = option(
+        "--full", is_flag=True, help=f"Show all lines instead of the first {MOST_LINES}."
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
-class PrintingOptions(FolderOptions, NotationOptions, OutputOptions):
+class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, SelectionOptions):
     """The options of `derive` and `run`: what is printed, how, and where it is written."""
 
     def applied_to(self, spec: DerivationSpec) -> DerivationSpec:
@@ -179,16 +201,11 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions):
         targets = split(self.target)
         for target in targets:
             check_target(target)
-        only = split(self.only)
-        for name in only:
-            _check_quantity(name, "--only")
         note = tuple(dict.fromkeys((*spec.note, "pdf"))) if self.pdf else spec.note
         return replace(
-            self.in_notation(spec),
+            self.in_notation(self.selected(spec)),
             note=note,
-            quantities=only or spec.quantities,
             kernels=targets or spec.kernels,
-            conversions=spec.conversions or self.conversions,
             derivatives=self._derivatives(spec),
         )
 

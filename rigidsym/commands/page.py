@@ -8,7 +8,13 @@ from pathlib import Path
 import click
 
 from rigidsym.commands.command import command as make
-from rigidsym.commands.options import FolderOptions, NotationOptions, with_options
+from rigidsym.commands.options import (
+    FolderOptions,
+    NotationOptions,
+    RotationOptions,
+    SelectionOptions,
+    with_options,
+)
 from rigidsym.commands.output_folder import report_other_files, with_existing_files
 from rigidsym.pipeline import PAGE, integrated, output_of, page_name, read
 from rigidsym.spec.derivation_spec import DerivationSpec
@@ -16,7 +22,7 @@ from rigidsym.system.files import write_text
 
 
 @dataclass(frozen=True, kw_only=True)
-class PageOptions(FolderOptions, NotationOptions):
+class PageOptions(FolderOptions, NotationOptions, SelectionOptions, RotationOptions):
     """All options of `page`."""
 
 
@@ -29,7 +35,8 @@ def command(source: str, options: PageOptions) -> None:
     ROTATION is as for `derive`, FILE as for `run`. The page DIR/NAME/NAME_page.html is one file
     that needs no network; NAME.json beside it is the record that `check` reads.
     """
-    for single in options.in_notation(integrated(read(source))).singles():
+    spec = options.selected(integrated(read(source, **options.of_rotation())))
+    for single in options.in_notation(spec).singles():
         folder = write_files(replace(single, kernels=(), note=(PAGE,)), options.out)
         click.echo(folder / page_name(single.name))
 

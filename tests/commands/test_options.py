@@ -1,0 +1,156 @@
+"""Options of the commands: which there are where, and what they choose."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+import rigidsym as rs
+from rigidsym.commands.cli import commands
+from rigidsym.commands.options import MOST_LINES
+from rigidsym.errors import RigidsymError
+from rigidsym.models.rotation_text import rotation_from
+
+NAMES = commands.list_commands(None)
+BODY = "angular_velocity_body"
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(commands, arguments)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_help_has_an_example(name):
+    assert f"Example: rigidsym {name}" in run(name, "--help").stdout
+
+
+def test_the_summaries_are_not_cut_off():
+    shown = run("--help").stdout
+    assert all(f"\n  {name} " in shown for name in NAMES)
+    assert "..." not in shown.split("Commands:")[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("derive", "--only --quantity --angles --conversions --quiet --full --format --timeout"),
+        ("run", "--only --conversions --quiet --full --timeout --memory"),
+        ("page", "--only --angles --conversions --timeout --memory"),
+        ("build", "--only --quantity --angles --conversions --timeout --memory"),
+        ("eval", "--quantity --angles --timeout --memory"),
+        ("check", "--timeout --memory"),
+    ],
+)
+def test_options_are_where_they_make_sense(name, options):
+    shown = run(name, "--help").stdout
+    assert [option for option in options.split() if option not in shown] == []
+
+
+@pytest.mark.parametrize("flag", ["--only", "--quantity"])
+def test_chosen_quantities_alone_are_derived(tmp_path, flag):
+    done = run("derive", "ZXZ", flag, f"{BODY},rotation_matrix", "--json", "--out", str(tmp_path))
+    names = [quantity["name"] for quantity in json.loads(done.stdout)["quantities"]]
+    assert names == ["rotation_matrix", BODY]
+
+
+def test_one_equation_is_printed_and_nothing_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    motion = rs.derive("ZXZ", BODY)
+    latex = run("derive", "ZXZ", "--only", BODY, "--format", "latex").stdout
+    assert latex == motion.latex(BODY) + "\n" == motion.steps[0].latex() + "\n"
+    assert "Ω′ = Rᵀ Ω" in run("derive", "ZXZ", "--only", BODY, "--format", "text").stdout
+    (found,) = json.loads(run("derive", "ZXZ", "--only", BODY, "--format", "json").stdout)
+    assert found["name"] == BODY
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_long_derivation_is_cut_unless_asked_for_in_full(tmp_path):
+    chain = "z(a) x(b) z(c) x(d)"
+    short = run("derive", chain, "--out", str(tmp_path)).stdout.splitlines()
+    full = run("derive", chain, "--full", "--out", str(tmp_path)).stdout.splitlines()
+    cut = next(k for k, line in enumerate(short) if line.startswith("... and "))
+    assert cut <= MOST_LINES + 1 < len(full)
+    assert short[:MOST_LINES] == full[:MOST_LINES]
+
+
+def test_quiet_prints_the_files_alone(tmp_path):
+    done = run("derive", "ZXZ", "--quiet", "--out", str(tmp_path))
+    assert [Path(line).is_file() for line in done.stdout.splitlines()] == [True] * 4
+
+
+def test_kernels_without_a_note_are_possible(tmp_path):
+    (tmp_path / "top.toml").write_text('[rotation]\nsequence = "ZXZ"\n[output]\nnote = []\n')
+    done = run("run", str(tmp_path / "top.toml"), "--out", str(tmp_path / "out"))
+    assert done.exit_code == 0, done.output
+    files = {path.name for path in (tmp_path / "out" / "top").iterdir()}
+    assert files == {"top.py", "top.json"}
+    assert run("check", str(tmp_path / "out")).exit_code == 0
+
+
+def test_a_derivation_file_has_its_own_names(tmp_path):
+    done = run("page", "euler_zxz", "--angles", "a,b,c", "--out", str(tmp_path))
+    assert isinstance(done.exception, RigidsymError)
+    assert str(done.exception) == "euler_zxz is a derivation file and has its own angles"
+    assert done.exception.exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("alias", "name"),
+    [("mrp", "modified_rodrigues"), ("quat", "quaternion"), ("rotvec", "rotation_vector")],
+)
+def test_short_names_stand_for_the_long_ones(alias, name):
+    assert rotation_from(alias) == rotation_from(name)
+
+
+@pytest.mark.parametrize(
+    ("rotation", "said"),
+    [
+        ("xzyx", "an Euler sequence has three axes; for another number write turns: x(a) z(b)"),
+        ("z phi x theta", "did you mean z(phi) x(theta)?"),
+        ("quaternoin", "did you mean quaternion?"),
+        ("nothing", "expected a sequence such as"),
+        ("ZXX", "consecutive axes must differ: X follows X"),
+        ("311", "consecutive axes must differ: 1 follows 1"),
+    ],
+)
+def test_a_wrong_rotation_is_answered_in_two_lines(rotation, said):
+    done = run("derive", rotation)
+    message = str(done.exception)
+    assert said in message
+    assert len(message.splitlines()) <= 2
+
+
+def test_an_unknown_quantity_is_answered_with_the_nearest():
+    assert "did you mean angular_velocity_body" in str(
+        run("derive", "ZXZ", "--only", "angular_velocity_bdy").exception
+    )
+    assert len(str(run("derive", "ZXZ", "--only", "weight").exception)) < 150
+
+
+def test_the_syntax_of_the_option_is_named_for_the_option():
+    said = str(run("derive", "ZXZ", "--derivative", BODY).exception)
+    assert said == f"--derivative {BODY}: expected QUANTITY:VECTOR, such as {BODY}:q"
+
+
+def test_an_axis_may_hold_roots(tmp_path):
+    done = run("derive", "z(a) [0,sqrt(3),1](b)", "--out", str(tmp_path))
+    assert done.exit_code == 0, done.exception
+
+
+def test_completion_offers_names_of_users():
+    assert [name for name in dir(rs) if name.startswith("_")] == ["__version__"]
+    assert {"Any", "TYPE_CHECKING", "import_module"}.isdisjoint(dir(rs))
+    assert "angular_velocity_body" in dir(rs.derive("ZXZ"))
+
+
+def test_kernels_are_one_step():
+    functions = rs.kernels("ZYX", only=BODY)
+    assert functions.angular_velocity_body([0.0, 0.0, 0.0], [1.0, 2.0, 3.0]).tolist() == [3, 2, 1]
+    assert rs.kernels("ZYX", only=BODY).__name__ == functions.__name__  # not the room of this name
+
+
+def test_one_quantity_may_be_named_by_itself():
+    assert [step.quantity.name for step in rs.derive("ZXZ", only=BODY).steps] == [BODY]
