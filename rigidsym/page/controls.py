@@ -1,8 +1,8 @@
-"""The sliders of a page: what can be moved, how far, and where it stands at first."""
+"""The sliders of a page: their ranges, units and initial values."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import cycle
 from math import degrees, lcm, pi
@@ -20,6 +20,7 @@ _VECTOR = (0.4, 0.8, 0.8)  # along the axis in the figure of the note
 _SCALAR = 1.68  # beside a vector: the quaternion of about 65°, once it is a unit
 _MATRIX = (0.5, -0.7, 0.5, 0.8, 0.6, 0.1, -0.4, 0.3, 0.8)  # by rows, not far from a rotation
 _RATES = (0.4, 0.25, 0.7)
+_ANGLE_RATES = (40.0, -25.0, 60.0, 20.0, -35.0)  # degrees per second
 _ANGLE = 40.0  # degrees, where no figure says better
 
 
@@ -60,7 +61,7 @@ def groups_of(
     made = {argument.name: argument for argument in derivation.arguments}
     found = {
         "q": _coordinates(made["q"], model, shown),
-        "q_dot": _rates(made["q_dot"]),
+        "q_dot": _rates(made["q_dot"], [period_of(q, model) for q in model.coordinates]),
         "parameters": _constants(made.get("parameters"), model),
     }
     groups = {
@@ -99,10 +100,15 @@ def _reach(unit: str, model: RotationModel) -> float:
     return 1.0 if model.constraints or model.pullback else 3.0
 
 
-def _rates(argument: Argument) -> Iterator[Control]:
-    for place, unit in enumerate(argument.units):
-        start = _RATES[place % len(_RATES)]
-        yield _control(argument, place, start, 0.0, 3.0 if unit == "rad/s" else 2.0)
+def _rates(argument: Argument, periods: Sequence[float]) -> Iterator[Control]:
+    for place, (unit, period) in enumerate(zip(argument.units, periods, strict=True)):
+        if period:
+            start = _ANGLE_RATES[place % len(_ANGLE_RATES)]
+            control = _control(argument, place, start, 0.0, 180.0)
+            yield replace(control, unit="°/s", step=1.0, factor=_DEGREE)
+        else:
+            start = _RATES[place % len(_RATES)]
+            yield _control(argument, place, start, 0.0, 3.0 if unit == "rad/s" else 2.0)
 
 
 def _constants(argument: Argument | None, model: RotationModel) -> Iterator[Control]:

@@ -11,7 +11,7 @@ from rigidsym.kernels.targets.text import statements
 from rigidsym.kernels.targets.text.layout import WIDTH
 from rigidsym.system import resources
 
-_TEMPLATES = {"python": "page_series.py.jinja", "c": "page_series.c.jinja"}
+_TEMPLATES = {"python": "page/series.py.jinja", "c": "page/series.c.jinja"}
 
 
 def orders_of(kernel: Kernel) -> list[int]:

@@ -1,4 +1,4 @@
-"""What a live page has to evaluate: R, Ω, Ω′, the margin, the turns, and what binds the inputs."""
+"""The functions of a live page: R, Ω, Ω′, the margin, the turns, and the constraints."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from rigidsym.kernels.targets.javascript import printer as javascript
 from rigidsym.mechanics.derivation import Derivation, Markup, Quantity, Step
 from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.models.rotation import RotationModel
+from rigidsym.models.so3 import TIME
 from rigidsym.page.stage import has_turns
 
 SHOWN = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
@@ -27,12 +28,12 @@ _NAMELESS = Markup("", "")
 class Functions:
     """The kernels of a page, and their text."""
 
-    derivation: Derivation  # of what is shown
+    derivation: Derivation  # of the quantities shown
     kernels: tuple[Kernel, ...]
 
     @property
     def steps(self) -> tuple[Step, ...]:
-        """Those that are shown."""
+        """The steps of the quantities shown."""
         return tuple(step for step in self.derivation.steps if step.quantity.name in SHOWN)
 
     @property
@@ -46,7 +47,7 @@ class Functions:
 
 
 def functions_of(model: RotationModel) -> Functions:
-    """All that the page of a model evaluates."""
+    """All functions that the page of a model evaluates."""
     derivation = derivation_of(model, (*SHOWN, _WITH_A_MARGIN))
     steps = (replace(step, number=0) for step in (*derivation.steps, *_more(derivation)))
     program = lower(replace(derivation, steps=tuple(steps)), javascript.RESERVED)
@@ -59,19 +60,21 @@ def functions_of(model: RotationModel) -> Functions:
 def _more(derivation: Derivation) -> Iterator[Step]:
     model = derivation.model
     if has_turns(model):
-        rows = [[*turn.direction, turn.angle] for turn in model.turns]
-        about = "axis and angle of each turn, a turn a row"
-        yield _step(TURNS, sp.ImmutableMatrix(rows), about, ("q",), model)
+        rows = [[*turn.direction, turn.angle, turn.angle.diff(TIME)] for turn in model.turns]
+        about = "axis, angle and rate of each turn, one turn a row"
+        yield _step(TURNS, sp.ImmutableMatrix(rows), about, ("q", "q_dot"), model)
     bound = sp.Matrix(_conditions(model))
     if bound:
         inputs = [*model.coordinates, *model.constants]
-        yield _step(CONDITIONS[0], bound, "what has to vanish", ("q",), model)
+        yield _step(CONDITIONS[0], bound, "constraints, which vanish", ("q",), model)
         slopes = bound.jacobian(inputs)
-        yield _step(CONDITIONS[1], slopes, "its derivatives by all inputs", ("q",), model)
+        yield _step(
+            CONDITIONS[1], slopes, "derivatives of the constraints by all inputs", ("q",), model
+        )
 
 
 def _conditions(model: RotationModel) -> tuple[sp.Expr, ...]:
-    """What vanishes for all that the inputs may be; where they are bound by R itself, R Rᵀ − 1."""
+    """The constraints on the inputs; R Rᵀ = 1 if they are those of a matrix."""
     if model.pullback is None:
         return model.constraints
     left_over = model.matrix * model.matrix.T - sp.eye(3)
@@ -81,7 +84,7 @@ def _conditions(model: RotationModel) -> tuple[sp.Expr, ...]:
 def _step(
     name: str, matrix: sp.MatrixBase, about: str, inputs: tuple[str, ...], model: RotationModel
 ) -> Step:
-    """Something that is evaluated as the quantities are, and stands in no note."""
+    """A function that is evaluated like the quantities but is in no note."""
     quantity = Quantity(
         name=name,
         symbol=Markup(name, name),

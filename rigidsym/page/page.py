@@ -1,6 +1,6 @@
 """A derivation as one HTML file: the note, a figure that moves, and the functions behind it.
 
-Everything stands in the file: no request can leave it, and its script runs by the hash of its text.
+The file is self-contained: its policy blocks every request, and lets only its own script run.
 """
 
 from __future__ import annotations
@@ -8,189 +8,228 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
-from itertools import accumulate
+import re
+from collections.abc import Collection, Iterator
 from typing import Any
 
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Markup, Step
-from rigidsym.notes.document.document import Document, Equation, Paragraph
-from rigidsym.notes.formats.html import escape, rendered
+from rigidsym.models.rotation import RotationModel
+from rigidsym.notes.document.document import Document, Equation, Paragraph, Text
+from rigidsym.notes.figure.scene import scene_of
+from rigidsym.notes.formats.html import Printer, escape, rendered
 from rigidsym.notes.formats.mathml import mathml
 from rigidsym.notes.layout.text_width import ems
 from rigidsym.notes.prose.singular_words import singular
-from rigidsym.notes.prose.words import unit_in_words
+from rigidsym.notes.prose.words import unit_in_words, words
 from rigidsym.page.controls import Control, groups_of
 from rigidsym.page.copies import LANGUAGES, copies_of
-from rigidsym.page.functions import SHOWN, functions_of
-from rigidsym.page.packing import pack
-from rigidsym.page.printer import Packable, PagePrinter
-from rigidsym.page.stage import shown_angles, stage_of
+from rigidsym.page.functions import Functions, functions_of
+from rigidsym.page.shapes import SHAPES, as_data
+from rigidsym.page.stage import has_turns, rate_of, shown_angles, stage_of
 from rigidsym.system import resources
 
-TEMPLATE = "page.html.jinja"
-SCRIPT = "page.mjs.jinja"
-MOST_BYTES = 150_000
+TEMPLATE = "page/page.html.jinja"
+MODULES = ("vectors", "scene", "drawing", "state", "main", "sharing")  # in the order of imports
+MOST_BYTES = 400_000
 
-_FIGURE = "The axes of space and the axes of the body, as the sliders have turned them"
-_SAVED = 0.85  # of what is packed
-_SHORT = 300  # bytes that are not worth it
+_FIGURE = "The axes of space and of the body, in the orientation given by the sliders"
+_SHOWN = {  # what the figure can show, and whether it does at first
+    "angles": ("Angles", True),
+    "sum": ("Ω as a sum", True),
+    "rings": ("Gimbal rings", False),
+    "circles": ("Circles", False),
+    "frames": ("Intermediate frames", False),
+    "trace": ("Trace of the axis", True),
+}
+_OF_TURNS = ("sum", "rings", "frames")
+_IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
+_EXPORT = re.compile(r"^export (?=\w)", re.MULTILINE)
 
 
 def print_page(derivation: Derivation, document: Document) -> str:
-    """The page of a derivation, whose note is given; the same input gives the same bytes.
-
-    Nothing of the note is left out. Where all would be longer than MOST_BYTES, parts of it are
-    packed, and the script spells them when the page is opened.
-    """
-    page = _Page(derivation, document)
-    packed: list[tuple[Packable, int]] = []
-    rest = page.packable()
-    while True:
-        text = page.text([block for block, _ in packed])
-        over = len(text.encode()) - MOST_BYTES
-        if over <= 0 or not rest:
-            return text
-        saved = accumulate((_SAVED * size for _, size in rest), initial=0.0)
-        count = sum(before < over for before, _ in zip(saved, rest, strict=False))
-        packed, rest = packed + rest[:count], rest[count:]
-
-
-class _Page:
-    """One page, which can be printed with more or fewer displays packed."""
-
-    def __init__(self, derivation: Derivation, document: Document) -> None:
-        self.derivation = derivation
-        self.document = document
-        self.functions = functions_of(derivation.model)
-        self.groups = groups_of(
-            self.functions.derivation,
-            self.document.notation,
-            shown_angles(derivation.model, self.document.notation),
-        )
-        self.copies = copies_of(derivation, document)
-        self.printer = PagePrinter(document, copied=self.copies)
-
-    def packable(self) -> list[tuple[Packable, int]]:
-        """Parts of the note and their bytes, those first that are missed least without a script.
-
-        First what is said again on a sheet of its own, then displays, those that the page shows
-        live after the others, and words last; among equals the larger first.
-        """
-        ranks: dict[Packable, int] = {}
-        for section in self.document.sections:
-            for block in section.blocks:
-                if isinstance(block, Packable):
-                    ranks.setdefault(block, 0 if section.on_own_page else _rank(block))
-        sizes = {block: len(self.printer.unpacked(block).encode()) for block in ranks}
-        order = sorted(ranks, key=lambda block: (ranks[block], -sizes[block]))
-        return [(block, sizes[block]) for block in order if sizes[block] > _SHORT]
-
-    def text(self, packed: Sequence[Packable]) -> str:
-        printer = PagePrinter(self.document, copied=self.copies, packed=packed)
-        script = self._script([self.printer.unpacked(block) for block in packed])
-        return rendered(
-            TEMPLATE,
-            printer,
-            policy=f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'",
-            script=script,
-            packed=len(packed),
-            groups=[
-                {"title": group.title, "controls": [*map(_shown, group.controls)]}
-                for group in self.groups
-            ],
-            names=self._names_in_ems(),
-            values=[self._value(step) for step in self.functions.steps],
-            pole=self._pole(),
-            stage=self._stage(),
-            title_of_figure=escape(self.document.notation.manner.words(_FIGURE)),
-        )
-
-    def _script(self, blocks: Sequence[str]) -> str:
-        """The script of the page; nothing in it can end its element."""
-        carried = {"copies": self.copies, "poles": [*self._poles()], "blocks": blocks}
-        data = {
-            "stage": self._stage(),
-            "controls": [_data(c) for group in self.groups for c in group.controls],
-            "inputs": self.functions.arguments,
-            "languages": LANGUAGES,
-            "packed": pack(_json(carried)),
-        }
-        template = resources.environment().get_template(SCRIPT)
-        text = template.render(
-            kernels=self.functions.source,
-            names=", ".join(self.functions.arguments),
-            data=_json(data),
-        )
-        return text.replace("</", "<\\/").replace("<!--", "<\\!--")
-
-    def _names_in_ems(self) -> str:
-        """How wide the widest name of a slider is."""
-        controls = (control for group in self.groups for control in group.controls)
-        return f"{max(2.5, *(1.15 * ems(control.symbol.latex) for control in controls)):.2f}"
-
-    def _stage(self) -> dict[str, Any]:
-        model = self.derivation.model
-        words = self.document.notation.manner.words
-        return {
-            **stage_of(model, self.document.notation),
-            "passive": model.passive,
-            "spoken": words("angular velocity, body components"),
-        }
-
-    def _value(self, step: Step) -> dict[str, Any]:
-        """A table of numbers, as the template places it."""
-        quantity, manner = step.quantity, self.document.notation.manner
-        rows, columns = step.expression.shape
-        return {
-            "id": f"{quantity.name}-value",
-            "symbol": _formula(manner.symbol(quantity.symbol)),
-            "about": escape(manner.text(quantity.about)),
-            "unit": escape(unit_in_words(quantity.unit)) if quantity.unit else "",
-            "rows": range(rows),
-            "columns": range(columns),
-        }
-
-    def _poles(self) -> Iterator[dict[str, Any]]:
-        """Where the rates fail, in radians, and what is to be said there."""
-        found = self.derivation.singularities
-        coordinates = self.derivation.model.coordinates
-        points = found.points if found else ()
-        for point in points:
-            is_shown = all(p.coordinate in coordinates and p.value.is_number for p in point.places)
-            if len(points) > 1 and not (point.places and is_shown):
-                continue  # which of them is near is not seen by the coordinates
-            places = [
-                {
-                    "place": coordinates.index(place.coordinate),
-                    "value": float(place.value),
-                    "period": float(place.period),
-                }
-                for place in point.places
-                if is_shown
-            ]
-            words = self.printer.words(singular(point, self.derivation))
-            yield {"places": places, "words": words}
-
-    def _pole(self) -> str:
-        """How the margin is called, where there is one."""
-        kernel = next((k for k in self.functions.kernels if k.name == MARGIN), None)
-        return "" if kernel is None else escape(kernel.symbol)
+    """The page of a derivation and its note; the same input gives the same bytes."""
+    functions = functions_of(derivation.model)
+    copies = copies_of(derivation, document)
+    printer = PagePrinter(document, copied=copies)
+    groups = groups_of(
+        functions.derivation,
+        document.notation,
+        shown_angles(derivation.model, document.notation),
+    )
+    controls = [control for group in groups for control in group.controls]
+    stage = stage_of(derivation.model, document.notation)
+    in_degrees = any(control.unit == "°" for control in controls)
+    body = _body(derivation.model)
+    choices = _choices(derivation.model, document)
+    data = {
+        "name": derivation.name,
+        "scene": stage,
+        "bodies": {name: as_data(shape()) for name, shape in SHAPES.items()},
+        "body": body,
+        "shown": [name for name, _, is_shown in choices if is_shown],
+        "controls": [_data(control) for control in controls],
+        "inputs": functions.arguments,
+        "in_degrees": in_degrees,
+        "passive": derivation.model.passive,
+        "spoken": document.notation.manner.words("angular velocity, body components"),
+        "turn_words": _turn_words(derivation.model, document, printer),
+        "languages": LANGUAGES,
+        "copies": copies,
+        "poles": list(_poles(derivation, printer)),
+    }
+    script = _script(functions, data)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return rendered(
+        TEMPLATE,
+        printer,
+        policy=f"'sha256-{digest}'",
+        script=script,
+        groups=[
+            {"title": group.title, "controls": [*map(_shown, group.controls)]} for group in groups
+        ],
+        names=f"{max(2.5, *(1.15 * ems(control.symbol.latex) for control in controls)):.2f}",
+        values=[_value(step, document, in_degrees=in_degrees) for step in functions.steps],
+        pole=_pole(functions),
+        stage=stage,
+        bodies=[(name, name.capitalize(), name == body) for name in SHAPES],
+        choices=choices,
+        has_turns=has_turns(derivation.model),
+        count=len(stage["turns"]),
+        title_of_figure=escape(document.notation.manner.words(_FIGURE)),
+    )
 
 
-def _rank(block: Packable) -> int:
-    if isinstance(block, Equation):
-        return 2 if block.label in SHOWN else 1
-    return 3 if isinstance(block, Paragraph) else 1
+class PagePrinter(Printer):
+    """The note of a page, whose equations can be copied."""
+
+    def __init__(self, document: Document, *, copied: Collection[str]) -> None:
+        super().__init__(document)
+        self.copied = copied
+
+    def tools(self, equation: Equation) -> str:
+        """Where the script puts a button for each language, if the equation can be copied."""
+        if equation.label not in self.copied:
+            return ""
+        return f'<p class="copy" data-of="{escape(equation.label)}">{equation.number}</p>'
+
+    def words(self, text: Text) -> str:
+        """A sentence, in the notation of the document."""
+        symbol = self.document.notation.manner.symbol
+        renamed = (symbol(span) if isinstance(span, Markup) else span for span in text)
+        return self._block(Paragraph(tuple(renamed)))
+
+
+def _script(functions: Functions, data: object) -> str:
+    """The script of the page; nothing in it can end its element."""
+    names = ", ".join(functions.arguments)
+    parts = [
+        "// --- the functions of the derivation: every number of this page comes from them\n",
+        functions.source,
+        f"\nconst kernels = {{ {names} }};\nconst page = {_json(data)};\n",
+        *(
+            _EXPORT.sub("", _IMPORT.sub("", resources.text("templates", f"page/{name}.mjs")))
+            for name in MODULES
+        ),
+    ]
+    return "\n".join(parts).replace("</", "<\\/").replace("<!--", "<\\!--")
 
 
 def _json(data: object) -> str:
     return json.dumps(data, ensure_ascii=False, separators=(",", ":"))
 
 
+def _body(model: RotationModel) -> str:
+    """The body shown at first: a top for Euler angles proper about z, else a book."""
+    axes = [turn.axis for turn in model.turns]
+    if len(axes) == 3 and axes[0] == axes[2] == "z":
+        return "top"
+    return "aircraft" if axes in (["z", "y", "x"], ["x", "y", "z"]) else "book"
+
+
+def _choices(model: RotationModel, document: Document) -> list[tuple[str, str, bool]]:
+    """Name, label and initial state of what can be shown in the figure."""
+    words_of = document.notation.manner.words
+    return [
+        (name, escape(words_of(label)), is_shown)
+        for name, (label, is_shown) in _SHOWN.items()
+        if name not in _OF_TURNS or (has_turns(model) and len(model.turns) > 1)
+    ]
+
+
+def _turn_words(model: RotationModel, document: Document, printer: PagePrinter) -> list[str]:
+    """What is seen during each turn, and at the end how Ω is the sum of the turns."""
+    if not has_turns(model):
+        return ["", ""]
+    scene = scene_of(model, document.notation)
+    posed = scene.posed(scene.view.angles) if scene else None
+    rays = [posed.named(arc.axis) for arc in posed.arcs] if posed else []
+    axes = [ray.name if ray else Markup("", "") for ray in rays]
+    if not axes:
+        axes = [Markup(f"N_{k}", f"N_{k}") for k in range(1, len(model.turns) + 1)]
+    angles = [turn["name"] for turn in stage_of(model, document.notation)["turns"]]
+    sentences = [
+        printer.words(words("Turn {} of {}: by {} about {}", str(k), str(len(axes)), angle, axis))
+        for k, (angle, axis) in enumerate(zip(angles, axes, strict=True), start=1)
+    ]
+    return [*sentences, _sum(model, document, axes)]
+
+
+def _sum(model: RotationModel, document: Document, axes: list[Markup]) -> str:
+    """Ω = φ̇ e_z + θ̇ e_N + ψ̇ e_z′."""
+    omega = document.notation.manner.symbol(Markup(r"\boldsymbol{\Omega}", "Ω"))
+    rates = [rate_of(turn.angle, document.notation) for turn in model.turns]
+    terms = [(rate, axis) for rate, axis in zip(rates, axes, strict=True) if rate.text != "0"]
+    latex = " + ".join(rf"{r.latex}\,\mathbf{{e}}_{{{a.latex}}}" for r, a in terms)
+    text = " + ".join(f"{r.text} e_{a.text}" for r, a in terms)
+    return f"<p>{mathml(f'{omega.latex} = {latex}', f'{omega.text} = {text}')}</p>"
+
+
+def _value(step: Step, document: Document, *, in_degrees: bool) -> dict[str, Any]:
+    """A table of numbers, as the template places it."""
+    quantity, manner = step.quantity, document.notation.manner
+    rows, columns = step.expression.shape
+    unit = "°/s" if in_degrees and quantity.unit else unit_in_words(quantity.unit or "")
+    return {
+        "id": f"{quantity.name}-value",
+        "symbol": _formula(manner.symbol(quantity.symbol)),
+        "about": escape(manner.text(quantity.about)),
+        "unit": escape(unit) if quantity.unit else "",
+        "rows": range(rows),
+        "columns": range(columns),
+    }
+
+
+def _poles(derivation: Derivation, printer: PagePrinter) -> Iterator[dict[str, Any]]:
+    """The singular orientations, in radians, and the sentence about each."""
+    found = derivation.singularities
+    coordinates = derivation.model.coordinates
+    points = found.points if found else ()
+    for point in points:
+        is_shown = all(p.coordinate in coordinates and p.value.is_number for p in point.places)
+        if len(points) > 1 and not (point.places and is_shown):
+            continue  # the coordinates do not show which of them is near
+        places = [
+            {
+                "place": coordinates.index(place.coordinate),
+                "value": float(place.value),
+                "period": float(place.period),
+            }
+            for place in point.places
+            if is_shown
+        ]
+        yield {"places": places, "words": printer.words(singular(point, derivation))}
+
+
+def _pole(functions: Functions) -> str:
+    """The symbol of the margin, if there is one."""
+    kernel = next((k for k in functions.kernels if k.name == MARGIN), None)
+    return "" if kernel is None else escape(kernel.symbol)
+
+
 def _shown(control: Control) -> dict[str, str]:
     """A slider as the template places it."""
-    unit = {"°": "degrees"}.get(control.unit, control.unit.replace("/s", " per second"))
+    unit = control.unit.replace("°", "degrees").replace("/s", " per second")
     return {
         "key": control.key,
         "symbol": _formula(control.symbol),
@@ -205,7 +244,7 @@ def _shown(control: Control) -> dict[str, str]:
 
 def _data(control: Control) -> dict[str, Any]:
     """A slider as the script knows it."""
-    kept = ("kind", "place", "start", "factor", "period", "high")
+    kept = ("kind", "place", "start", "factor", "period", "high", "step")
     return {name: getattr(control, name) for name in kept}
 
 

@@ -1,8 +1,8 @@
-"""The live figure before anything is moved: the view of it, and the names of its lines."""
+"""The scene of the live figure as data: the note's, or the single turn of any other rotation."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import sympy as sp
@@ -10,18 +10,19 @@ import sympy as sp
 from rigidsym.mechanics.derivation import Markup
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import AXES
-from rigidsym.notes.figure.scene import BODY, MOST_TURNS, NODE, scene_of, turns_of
+from rigidsym.models.so3 import AXES, TIME
+from rigidsym.notes.figure.camera import STANDARD, Vector
+from rigidsym.notes.figure.scene import BODY, MOST_TURNS, RADII, Scene, scene_of, turns_of
 from rigidsym.notes.figure.svg import as_in_formulas
-from rigidsym.notes.formula.lengths import VECTOR
+from rigidsym.notes.formula.formula import markup
 from rigidsym.notes.formula.notation import Notation
 
-_AZIMUTH, _ELEVATION = 35, 22  # degrees, where no figure says better
-_AXIS = Markup(r"\mathbf{e}", "e")  # of the one turn that any rotation is
+_AZIMUTH, _ELEVATION = 35, 22  # degrees, where the note has no figure
+_INDICES = "₁₂₃₄₅"
 
 
 def has_turns(model: RotationModel) -> bool:
-    """Whether the figure shows the turns one by one; else the one turn that R is."""
+    """Whether the figure shows the turns one by one; else the single turn that R is."""
     return 1 <= len(model.turns) <= MOST_TURNS
 
 
@@ -33,37 +34,69 @@ def shown_angles(model: RotationModel, notation: Notation) -> dict[sp.Expr, floa
     return {turn.angle: angle for turn, angle in pairs if turn.angle in model.coordinates}
 
 
-def stage_of(model: RotationModel, notation: Notation) -> Mapping[str, Any]:
-    """Direction of the viewer in degrees, the names of lines as plain text, and what is a vector.
+def stage_of(model: RotationModel, notation: Notation) -> dict[str, Any]:
+    """What the script needs to draw: rays, turns, names as plain text, the viewer in degrees.
 
-    `vector` are the places of its components among the coordinates, `angle` is the place of the
-    angle about it, where that is a coordinate.
+    A ray has a direction in the frame after `frame` turns, or is the axis of that turn. `vector`
+    holds the positions of its components among the coordinates, and `angle` that of the angle.
     """
     scene = scene_of(model, notation)
     view = scene.view if scene else None
     named = notation.manner.symbol
-    shown = turns_of(model) if has_turns(model) or model.vector else ()
-    angles = {turn.angle for turn in shown} if model.vector else set()
+    angles = {turn.angle for turn in turns_of(model)} if model.vector else set()
     return {
         "azimuth": view.azimuth if view else _AZIMUTH,
         "elevation": view.elevation if view else _ELEVATION,
-        "space": list(AXES),
-        "body": [_written(named(axis)) for axis in BODY],
-        "turns": [_written(turn.name) for turn in scene.turns] if scene else [],
-        "node": _written(_between(model)),
+        "rays": [*(_rays_of(scene) if scene else _rays(model, notation))],
+        "turns": [*_turns(model, scene, notation)],
+        "letters": AXES,
         "vector": [*map(model.coordinates.index, model.vector)],
         "angle": next((k for k, q in enumerate(model.coordinates) if q in angles), None),
-        "omega": _written(named(SPACE.omega)),
+        "omega": label(named(SPACE.omega)),
     }
 
 
-def _between(model: RotationModel) -> Markup:
-    """An axis that is neither of space nor of the body, as the note calls it."""
-    if has_turns(model):
-        return NODE
-    return VECTOR if model.vector else _AXIS
-
-
-def _written(symbol: Markup) -> str:
-    """A label; an arrow above it would not stand where it should in every browser."""
+def label(symbol: Markup) -> str:
+    """A symbol in the picture; browsers do not place an arrow above a letter reliably."""
     return as_in_formulas(symbol.text.replace("\u20d7", ""))
+
+
+def rate_of(angle: sp.Expr, notation: Notation) -> Markup:
+    """The rate of the angle of a turn: φ̇."""
+    return markup(angle.diff(TIME), notation)
+
+
+def _rays_of(scene: Scene) -> Iterator[dict[str, Any]]:
+    for ray in scene.rays:
+        is_axis = ray.kind in ("node", "vector")
+        yield _ray(ray.kind, ray.name, ray.frame, None if is_axis else ray.direction)
+
+
+def _rays(model: RotationModel, notation: Notation) -> Iterator[dict[str, Any]]:
+    """Those of axes that are not numbers, or of the single turn that R is."""
+    count = len(model.turns) if has_turns(model) else 1
+    for name, direction in zip(AXES, STANDARD, strict=True):
+        yield _ray("space", Markup(name, name), 0, direction)
+    for axis, direction in zip(BODY, STANDARD, strict=True):
+        yield _ray("body", notation.manner.symbol(axis), count, direction)
+    for k in range(count):
+        name = f"N{_INDICES[k]}" if has_turns(model) else "e"
+        yield _ray("node", Markup(name, name), k, None)
+
+
+def _ray(kind: str, name: Markup, frame: int, direction: Vector | None) -> dict[str, Any]:
+    return {"kind": kind, "name": label(name), "frame": frame, "direction": direction}
+
+
+def _turns(
+    model: RotationModel, scene: Scene | None, notation: Notation
+) -> Iterator[dict[str, Any]]:
+    """Names, radius and line of each turn; its axis and its angle are evaluated."""
+    turns = turns_of(model) if has_turns(model) or scene else ()
+    starts = [turn.start for turn in scene.turns] if scene and model.turns else [None] * len(turns)
+    for turn, start, radius in zip(turns, starts, RADII, strict=False):
+        rate = rate_of(turn.angle, notation) if model.turns else Markup("", "")
+        name = label(markup(turn.angle, notation))
+        yield {"name": name, "rate_name": label(rate), "start": start, "radius": radius}
+    if not turns:
+        yield {"name": "", "rate_name": "", "start": None, "radius": RADII[0]}

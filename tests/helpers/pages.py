@@ -1,10 +1,9 @@
-"""Pages, made once, and what they carry, spelt by other lines than those of the page itself."""
+"""Pages, made once, and the data that they carry."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
@@ -51,40 +50,27 @@ def odd_page() -> str:
 
 
 def carried(page: str) -> dict[str, Any]:
-    """Texts to copy, words on poles, and blocks of the note."""
-    (data,) = re.findall(r"^const \{ stage, .*?\} = (.*);$", page, re.MULTILINE)
-    return json.loads(spelt(json.loads(data)["packed"]))
+    """The data that the script of a page carries."""
+    (data,) = re.findall(r"^const page = (.*);$", page, re.MULTILINE)
+    return json.loads(data)
 
 
-def spelt(packed: Mapping[str, Any]) -> str:
-    """The text that was packed."""
-    words = dict(enumerate(packed["words"]))
-    for first, second in zip(*[iter(_symbols(packed["rules"]))] * 2, strict=True):
-        words[len(words)] = words[first] + words[second]
-    return "".join(words[symbol] for symbol in _symbols(packed["symbols"]))
-
-
-def _symbols(text: str) -> list[int]:
-    """A symbol is two digits to the base 92, the first of which is #."""
-    digits = [ord(letter) - ord("#") for letter in text]
-    return [92 * high + low for high, low in zip(digits[::2], digits[1::2], strict=True)]
+def script_of(page: str) -> str:
+    (script,) = re.findall(r'<script type="module">(.*)</script>', page, re.DOTALL)
+    return script
 
 
 def note_in(page: str) -> str:
-    """The note of a page as the browser has it after the script, without the buttons that copy."""
-    blocks = carried(page)["blocks"]
-    whole = re.sub(
-        r'<p class="packed" data-packed="(\d+)">.*?</p>', lambda m: blocks[int(m[1])], page
-    )
-    return main_of(re.sub(r'\n?<p class="copy".*?</p>', "", whole))
+    """The note of a page, without the buttons that copy."""
+    return main_of(re.sub(r'\n?<p class="copy".*?</p>', "", page))
 
 
 def main_of(html: str) -> str:
-    """The note in a file; whether a paragraph may be the last of a printed page is all one."""
+    """The note in a file."""
     (main,) = re.findall(r'<main id="content">.*</main>', html, re.DOTALL)
-    return main.replace('<p class="lead">', "<p>")
+    return main
 
 
 def copied(page: str, language: str) -> dict[str, str]:
-    """label: what a button copies."""
+    """label: text copied by a button."""
     return {name: texts[language] for name, texts in carried(page)["copies"].items()}

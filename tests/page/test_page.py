@@ -7,24 +7,28 @@ import re
 import shutil
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
+from math import hypot
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
-from hypothesis import given, strategies as st
 
 import rigidsym as rs
 from helpers.elements import Elements
-from helpers.pages import NAME, carried, main_of, note_in, odd_page, page_of, shipped, spelt
+from helpers.pages import NAME, carried, main_of, note_in, odd_page, page_of, script_of, shipped
 from rigidsym.commands.cli import commands
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN
-from rigidsym.page.packing import pack
-from rigidsym.page.page import MOST_BYTES
+from rigidsym.page.page import MODULES, MOST_BYTES
+from rigidsym.page.shapes import SHAPES
 from rigidsym.pipeline import output_of, read_spec
+from rigidsym.system import resources
 
 SOME = ("unit_quaternion", "rotation_vector", "davenport", "x(alpha0) z(phi) y(pi/4) x(theta)")
 
@@ -52,42 +56,48 @@ def test_every_shipped_derivation_has_a_page_of_bounded_size_with_its_whole_note
             assert f'id="{quantity}-value"' in page, name
 
 
-def test_where_something_is_packed_a_reader_without_a_script_is_told_where_it_stands():
-    page = products()["composite_body"]["composite_body_page.html"]
-    places = re.findall(r'<p class="packed" data-packed="(\d+)">(.*?)</p>', page)
-    assert len({number for number, _ in places}) == len(carried(page)["blocks"]) > 20
-    assert {words for _, words in places} == {
-        "Shown with JavaScript; without, it stands in the note, <code>composite_body.html</code>."
-    }
+def test_the_script_is_one_module_without_names_declared_twice(tmp_path: Path):
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("node is not installed")
+    for number, page in enumerate((page_of("ZXZ"), page_of("davenport"), odd_page())):
+        file = tmp_path / f"{number}.mjs"
+        file.write_text(script_of(page), encoding="utf-8")
+        done = subprocess.run([node, "--check", file], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
 
 
-PIECES = [
-    "<mi>φ</mi>",
-    "<mo>=</mo>",
-    "sin",
-    " ",
-    '<math alttext="a">',
-    "aaaaa",
-    '"\\',
-    "(",
-    "\n    ",
-]
+@pytest.mark.parametrize("name", MODULES)
+def test_every_module_of_the_script_is_valid(name):
+    node = shutil.which("node")
+    if node is None:
+        pytest.skip("node is not installed")
+    file = resources.folder("templates") / "page" / f"{name}.mjs"
+    done = subprocess.run([node, "--check", file], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
-@given(st.lists(st.sampled_from(PIECES) | st.text(max_size=5), max_size=60).map("".join))
-def test_any_text_that_is_packed_is_spelt_again(text):
-    packed = pack(text)
-    assert spelt(packed) == text
-    assert packed == pack(text)
+# --- the shapes
 
 
-def test_results_are_packed_after_all_other_displays():
-    page = page_of("ZXZ")
-    blocks = carried(page)["blocks"]
-    assert 0 < len(blocks) < 15
-    for name in SHOWN:
-        (display,) = re.findall(rf'<div class="equation" id="{name}".*?>\n(.*?)\n<a', page)
-        assert display.startswith('<div class="display')
+@pytest.mark.parametrize("name", SHAPES)
+def test_a_shape_is_closed_and_its_faces_look_outward(name):
+    """Each edge is passed once in each direction, and the volume enclosed is positive."""
+    faces = [face.corners for face in SHAPES[name]()]
+    rim = Counter(edge for c in faces for edge in zip(c, (*c[1:], c[0]), strict=True))
+    if name != "book":  # the tiles of its cover meet longer edges of its sides
+        assert all(rim[b, a] == count for (a, b), count in rim.items())
+    volume = sum(np.linalg.det([c[0], p, q]) / 6 for c in faces for p, q in pairwise(c[1:]))
+    assert volume > 0.01
+    for corners in faces:
+        normal = np.cross(np.subtract(corners[1], corners[0]), np.subtract(corners[2], corners[1]))
+        assert np.linalg.norm(normal) > 0
+        assert np.abs((np.array(corners) - corners[0]) @ normal).max() < 2e-3 * len(corners)
+
+
+def test_every_shape_fits_into_the_axes():
+    for shape in SHAPES.values():
+        assert all(hypot(*p) <= 1.2 for face in shape() for p in face.corners)
 
 
 def test_two_runs_give_the_same_bytes():
@@ -103,7 +113,7 @@ def test_a_page_loads_nothing_and_runs_its_own_script_alone():
         (policy,) = re.findall(r'Content-Security-Policy" content="([^"]*)"', page)
         assert re.fullmatch(
             r"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-[\w+/]{43}='; "
-            r"base-uri 'none'; form-action 'none'",
+            r"img-src blob:; base-uri 'none'; form-action 'none'",
             policy,
         )
 
@@ -140,7 +150,8 @@ def test_the_notation_is_that_of_the_motion():
     )
     page = motion.page()
     assert '"omega":"ω"' in page
-    assert '"body":["xᴮ","yᴮ","zᴮ"]' in page
+    rays = carried(page)["scene"]["rays"]
+    assert [ray["name"] for ray in rays if ray["kind"] == "body"] == ["xᴮ", "yᴮ", "zᴮ"]
     assert '"spoken":"angular velocity, spacecraft components"' in page
     assert "Ω" not in re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
 

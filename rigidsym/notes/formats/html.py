@@ -1,7 +1,7 @@
 """Document -> one HTML file with MathML, which needs neither network nor script.
 
-A display that is too wide for a phone is there twice, set for a page and set for a phone; the
-style sheet shows one of the two. The template only places the pieces that are made here.
+On a phone a wide display is set in smaller type, or scrolls sideways. The template only places the
+pieces that are made here.
 """
 
 from __future__ import annotations
@@ -133,31 +133,21 @@ class Printer:
         yield from filter(None, [self.tools(equation)])
 
     def forms(self, equation: Equation) -> str:
-        """The display for a page and the one for a phone, or one that does for both."""
-        page = display(equation, self.document.notation, _PAGE)
-        phone = display(equation, self.document.notation, _PHONE)
-        if page.latex == phone.latex:
-            return self.display(equation, page, "display")
-        return self.display(equation, page, "display page") + self.display(
-            equation, phone, "display phone"
-        )
+        """The display, which scrolls sideways on a phone if it is too wide."""
+        shown = display(equation, self.document.notation, _PAGE)
+        formula = mathml(shown.latex, self._spoken(equation), is_display=True)
+        return f'<div class="display">{self._lead(equation, shown)}{_fitted(formula, shown)}</div>'
 
     def tools(self, equation: Equation) -> str:  # noqa: ARG002  (a page has some)
         """What stands behind a numbered equation, to be used on it."""
         return ""
 
-    def display(self, equation: Equation, shown: Display, kind: str) -> str:
-        room = _PAGE if "page" in kind else _PHONE
-        lead = self._lead(equation, shown, room)
-        formula = _fitted(mathml(shown.latex, self._spoken(equation), is_display=True), shown, room)
-        return f'<div class="{kind}">{lead}{formula}</div>'
-
-    def _lead(self, equation: Equation, shown: Display, room: float) -> str:
+    def _lead(self, equation: Equation, shown: Display) -> str:
         """What is said before a display; sides too long for a line of words are set apart."""
-        sides = display(Equation(sides=equation.sides), self.document.notation, room)
-        if shown.done == "listed" and (sides.lines > 1 or sides.width > _IN_WORDS * room):
+        sides = display(Equation(sides=equation.sides), self.document.notation, _PAGE)
+        if shown.done == "listed" and (sides.lines > 1 or sides.width > _IN_WORDS * _PAGE):
             formula = mathml(sides.latex, equal(*equation.sides).text, is_display=True)
-            return f"{_fitted(formula, sides, room)}<p>Its entries are</p>"
+            return f"{_fitted(formula, sides)}<p>Its entries are</p>"
         announced = self._text(announcement(equation, shown.done))
         return f"<p>{announced}</p>" if announced else ""
 
@@ -234,11 +224,11 @@ class Printer:
         return f'[<a href="#source-{number}">{number}</a>{place}]'
 
 
-def _fitted(formula: str, shown: Display, room: float) -> str:
+def _fitted(formula: str, shown: Display) -> str:
     """A formula in smaller type where it is too wide for a phone, as far as that can be read."""
-    if shown.width <= room:
+    if shown.width <= _PHONE:
         return f'<div class="formula">{formula}</div>'
-    if shown.width <= _SMALLER * room:
+    if shown.width <= _SMALLER * _PHONE:
         size = f"min(1em, calc((100vw - 2rem) / {_SAFE * shown.width:.1f}))"
         return f'<div class="formula" style="font-size: {size}">{formula}</div>'
     # what has to be scrolled must be within reach of the keyboard

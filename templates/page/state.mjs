@@ -1,11 +1,13 @@
-// --- the state: coordinates, rates and constants, in radians and SI units
+// The state: coordinates, rates and constants in radians and SI units, bound where they have to be.
 
-const state = { q: [], q_dot: [], parameters: [] };
-for (const { kind, start, factor } of controls) state[kind].push(start * factor);
+import { kernels, page } from "./generated.mjs";
 
-const evaluated = (name) => kernels[name](...inputs[name].map((input) => state[input]));
+export const state = { q: [], q_dot: [], parameters: [] };
+for (const { kind, start, factor } of page.controls) state[kind].push(start * factor);
 
-/** x with A x = b, by elimination with pivots; A is small and not singular. */
+export const evaluated = (name) => kernels[name](...page.inputs[name].map((input) => state[input]));
+
+/** x with A x = b, by elimination with pivots; A is small and regular. */
 function solved(a, b) {
   const rows = a.map((row, k) => [...row, b[k]]);
   rows.forEach((_, k) => {
@@ -25,7 +27,7 @@ function solved(a, b) {
   return x;
 }
 
-/** The least change of the inputs that takes up `excess`, where some give way more easily. */
+/** The smallest change of the inputs that cancels `excess`, weighted by the ease of each. */
 function correction(slopes, excess, ease) {
   const a = slopes.map((p) =>
     slopes.map((r) => p.reduce((sum, value, k) => sum + ease[k] * value * r[k], 0)),
@@ -35,8 +37,8 @@ function correction(slopes, excess, ease) {
   return ease.map((e, k) => -e * slopes.reduce((sum, row, n) => sum + row[k] * x[n], 0));
 }
 
-/** Bring coordinates, constants and rates to where the conditions hold; `held` gives way last. */
-function bind(held) {
+/** Project coordinates, constants and rates onto their constraints; `held` is changed last. */
+export function bind(held) {
   if (!kernels.conditions) return;
   const keys = ["q", "parameters"].flatMap((kind) => state[kind].map((_, k) => `${kind}-${k}`));
   const count = state.q.length;
@@ -59,8 +61,8 @@ function bind(held) {
   state.q_dot = state.q_dot.map((value, k) => value + change[k]);
 }
 
-/** Bring all to where the conditions hold; a bound velocity turns, and keeps its size. */
-function settle() {
+/** Project everything onto the constraints; a constrained velocity keeps its length. */
+export function settle() {
   const speed = Math.hypot(...state.q_dot);
   bind("");
   const now = Math.hypot(...state.q_dot);
