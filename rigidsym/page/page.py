@@ -14,19 +14,19 @@ from typing import Any
 
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Markup, Step
+from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document.document import Document, Equation, Paragraph, Text
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.html import Printer, escape, rendered
 from rigidsym.notes.formats.mathml import mathml
-from rigidsym.notes.layout.text_width import ems
 from rigidsym.notes.prose.singular_words import singular
 from rigidsym.notes.prose.words import unit_in_words, words
 from rigidsym.page.controls import Control, groups_of
 from rigidsym.page.copies import LANGUAGES, copies_of
 from rigidsym.page.functions import Functions, functions_of
 from rigidsym.page.shapes import SHAPES, as_data
-from rigidsym.page.stage import has_turns, rate_of, shown_angles, stage_of
+from rigidsym.page.stage import has_turns, label, rate_of, shown_angles, stage_of
 from rigidsym.system import resources
 
 TEMPLATE = "page/page.html.jinja"
@@ -36,7 +36,7 @@ MOST_BYTES = 400_000
 _FIGURE = "The axes of space and of the body, in the orientation given by the sliders"
 _SHOWN = {  # what the figure can show, and whether it does at first
     "angles": ("Angles", True),
-    "sum": ("Ω as a sum", True),
+    "sum": ("{} as a sum", True),
     "rings": ("Gimbal rings", False),
     "circles": ("Circles", False),
     "frames": ("Intermediate frames", False),
@@ -88,7 +88,6 @@ def print_page(derivation: Derivation, document: Document) -> str:
         groups=[
             {"title": group.title, "controls": [*map(_shown, group.controls)]} for group in groups
         ],
-        names=f"{max(2.5, *(1.15 * ems(control.symbol.latex) for control in controls)):.2f}",
         values=[_value(step, document, in_degrees=in_degrees) for step in functions.steps],
         pole=_pole(functions),
         stage=stage,
@@ -149,10 +148,10 @@ def _body(model: RotationModel) -> str:
 
 def _choices(model: RotationModel, document: Document) -> list[tuple[str, str, bool]]:
     """Name, label and initial state of what can be shown in the figure."""
-    words_of = document.notation.manner.words
+    omega = escape(label(document.notation.manner.symbol(SPACE.omega)))
     return [
-        (name, escape(words_of(label)), is_shown)
-        for name, (label, is_shown) in _SHOWN.items()
+        (name, text.format(omega), is_shown)
+        for name, (text, is_shown) in _SHOWN.items()
         if name not in _OF_TURNS or (has_turns(model) and len(model.turns) > 1)
     ]
 
@@ -177,7 +176,7 @@ def _turn_words(model: RotationModel, document: Document, printer: PagePrinter) 
 
 def _sum(model: RotationModel, document: Document, axes: list[Markup]) -> str:
     """Ω = φ̇ e_z + θ̇ e_N + ψ̇ e_z′."""
-    omega = document.notation.manner.symbol(Markup(r"\boldsymbol{\Omega}", "Ω"))
+    omega = document.notation.manner.symbol(SPACE.omega)
     rates = [rate_of(turn.angle, document.notation) for turn in model.turns]
     terms = [(rate, axis) for rate, axis in zip(rates, axes, strict=True) if rate.text != "0"]
     latex = " + ".join(rf"{r.latex}\,\mathbf{{e}}_{{{a.latex}}}" for r, a in terms)

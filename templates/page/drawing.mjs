@@ -154,6 +154,7 @@ function facesOf(body, frame, camera) {
 
 const BENDS = [0, 35, -35, 70, -70, 110, -110]; // degrees off the wished direction
 const GAPS = [0.07, 0.2, 0.34];
+const SIGHT = [1.6, 1.56]; // lengths from the middle of the picture to its edges
 const places = new Map(); // the name of a label -> the bend and the gap that it had
 
 function wishOf({ kind, name, points, beside }) {
@@ -180,11 +181,14 @@ function labelsOf(lines) {
       const edge = Math.min(half[0] / Math.abs(dx), half[1] / Math.abs(dy), Math.hypot(...half));
       return { ...line, centre: [at[0] + (edge + gap) * dx, at[1] + (edge + gap) * dy], half };
     }));
-    const isFree = (box) => !taken.some((other) => meets(box, other));
+    const isFree = (box) =>
+      !taken.some((other) => meets(box, other)) &&
+      box.centre.every((part, k) => Math.abs(part) + half[k] < SIGHT[k]);
     const before = boxes[places.get(line.name)];
     const box = before && isFree(before) ? before : boxes.find(isFree) ?? boxes[0];
     places.set(line.name, boxes.indexOf(box));
-    taken.push(box);
+    const centre = box.centre.map((part, k) => Math.max(half[k] - SIGHT[k], Math.min(SIGHT[k] - half[k], part)));
+    taken.push({ ...box, centre });
   }
   return taken;
 }

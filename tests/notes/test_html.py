@@ -93,17 +93,17 @@ def test_every_formula_can_be_read_as_text():
     assert ("Ω′ = Rᵀ Ω = (φ̇ sin θ sin ψ + θ̇ cos ψ; φ̇ sin θ cos ψ − θ̇ sin ψ; φ̇ cos θ + ψ̇)") in said
 
 
-def test_a_phone_gets_its_own_lines_where_a_page_is_too_wide():
+def test_a_phone_shows_the_same_matrices_as_a_page():
     page = html(derived("ZXZ"))
-    assert page.count('class="display page"') == page.count('class="display phone"') > 3
-    assert '<p>The entries of <math alttext="R"><mi>𝐑</mi></math> are</p>' in page
+    assert 'class="display phone"' not in page
+    (rotation,) = re.findall(r'<div class="equation" id="rotation_matrix".*?</div>\n<a', page, re.S)
+    assert rotation.count("<mtable") == 1
 
 
-def test_what_cannot_be_broken_is_within_reach_of_the_keyboard():
+def test_what_has_to_be_scrolled_is_within_reach_of_the_keyboard():
     names = ("a_very_long_name_of_an_angle", "another_very_long_name", "third_very_long_name")
     page = html(derive(EulerAngles("ZXZ", names)))
     assert '<div class="formula" tabindex="0" role="group" aria-label="wide formula">' in page
-    assert 'aria-label="wide formula"' not in html(derived("ZXZ"))
 
 
 def test_markup_in_text_comes_out_as_text():
@@ -203,7 +203,8 @@ def test_no_page_has_to_be_scrolled_sideways(tmp_path: Path, angles, sequences):
     for page in seen:
         assert page.page_width <= page.width
         assert page.formulas > 20
-        assert angles == WORDS or not page.wide
+        # on a phone wide matrices are scrolled within their own boxes
+        assert angles == WORDS or page.width in PHONES or not page.wide
 
 
 @pytest.mark.usefixtures("chromium")
@@ -213,7 +214,6 @@ def test_notes_of_every_kind_fit_a_phone_and_a_screen(tmp_path: Path):
     seen = look_at([(page, width) for page in kinds + shipped for width in (360, 1280)], tmp_path)
     for page in seen:
         assert page.page_width <= page.width
-        # on a phone, what cannot break is scrolled within its own box
         assert page.width == 360 or not page.wide
 
 
@@ -222,7 +222,7 @@ def test_formulas_fit_in_the_fonts_of_another_machine(tmp_path: Path):
     page = html(derived("XYZ")).replace('"Latin Modern Math", ', "")
     for seen in look_at([(page, width) for width in SCREENS], tmp_path):
         assert seen.page_width <= seen.width
-        assert not seen.wide
+        assert seen.width in PHONES or not seen.wide
 
 
 @pytest.mark.usefixtures("chromium")

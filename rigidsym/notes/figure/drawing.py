@@ -43,7 +43,7 @@ class Ellipse:
 
     @property
     def points(self) -> tuple[Point, ...]:
-        steps = max(2, ceil(abs(self.end - self.start) / _STEP))
+        steps = max(2, ceil(abs(self.end - self.start) / _STEP - 1e-9))
         change = (self.end - self.start) / steps
         return tuple(self.at(self.start + change * step) for step in range(steps + 1))
 
