@@ -1,8 +1,8 @@
 """What a kernel computes, in no language yet: single assignment, every name defined before use.
 
-Expressions are trees of the seven nodes below, over names. What is shared has a name; a call of a
-function (sine, cosine, square root) always has one, so that it is made once, and so has a divisor
-that is guarded.
+Expressions are trees of the nodes below, over names. What is shared has a name; a call of a
+function (sine, cosine, square root) always has one, so that it is made once, and so have a choice
+and a guarded divisor.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from rigidsym.errors import KernelError
 
 # What every target must be able to call; and c0, c1, c2, ..., the functions c_k of n² that
 # `algebra.series` derives.
-FUNCTIONS = ("sin", "cos", "sqrt", "abs")
+# `eps` is the spacing of floats at one, in the type of its argument; `atan2` takes two arguments.
+FUNCTIONS = ("sin", "cos", "sqrt", "abs", "atan2", "eps")
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,10 +64,15 @@ class Product:
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A function of one name."""
+    """A function of one name, or of two."""
 
     function: str  # one of FUNCTIONS, or c0, c1, c2, ...
     argument: Name
+    second: Name | None = None
+
+    @property
+    def arguments(self) -> tuple[Name, ...]:
+        return (self.argument,) if self.second is None else (self.argument, self.second)
 
     @property
     def order(self) -> int | None:
@@ -87,7 +93,25 @@ class Guarded:
     power: int = 1
 
 
-Expression = Name | Number | Negative | Sum | Product | Call | Guarded
+@dataclass(frozen=True, slots=True)
+class Compare:
+    """Whether a comparison holds; it does not where an operand is NaN."""
+
+    relation: str  # "<", "<=", ">", ">=" or "=="
+    left: Expression
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """`then` where the condition holds, else `otherwise`. A target may compute both."""
+
+    condition: Expression  # a comparison, or the name of one
+    then: Expression
+    otherwise: Expression
+
+
+Expression = Name | Number | Negative | Sum | Product | Call | Guarded | Compare | Choice
 
 
 def parts(expression: Expression) -> tuple[Expression, ...]:
@@ -99,8 +123,12 @@ def parts(expression: Expression) -> tuple[Expression, ...]:
             return terms
         case Product(factors, divisors):
             return factors + divisors
-        case Call(_, argument):
-            return (argument,)
+        case Call():
+            return expression.arguments
+        case Compare(_, left, right):
+            return (left, right)
+        case Choice(condition, then, otherwise):
+            return (condition, then, otherwise)
         case Guarded(value, scale):
             return (value,) if scale is None else (value, scale)
     return ()
@@ -122,6 +150,7 @@ class Operations:
     """What one value of a kernel costs; subtractions count as additions."""
 
     trigonometric: int = 0
+    inverse: int = 0
     entire: int = 0
     roots: int = 0
     sizes: int = 0
@@ -129,6 +158,7 @@ class Operations:
     divisions: int = 0
     additions: int = 0
     negations: int = 0
+    choices: int = 0
 
     @property
     def total(self) -> int:
@@ -137,6 +167,7 @@ class Operations:
     def _table(self) -> tuple[tuple[int, str, str], ...]:
         return (
             (self.trigonometric, "sine or cosine", "sines and cosines"),
+            (self.inverse, "arctangent", "arctangents"),
             (self.entire, "function c_k", "functions c_k"),
             (self.roots, "square root", "square roots"),
             (self.sizes, "absolute value", "absolute values"),
@@ -144,6 +175,7 @@ class Operations:
             (self.divisions, "division", "divisions"),
             (self.additions, "addition", "additions"),
             (self.negations, "change of sign", "changes of sign"),
+            (self.choices, "choice", "choices"),
         )
 
     def __str__(self) -> str:
@@ -153,6 +185,7 @@ class Operations:
 
 
 _KINDS = {"sin": "trigonometric", "cos": "trigonometric", "sqrt": "roots", "abs": "sizes"}
+_KINDS["atan2"] = "inverse"
 
 
 def count(expressions: Iterable[Expression]) -> Operations:
@@ -160,6 +193,10 @@ def count(expressions: Iterable[Expression]) -> Operations:
     counts: Counter[str] = Counter()
     for node in (node for expression in expressions for node in walk(expression)):
         match node:
+            case Choice():
+                counts["choices"] += 1
+            case Call("eps"):
+                pass  # a constant of the type
             case Call(function):
                 counts[_KINDS.get(function, "entire")] += 1
             case Product(factors, divisors):
@@ -175,12 +212,18 @@ def count(expressions: Iterable[Expression]) -> Operations:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Argument:
-    """A vector of inputs, shape (n,), and the names of its components."""
+    """An array of inputs and the names of its components, row by row."""
 
     name: str
     components: tuple[str, ...]
     units: tuple[str, ...]
     about: str
+    is_matrix: bool = False  # (3, 3), else a vector
+    is_optional: bool = False  # zero if left out
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return (3, 3) if self.is_matrix else (len(self.components),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,6 +251,7 @@ class Kernel:
     symbol: str = ""  # Unicode, one line: "Ω′"
     definition: str = ""  # Unicode, one line: "Rᵀ Ω"; may be empty
     about: str = ""  # words
+    remarks: tuple[str, ...] = ()  # paragraphs
     unit: str = ""  # SI; "" for a pure number
     parts: tuple[tuple[int, ...], ...] = ()  # shapes of the results that the outputs are, in order
 
@@ -235,8 +279,8 @@ class Kernel:
         for node in walk(expression):
             if isinstance(node, Name) and node.text not in known:
                 raise KernelError(f"{self.name}: {node.text} is used before it is defined")
-            if isinstance(node, Call | Guarded) and not (is_whole and node is expression):
-                called = node.function if isinstance(node, Call) else "a guard"
+            if isinstance(node, Call | Guarded | Choice) and not (is_whole and node is expression):
+                called = node.function if isinstance(node, Call) else type(node).__name__
                 raise KernelError(f"{self.name}: {called} is called inside an expression")
 
     @property
@@ -277,6 +321,19 @@ def _factors_in(expression: Expression) -> Iterator[str]:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Unwrapping:
+    """How coordinates are made continuous along a trajectory."""
+
+    kind: str  # "turns", "quaternion", "axis_angle", "rotation_vector" or "modified_rodrigues"
+    arguments: tuple[Argument, ...]
+    remarks: tuple[str, ...]
+    # Of turns: their angles from the coordinates, and the coordinates from the angles. Three
+    # turns are followed by what the two sets of angles of one rotation are to each other.
+    turns: Kernel | None = None
+    coordinates: Kernel | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Program:
     """The kernels of one derivation, and what a reader of the generated file must know."""
 
@@ -286,3 +343,5 @@ class Program:
     source: str  # where the rotation comes from
     arguments: tuple[Argument, ...]  # all that occur, in the order of a signature
     kernels: tuple[Kernel, ...]
+    remarks: tuple[str, ...] = ()  # paragraphs for the head of the module
+    unwrapping: Unwrapping | None = None

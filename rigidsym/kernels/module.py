@@ -6,17 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
 
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.derivatives import Asked, derivatives_of, read_requests
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets import printer
+from rigidsym.mechanics.conversions.conversions import conversions_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.system.files import write_text
-
-if TYPE_CHECKING:
-    from rigidsym.kernels.conversions.conversions import ConversionProgram
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -84,19 +81,11 @@ def generate(
     """
     language = printer(target)
     asked = derivatives_of(derivation, read_requests(derivatives))
-    program = lower(derivation, language.RESERVED, asked)
-    converting = _converting(derivation, language.RESERVED) if conversions else None
-    if not (program.kernels or converting):
+    converting = conversions_of(derivation.model) if conversions else None
+    program = lower(derivation, language.RESERVED, asked, converting)
+    if not program.kernels:
         raise _nothing_to_write(derivation)
-    files = language.render(program, converting)
-    return KernelModule(name=derivation.name, target=target, files=files)
-
-
-def _converting(derivation: Derivation, reserved: frozenset[str]) -> ConversionProgram:
-    from rigidsym.kernels.conversions.conversions import lower_conversions
-    from rigidsym.mechanics.conversions.conversions import conversions_of
-
-    return lower_conversions(derivation, conversions_of(derivation.model), reserved)
+    return KernelModule(name=derivation.name, target=target, files=language.render(program))
 
 
 def _nothing_to_write(derivation: Derivation) -> KernelError:

@@ -89,7 +89,7 @@ def samples(case: Case, q: np.ndarray, *, passive: bool = False) -> Samples:
     names = [symbol.name for symbol in model.constants]
     values = LEAN if "a" not in names else {}
     constants = [[(NUMBERS | values)[name] for name in names]] if names else []
-    rule = conversions_of(model).backward.rule
+    rule = conversions_of(model).inverse.rule
     functions = module(case.text, passive=passive)
     assert len(rule.kept) == case.kept
     return Samples(
@@ -308,7 +308,7 @@ def test_signatures_are_those_of_generalised_ufuncs():
     functions = module("z(a1) x(alpha0) z(b1) x(c1) y(d1)")
     assert functions.from_quaternion.signature == "(4),(1),(1)->(4)"
     assert functions.from_rotation_matrix.signature == "(3,3),(1),(1)->(4)"
-    assert functions.quaternion.signature == "(4),(k)->(4)"
+    assert functions.quaternion.signature == "(4),(1)->(4)"
     assert module("davenport").from_quaternion.signature == "(4),(2)->(3)"
 
 
@@ -338,12 +338,12 @@ def test_zero_quaternions_and_nan_give_nan(case):
 def test_every_claim_is_proved_and_said(case):
     found = conversions_of(rotation_from(case.text))
     assert all(proof.is_exact for proof in found.proofs)
-    branch = found.backward.branch
+    branch = found.inverse.branch
     assert ("need not reach every rotation" in branch) is not case.reaches_all
     assert ("kept at the values given" in branch) is bool(case.kept)
     claims = [proof.claim.text for proof in found.proofs]
     assert "p₊ = exp(e₁ σ) m₊" in claims
-    rule = found.backward.rule
+    rule = found.inverse.rule
     assert any(claim.startswith("R = ") for claim in claims) is bool(rule.before + rule.right)
 
 

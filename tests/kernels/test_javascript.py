@@ -133,8 +133,6 @@ console.log(JSON.stringify([
   said(() => turned(undefined)),
   said(() => turned(q, new Float64Array(9))),
   said(() => velocity(q, q.slice(0, 6))),
-  said(() => kernels.unwrap(q.slice(0, 4))),
-  kernels.unwrap(new Float64Array(0)).length,
   said(() => kernels.quaternion(["1", "2", "3"])),
   said(() => kernels.quaternion("123")),
   said(() => kernels.from_rotation_matrix([[1, 0, 0], [0, 1, 0], [0, 0, null]])),
@@ -156,8 +154,6 @@ def test_many_orientations_are_flat_arrays(tmp_path: Path):
         "RangeError: q: expected rows of 3 numbers, got undefined numbers",
         "RangeError: out: expected 1000 rows of 9 numbers, got 9 numbers",
         "RangeError: q_dot: expected 1000 rows or one, got 2",
-        "RangeError: q: expected rows of 3 numbers, got 4 numbers",
-        0,
         "TypeError: q: expected numbers, got string at 0",  # + would join them
         "TypeError: q: expected numbers, got string at 0",
         "TypeError: matrix: expected numbers, got null at 8",

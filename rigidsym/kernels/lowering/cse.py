@@ -14,6 +14,7 @@ from functools import cache
 from itertools import combinations
 from typing import TypeVar
 
+HELD, CHOICE = "held", "choice"  # functions: a value as it is; one of two by a condition
 _FEWEST_RECIPROCALS = 3  # divisions by one thing that a reciprocal and as many products replace
 
 Factors = tuple[int, ...]  # nodes in order; ~node divides
@@ -30,7 +31,8 @@ class Graph:
     def __init__(self) -> None:
         self.products: dict[int, Factors] = {}
         self.sums: dict[int, Terms] = {}
-        self.calls: dict[int, tuple[str, Weighted]] = {}
+        self.calls: dict[int, tuple[str, tuple[Weighted, ...]]] = {}
+        self.held: dict[int, str] = {}  # nodes that are assigned in this order, and their names
         self.irrationals: dict[int, float] = {}
         self._numbers: dict[Hashable, int] = {}
         self.one = self.atom(())  # the empty product
@@ -45,11 +47,22 @@ class Graph:
         self.irrationals.setdefault(number, value)
         return number
 
-    def call(self, function: str, argument: Weighted) -> int:
-        """A function of one weighted node."""
-        number = self.atom((function, argument))
-        self.calls.setdefault(number, (function, argument))
+    def call(self, function: str, *arguments: Weighted) -> int:
+        """A function of weighted nodes, a comparison or a choice."""
+        number = self.atom((function, arguments))
+        self.calls.setdefault(number, (function, arguments))
         return number
+
+    def hold(self, name: str, value: Weighted) -> Weighted:
+        """A value to be assigned as it is, so that sums and products do not reach through it."""
+        coefficient, node = value
+        is_made = node in self.calls or node in self.products or node in self.sums
+        if node == self.one or node in self.held or not is_made:
+            return value
+        if coefficient != 1 or node not in self.calls:
+            coefficient, node = Fraction(1), self.call(HELD, value)
+        self.held[node] = name
+        return coefficient, node
 
     def product(self, factors: Iterable[int]) -> int:
         """The product of nodes (~node divides); a node over itself goes away."""
@@ -87,7 +100,7 @@ class Graph:
         if node in self.products:
             return [max(factor, ~factor) for factor in self.products[node]]
         if node in self.calls:
-            return [self.calls[node][1][1]]
+            return [part for _, part in self.calls[node][1]]
         return [part for _, part in self.sums.get(node, ())]
 
     def reachable(self, roots: Iterable[int]) -> set[int]:

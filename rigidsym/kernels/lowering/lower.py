@@ -9,24 +9,25 @@ the assignments are the derivation's own expression.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from functools import cached_property
-from types import MappingProxyType
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.halves import halved
 from rigidsym.algebra.stumpff import Entire, at_zero, rewriter_of
-from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
-from rigidsym.kernels.lowering.cse import Factors, Graph, Weighted
 from rigidsym.kernels.lowering.derivatives import Derivative
 from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names
+from rigidsym.kernels.lowering.read import Reader
 from rigidsym.kernels.lowering.schedule import write
+from rigidsym.mechanics.conversions.conversions import Conversions
+from rigidsym.mechanics.conversions.function import Function, Input
+from rigidsym.mechanics.conversions.functions import Converted, converted
+from rigidsym.mechanics.conversions.unwrapping import Unwrapping
 from rigidsym.mechanics.derivation import (
     Argument as Vector,
     Derivation,
@@ -38,22 +39,16 @@ from rigidsym.mechanics.quantities.energy import body_in_words
 from rigidsym.models.rotation import RotationModel
 
 MARGIN = "singularity_margin"
-Monomial = tuple[Fraction, Factors]  # a number times nodes of the graph, ~node dividing
-
-_QUOTIENTS: Mapping[type, tuple[str, str]] = {  # numerator and denominator; "" for one
-    sp.tan: ("sin", "cos"),
-    sp.cot: ("cos", "sin"),
-    sp.sec: ("", "cos"),
-    sp.csc: ("", "sin"),
-    sp.sin: ("sin", ""),
-    sp.cos: ("cos", ""),
-}
 
 
 def lower(
-    derivation: Derivation, reserved: Iterable[str] = (), derivatives: Iterable[Derivative] = ()
+    derivation: Derivation,
+    reserved: Iterable[str] = (),
+    derivatives: Iterable[Derivative] = (),
+    conversions: Conversions | None = None,
 ) -> ir.Program:
-    """The kernels of a derivation, one a quantity, in the order of its equations; derivatives last.
+    """The kernels of a derivation: its quantities in the order of equations, derivatives,
+    conversions.
 
     `reserved` are the words of the target that no name may be. Raises KernelError for an
     expression that kernels cannot hold.
@@ -63,6 +58,9 @@ def lower(
     found = tuple(kernels.of_step(step) for step in derivation.steps if step.quantity.inputs)
     found += tuple(kernels.margin())
     found += tuple(map(kernels.of_derivative, derivatives))
+    added = converted(derivation, conversions) if conversions else Converted()
+    found += tuple(map(kernels.of_step, added.steps))
+    found += tuple(map(kernels.of_function, added.functions))
     used = {argument.name for kernel in found for argument in kernel.arguments}
     model = derivation.model
     return ir.Program(
@@ -72,6 +70,8 @@ def lower(
         source=str(model.source),
         arguments=tuple(a for name, a in kernels.arguments.items() if name in used),
         kernels=found,
+        remarks=added.remarks,
+        unwrapping=kernels.unwrapping(added.unwrapping) if added.unwrapping else None,
     )
 
 
@@ -162,6 +162,61 @@ class _Lowering:
             parts=derivative.parts,
         )
 
+    def of_function(self, function: Function) -> ir.Kernel:
+        """The kernel of a conversion: its values one by one, as they are written."""
+        arguments = tuple(map(self._taken, function.inputs))
+        known = {
+            symbol: component
+            for taken, argument in zip(function.inputs, arguments, strict=True)
+            for symbol, component in zip(taken.argument.symbols, argument.components, strict=True)
+        }
+        reader = Reader(function.name, known, self._definitions)
+        reader.graph.share([reader.define(symbol, value) for symbol, value in function.shared])
+        for symbol, value in function.values:
+            reader.hold(symbol, value)
+        weighted = list(map(reader.weighted, function.outputs))
+        assignments, outputs = write(
+            reader.graph, weighted, list(known.values()), self._names.copy()
+        )
+        return ir.Kernel(
+            name=function.name,
+            arguments=arguments,
+            assignments=assignments,
+            outputs=outputs,
+            shape=(len(outputs),),
+            symbol=function.symbol,
+            about=function.about,
+            remarks=function.remarks,
+            unit=function.unit,
+        )
+
+    def _taken(self, given: Input) -> ir.Argument:
+        """An argument of a conversion; the coordinates that are kept are called as in q."""
+        name, symbols = given.argument.name, given.argument.symbols
+        if name not in self.arguments:
+            known = dict(
+                zip(self._vectors["q"].symbols, self.arguments["q"].components, strict=True)
+            )
+            if known.keys() >= set(symbols):
+                components = tuple(known[symbol] for symbol in symbols)
+                named = _named(given.argument, Names())
+                self.arguments[name] = replace(named, components=components)
+            else:
+                self.arguments[name] = _named(given.argument, self._names)
+            self.arguments[name] = replace(
+                self.arguments[name], is_matrix=given.is_matrix, is_optional=given.is_optional
+            )
+        return self.arguments[name]
+
+    def unwrapping(self, found: Unwrapping) -> ir.Unwrapping:
+        return ir.Unwrapping(
+            kind=found.kind,
+            arguments=tuple(self.arguments[name] for name in found.inputs),
+            remarks=found.remarks,
+            turns=self.of_function(found.turns) if found.turns else None,
+            coordinates=self.of_function(found.coordinates) if found.coordinates else None,
+        )
+
     def margin(self) -> Iterator[ir.Kernel]:
         """How far the rate matrix is from failing, where it is among the quantities and may."""
         found = self._failing
@@ -229,7 +284,7 @@ class _Lowering:
                 self._vectors[argument.name].symbols, argument.components, strict=True
             )
         }
-        reader = _Reader(name, known, self._definitions)
+        reader = Reader(name, known, self._definitions)
         weighted = [reader.weighted(entry) for entry in entries]
         reader.graph.share(node for _, node in weighted)
         names = self._names.copy()
@@ -276,87 +331,3 @@ def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rationa
 
 def _over(scale: sp.Rational) -> str:
     return "" if scale == 1 else f"/({scale})"
-
-
-class _Reader:
-    """From SymPy to one graph; inputs are its atoms, by their names."""
-
-    def __init__(
-        self,
-        kernel: str,
-        inputs: Mapping[sp.Expr, str],
-        definitions: Mapping[sp.Expr, sp.Expr] = MappingProxyType({}),
-    ) -> None:
-        self.graph = Graph()
-        self._kernel = kernel
-        self._inputs = inputs
-        self._definitions = definitions
-        self._known: dict[sp.Expr, Monomial] = {
-            symbol: (Fraction(1), (self.graph.atom(name),)) for symbol, name in inputs.items()
-        }
-
-    def weighted(self, expression: sp.Expr) -> Weighted:
-        """The expression as one node of the graph with a number before it."""
-        coefficient, factors = self._monomial(expression)
-        return coefficient, self.graph.product(factors)
-
-    def _monomial(self, expression: sp.Expr) -> Monomial:
-        known = self._known.get(expression)
-        if known is None:
-            known = self._known[expression] = self._read(expression)
-        return known
-
-    def _read(self, expression: sp.Expr) -> Monomial:
-        if expression in self._definitions:
-            return self._monomial(self._definitions[expression])
-        if expression.is_Rational:
-            return Fraction(int(expression.p), int(expression.q)), ()
-        if expression.is_number and expression.is_real:
-            return Fraction(1), (self.graph.irrational(float(expression)),)
-        if expression.is_Mul:
-            return self._times(self._monomial(factor) for factor in expression.args)
-        if expression.is_Add:
-            return self._factored(self.graph.sum(map(self.weighted, expression.args)))
-        if expression.is_Pow and (2 * expression.exp).is_Integer:
-            return self._power(expression.base, expression.exp)
-        if isinstance(expression, Entire):
-            order, square = expression.args
-            return Fraction(1), (self.graph.call(f"c{order}", self.weighted(square)),)
-        if isinstance(expression, sp.Abs):
-            number, node = self.weighted(expression.args[0])
-            return abs(number), (self.graph.call("abs", (Fraction(1), node)),)
-        if type(expression) in _QUOTIENTS:
-            above, below = _QUOTIENTS[type(expression)]
-            (argument,) = map(self.weighted, expression.args)
-            factors = [self.graph.call(above, argument)] if above else []
-            factors += [~self.graph.call(below, argument)] if below else []
-            return Fraction(1), tuple(factors)
-        raise KernelError(
-            f"{self._kernel}: no kernel can compute {expression} ({type(expression).__name__}); "
-            "expected sums, products, roots, sines and cosines of "
-            + ", ".join(map(str, self._inputs))
-        )
-
-    def _power(self, base: sp.Expr, exponent: sp.Rational) -> Monomial:
-        if not exponent.is_Integer:
-            root = self.graph.call("sqrt", self.weighted(base))
-            coefficient, factors = Fraction(1), _factors(root)
-        else:
-            coefficient, factors = self._monomial(base)
-        times = int(exponent) if exponent.is_Integer else int(2 * exponent)
-        factors = factors if times > 0 else tuple(~factor for factor in factors)
-        return coefficient**times, factors * abs(times)
-
-    def _times(self, monomials: Iterable[Monomial]) -> Monomial:
-        coefficient, factors = Fraction(1), _factors()
-        for number, more in monomials:
-            coefficient, factors = coefficient * number, factors + more
-        return coefficient, factors
-
-    def _factored(self, weighted: Weighted) -> Monomial:
-        coefficient, node = weighted
-        return coefficient, self.graph.factors(node)
-
-
-def _factors(*nodes: int) -> Factors:
-    return nodes

@@ -59,6 +59,10 @@ class Names:
         self._taken.add(name)
         return name
 
+    def wished(self, wish: str) -> str:
+        """The wish, with a number behind it where it is taken."""
+        return self.fresh(wish) if wish not in self._taken else self.numbered(f"{wish}_")
+
     def numbered(self, prefix: str) -> str:
         """The first of prefix0, prefix1, ... that is free."""
         return self.fresh(next(n for k in count() if (n := f"{prefix}{k}") not in self._taken))

@@ -10,10 +10,13 @@ from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
 
+from rigidsym.errors import KernelError
 from rigidsym.kernels.ir import (
     FUNCTIONS,
     Assignment,
     Call,
+    Choice,
+    Compare,
     Expression,
     Name,
     Negative,
@@ -21,7 +24,7 @@ from rigidsym.kernels.ir import (
     Product,
     Sum,
 )
-from rigidsym.kernels.lowering.cse import Graph, Weighted
+from rigidsym.kernels.lowering.cse import CHOICE, HELD, Graph, Weighted
 from rigidsym.kernels.lowering.naming import Names
 
 Rank = tuple[tuple[int, int], ...]
@@ -38,6 +41,7 @@ def write(
     """Assignments for what is used twice, and the outputs in terms of them."""
     writer = _Writer(graph, outputs, inputs, names)
     writer.calls_on_inputs()
+    writer.held()
     written = tuple(writer.weighted(*output) for output in outputs)
     return tuple(writer.assignments), written
 
@@ -58,8 +62,8 @@ class _Writer:
         roots = [node for _, node in outputs]
         self._reachable = graph.reachable(roots)
         self._sines = {
-            argument: node
-            for node, (function, argument) in graph.calls.items()
+            arguments[0]: node
+            for node, (function, arguments) in graph.calls.items()
             if function == "sin" and node in self._reachable
         }
         parts = (part for node in sorted(self._reachable) for part in graph.parts(node))
@@ -68,12 +72,19 @@ class _Writer:
     def calls_on_inputs(self) -> None:
         """Sines and cosines of inputs come first, angle by angle."""
         calls = [
-            (argument, _CALL_ORDER.get(function, len(_CALL_ORDER)), node)
-            for node, (function, (scale, argument)) in self.graph.calls.items()
-            if node in self._reachable and scale == 1 and argument in self._named
+            (arguments[0][1], _CALL_ORDER.get(function, len(_CALL_ORDER)), node)
+            for node, (function, arguments) in self.graph.calls.items()
+            if node in self._reachable and _is_function(function)
+            if all(scale == 1 and argument in self._named for scale, argument in arguments)
         ]
         for _, _, node in sorted(calls):
             self._node(node)
+
+    def held(self) -> None:
+        """What is to be assigned in a given order."""
+        for node in self.graph.held:
+            if node in self._reachable:
+                self._node(node)
 
     def weighted(self, coefficient: Fraction, node: int) -> Expression:
         """A number times a node, with the sign where it costs least."""
@@ -99,15 +110,21 @@ class _Writer:
 
     def _node(self, node: int) -> Expression:
         """The name of a node that has or deserves one, else what it is made of."""
+        if node in self.graph.irrationals:
+            return Number(self.graph.irrationals[node])
         if node not in self._named:
             expression = self._build(node)
-            if node not in self.graph.calls and self._uses[node] < 2:
+            is_call = node in self.graph.calls and not isinstance(expression, Compare)
+            if not is_call and self._uses[node] < 2:
                 return expression
-            self._named[node] = self._assigned(expression)
+            self._named[node] = self._assigned(expression, self.graph.held.get(node, ""))
         return self._named[node]
 
-    def _assigned(self, value: Expression) -> Name:
-        if isinstance(value, Call):
+    def _assigned(self, value: Expression, wish: str = "") -> Name:
+        if wish:
+            name = self.names.wished(wish)
+            self._ranks[name] = (_VALUE, len(self._ranks))
+        elif isinstance(value, Call):
             name = self._name_of(value)
             self._ranks[name] = (_CALL, len(self._ranks))
         else:
@@ -118,7 +135,7 @@ class _Writer:
 
     def _name_of(self, call: Call) -> str:
         """sin_phi for sin(phi); a number for a long argument."""
-        if len(call.argument.text) > _LONGEST_ARGUMENT:
+        if len(call.argument.text) > _LONGEST_ARGUMENT or call.second:
             return self.names.numbered(f"{call.function}_")
         return self.names.fresh(f"{call.function}_{call.argument.text}")
 
@@ -131,16 +148,26 @@ class _Writer:
 
     def _build(self, node: int) -> Expression:
         if node in self.graph.calls:
-            function, argument = self.graph.calls[node]
-            name = self._argument(argument)
-            if function == "cos" and argument in self._sines:
-                self._node(self._sines[argument])  # first, so that both can be taken in one call
-            return Call(function, name)
+            function, arguments = self.graph.calls[node]
+            if not _is_function(function):
+                return self._choice(function, *(self.weighted(*each) for each in arguments))
+            names = [self._argument(argument) for argument in arguments]
+            if function == "cos" and arguments[0] in self._sines:
+                self._node(self._sines[arguments[0]])  # first: both can be taken in one call
+            return Call(function, *names)
         if node in self.graph.products:
             return self._product(node)
         if node in self.graph.sums:
             return self._sum(self._terms(node, Fraction(1)))
-        return Number(self.graph.irrationals[node])
+        raise KernelError(f"node {node} of a kernel has no value")
+
+    def _choice(self, function: str, *values: Expression) -> Expression:
+        """A value as it is, a comparison, or a choice."""
+        if function == HELD:
+            return values[0]
+        if function == CHOICE:
+            return Choice(*values)
+        return Compare(function, *values)
 
     def _product(self, node: int) -> Expression:
         factors: list[Expression] = []
@@ -185,6 +212,10 @@ class _Writer:
             case Negative(operand):
                 return self._rank(operand)
         return ((_SUM, 0),)
+
+
+def _is_function(called: str) -> bool:
+    return called.isidentifier() and called not in (HELD, CHOICE)
 
 
 def _has_both_signs(expression: Expression) -> bool:

@@ -7,6 +7,8 @@ from dataclasses import replace
 
 from rigidsym.kernels.ir import (
     Assignment,
+    Choice,
+    Compare,
     Expression,
     Kernel,
     Name,
@@ -72,7 +74,8 @@ class _Narrower:
 def _operands(expression: Expression) -> tuple[Expression, ...]:
     """The parts of an expression, without their signs."""
     whole = expression.operand if isinstance(expression, Negative) else expression
-    return tuple(p.operand if isinstance(p, Negative) else p for p in parts(whole))
+    each = [part for p in parts(whole) for part in (parts(p) if isinstance(p, Compare) else (p,))]
+    return tuple(p.operand if isinstance(p, Negative) else p for p in each)
 
 
 def _replaced(expression: Expression, old: Expression, new: Expression) -> Expression:
@@ -84,6 +87,10 @@ def _replaced(expression: Expression, old: Expression, new: Expression) -> Expre
             return Negative(_replaced(operand, old, new))
         case Sum(terms):
             return Sum(tuple(_replaced(t, old, new) if _is(t, old) else t for t in terms))
+        case Compare(relation, left, right):
+            return Compare(relation, _replaced(left, old, new), _replaced(right, old, new))
+        case Choice(condition, then, otherwise):
+            return Choice(*(_replaced(p, old, new) for p in (condition, then, otherwise)))
         case Product(factors, divisors):
             return Product(
                 tuple(new if factor == old else factor for factor in factors),

@@ -3,9 +3,9 @@
 The folder LANGUAGE/ holds
 
 - `__init__.py` with `TARGET`, which describes the language and what loading its modules needs;
-- `printer.py` with `RESERVED`, the names that no variable may have, `render(program,
-  conversions)`, which gives the texts of the files by name, the main one first, and `load(name,
-  files)`, which makes a Python module of them. It is imported when the target is asked for.
+- `printer.py` with `RESERVED`, the names that no variable may have, `render(program)`, which
+  gives the texts of the files by name, the main one first, and `load(name, files)`, which makes a
+  Python module of them. It is imported when the target is asked for.
 
 The folders here are those of the package, their templates are in templates/LANGUAGE/; `register`
 adds a folder from anywhere.
@@ -26,7 +26,6 @@ from typing import TYPE_CHECKING, Protocol, cast
 from rigidsym.errors import KernelError
 
 if TYPE_CHECKING:
-    from rigidsym.kernels.conversions.conversions import ConversionProgram
     from rigidsym.kernels.ir import Program
 
 _DEFAULT = "numpy"
@@ -57,9 +56,7 @@ class Printer(Protocol):
 
     RESERVED: frozenset[str]
 
-    def render(
-        self, program: Program, conversions: ConversionProgram | None = None
-    ) -> Mapping[str, str]: ...
+    def render(self, program: Program) -> Mapping[str, str]: ...
 
     def load(self, name: str, files: Mapping[str, str]) -> ModuleType: ...
 

@@ -17,7 +17,12 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import AlgebraError
 from rigidsym.mechanics.conversions.closed_forms import ClosedForm, closed_form
-from rigidsym.mechanics.conversions.davenport import (
+from rigidsym.mechanics.conversions.davenport_angles import (
+    DavenportAngles,
+    davenport_angles,
+    davenport_claims,
+)
+from rigidsym.mechanics.conversions.three_axes import (
     half_claims,
     middle_claims,
     outer_claims,
@@ -25,13 +30,12 @@ from rigidsym.mechanics.conversions.davenport import (
     triangle,
     triangle_claims,
 )
-from rigidsym.mechanics.conversions.davenport_angles import ThreeTurns, three_turns, turns_claims
 from rigidsym.mechanics.conversions.turn_chain import (
-    DAVENPORT,
-    ChainTurns,
-    chain_turns,
+    WITTENBURG_LILOV_2003,
+    TurnChain,
     description,
     known_claims,
+    turn_chain,
 )
 from rigidsym.mechanics.derivation import Markup, Proof, Quantity, Step
 from rigidsym.mechanics.derive import derive
@@ -67,10 +71,10 @@ _UNIT = Markup(r"\mathbf{p}\cdot\mathbf{p} = 1", "p·p = 1")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Backward:
+class InverseConversion:
     """How the coordinates follow from a quaternion of any length but zero."""
 
-    rule: ThreeTurns | ChainTurns | ClosedForm
+    rule: DavenportAngles | TurnChain | ClosedForm
     because: str  # a sentence: how it follows
     branch: str  # sentences: which of the possible coordinates are given
     proofs: tuple[Proof, ...]
@@ -88,15 +92,15 @@ class Conversions:
 
     model: RotationModel
     quaternion: Step | None
-    backward: Backward | None
-    without: str  # a sentence; empty where there is `backward`
+    inverse: InverseConversion | None
+    without: str  # a sentence; empty where there is `inverse`
     from_matrix: Proof  # that 4 p pᵀ can be read off from R
     variants: tuple[Step, ...] = ()  # quantities in a shorter form, for coordinates that obey more
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
         forward = self.quaternion.proofs if self.quaternion else ()
-        return (*forward, *(self.backward.proofs if self.backward else ()), self.from_matrix)
+        return (*forward, *(self.inverse.proofs if self.inverse else ()), self.from_matrix)
 
     @property
     def is_proved(self) -> bool:
@@ -106,21 +110,21 @@ class Conversions:
 def conversions_of(model: RotationModel) -> Conversions:
     """The conversions of one model, each proved in its ring."""
     form = closed_form(model)
-    backward, without = None, ""
+    inverse, without = None, ""
     if form is not None:
-        backward = _by_form(model, form)
+        inverse = _by_form(model, form)
     else:
-        turns = three_turns(model) or chain_turns(model)
-        if isinstance(turns, ThreeTurns):
-            backward = _by_turns(model, turns)
-        elif isinstance(turns, ChainTurns):
-            backward = _by_chain(model, turns)
+        turns = davenport_angles(model) or turn_chain(model)
+        if isinstance(turns, DavenportAngles):
+            inverse = _by_turns(model, turns)
+        elif isinstance(turns, TurnChain):
+            inverse = _by_chain(model, turns)
         else:
             without = f"The coordinates do not follow from a rotation: {turns}."
     return Conversions(
         model=model,
         quaternion=_forward(model, form),
-        backward=backward,
+        inverse=inverse,
         without=without,
         from_matrix=_read_off(),
         variants=_unit_variants(model, form),
@@ -225,8 +229,8 @@ def _product(codec: Codec, first: RingMatrix, second: RingMatrix) -> RingMatrix:
     return left @ second
 
 
-def _by_turns(model: RotationModel, rule: ThreeTurns) -> Backward:
-    return Backward(
+def _by_turns(model: RotationModel, rule: DavenportAngles) -> InverseConversion:
+    return InverseConversion(
         rule=rule,
         because="C is the fixed turn about the second axis that takes the first to the third. In "
         "the frame of the first two axes and their cross product, the quaternion of R C is "
@@ -235,13 +239,13 @@ def _by_turns(model: RotationModel, rule: ThreeTurns) -> Backward:
         "So σ = atan2(a₁, a₀), δ = atan2(a₃, a₂), and tan β′/2 is the quotient of the lengths of "
         "(a₂, a₃) and (a₀, a₁).",
         branch=rule.branch,
-        proofs=_vanishing(model, turns_claims(model, rule)),
+        proofs=_vanishing(model, davenport_claims(model, rule)),
     )
 
 
-def _by_chain(model: RotationModel, rule: ChainTurns) -> Backward:
+def _by_chain(model: RotationModel, rule: TurnChain) -> InverseConversion:
     because, branch = description(model, rule)
-    return Backward(
+    return InverseConversion(
         rule=rule,
         because=because,
         branch=branch,
@@ -250,7 +254,7 @@ def _by_chain(model: RotationModel, rule: ChainTurns) -> Backward:
             *_outer_turns(),
             *_middle(rule),
         ),
-        source=DAVENPORT,
+        source=WITTENBURG_LILOV_2003,
         given=(*(["parameters"] if model.constants else []), *(["kept"] if rule.kept else [])),
     )
 
@@ -262,7 +266,7 @@ def _outer_turns() -> tuple[Proof, ...]:
     return _vanishing(axes, outer_claims(axes))
 
 
-def _middle(rule: ChainTurns) -> tuple[Proof, ...]:
+def _middle(rule: TurnChain) -> tuple[Proof, ...]:
     if len(rule.solved) < 3:
         return ()
     return _middle_turn() if rule.has_two_sets else _middle_of_half()
@@ -282,8 +286,8 @@ def _middle_turn() -> tuple[Proof, ...]:
     return (*_vanishing(axes, middle_claims(axes)), *_vanishing(sides, triangle_claims(sides)))
 
 
-def _by_form(model: RotationModel, form: ClosedForm) -> Backward:
-    return Backward(
+def _by_form(model: RotationModel, form: ClosedForm) -> InverseConversion:
+    return InverseConversion(
         rule=form,
         because=form.back_because,
         branch=form.branch,

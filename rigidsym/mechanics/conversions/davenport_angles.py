@@ -21,7 +21,7 @@ Claim = tuple[tuple[sp.Expr, ...], Markup]  # what vanishes, and how it is writt
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ThreeTurns:
+class DavenportAngles:
     """The geometry of three turns about constant axes, the middle one across the others."""
 
     frame: sp.ImmutableMatrix  # columns e₁, ±e₂, e₁ × ±e₂; (3, 3)
@@ -78,7 +78,7 @@ class ThreeTurns:
         )
 
 
-def three_turns(model: RotationModel) -> ThreeTurns | None:
+def davenport_angles(model: RotationModel) -> DavenportAngles | None:
     """The geometry; None for turns of another kind."""
     angles = [turn.angle for turn in model.turns]
     if len(angles) != 3 or len(set(angles)) != 3 or set(angles) != set(model.coordinates):
@@ -93,7 +93,7 @@ def three_turns(model: RotationModel) -> ThreeTurns | None:
 
 def _geometry(
     model: RotationModel, first: sp.Matrix, second: sp.Matrix, third: sp.Matrix
-) -> ThreeTurns:
+) -> DavenportAngles:
     cosine = sp.expand(first.dot(third))
     sine = sp.expand(first.cross(third).dot(second))
     sign = -1 if sine.is_negative else 1
@@ -107,7 +107,7 @@ def _geometry(
     angles = [turn.angle for turn in model.turns]
     first_place, middle_place, last_place = (model.coordinates.index(angle) for angle in angles)
     a, b, c = (pretty_symbol(coordinate.func.__name__) for coordinate in model.coordinates)
-    return ThreeTurns(
+    return DavenportAngles(
         frame=sp.ImmutableMatrix(frame),
         lean=lean,
         sign=sign,
@@ -116,7 +116,7 @@ def _geometry(
     )
 
 
-def turns_claims(model: RotationModel, rule: ThreeTurns) -> list[Claim]:
+def davenport_claims(model: RotationModel, rule: DavenportAngles) -> list[Claim]:
     """The four components of p (1 + C) in the frame, for p the product of the three turns."""
     parts = sp.Matrix([1, 0, 0, 0])
     for turn in model.turns:

@@ -26,7 +26,7 @@ from rigidsym.models.so3 import rodrigues
 
 Claim = tuple[tuple[sp.Expr, ...], Markup]  # what vanishes, and how it is written
 
-DAVENPORT = Citation(
+WITTENBURG_LILOV_2003 = Citation(
     text="J. Wittenburg, L. Lilov, Decomposition of a Finite Rotation into Three Rotations about "
     "Given Axes, Multibody System Dynamics 9 (2003)"
 )
@@ -34,7 +34,7 @@ _MOST = 3  # turns that a rotation determines
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class ChainTurns:
+class TurnChain:
     """The turns whose angles follow from the rotation, and all that is known beside them."""
 
     before: tuple[Turn, ...]  # known turns left of them: constant, or by angles that are kept
@@ -98,7 +98,7 @@ class ChainTurns:
         return not codec.encode_quotient(expression).numerator
 
 
-def chain_turns(model: RotationModel) -> ChainTurns | str:
+def turn_chain(model: RotationModel) -> TurnChain | str:
     """The turns that are solved for, or why there are none, as the end of a sentence."""
     if not model.turns:
         return "its coordinates are entries or formulas of R"
@@ -151,7 +151,7 @@ def _solutions(
     turns: Sequence[Turn],
     window: Sequence[int],
     linear: dict[int, sp.ImmutableMatrix],
-) -> Iterator[ChainTurns]:
+) -> Iterator[TurnChain]:
     """What a window of turns determines: coordinates that stand nowhere else, one a turn."""
     rows = sp.Matrix.vstack(*(linear[place] for place in window))
     others = [row for place, row in linear.items() if place not in window]
@@ -165,7 +165,7 @@ def _solutions(
         if square.det() == 0:
             continue
         free = {model.coordinates[k]: sp.S.Zero for k in places}
-        yield ChainTurns(
+        yield TurnChain(
             before=tuple(turns[: window[0]]),
             solved=solved,
             between=tuple(tuple(turns[a + 1 : b]) for a, b in pairwise(window)),
@@ -188,12 +188,12 @@ def _mirror(turns: Sequence[Turn]) -> int:
     return 1 if first == last else -1 if first == -last else 0
 
 
-def description(model: RotationModel, rule: ChainTurns) -> tuple[str, str]:
+def description(model: RotationModel, rule: TurnChain) -> tuple[str, str]:
     """Sentences: how the coordinates follow, and which of the possible ones are given."""
     return _because(rule), " ".join(_branch(model, rule))
 
 
-def _because(rule: ChainTurns) -> str:
+def _because(rule: TurnChain) -> str:
     known = (
         "The known turns are taken off, and the axes are taken as they leave them. "
         if (*rule.before, *rule.right)
@@ -228,7 +228,7 @@ def _because(rule: ChainTurns) -> str:
     )
 
 
-def _branch(model: RotationModel, rule: ChainTurns) -> Iterator[str]:
+def _branch(model: RotationModel, rule: TurnChain) -> Iterator[str]:
     names = _names(model, rule.places)
     if rule.has_two_sets:
         yield (
@@ -272,7 +272,7 @@ def _listed(names: Sequence[str]) -> str:
     return f"{', '.join(others)} and {last}" if others else last
 
 
-def known_claims(model: RotationModel, rule: ChainTurns) -> list[Claim]:
+def known_claims(model: RotationModel, rule: TurnChain) -> list[Claim]:
     """R is the known turns before, the solved ones about the moved axes, and the known after."""
     if not (rule.before or rule.right):
         return []

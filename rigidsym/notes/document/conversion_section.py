@@ -95,17 +95,17 @@ def _column(name: str, column: sp.ImmutableMatrix) -> Equation:
 def _coordinates(
     derivation: Derivation, conversions: Conversions, *, has_functions: bool
 ) -> Iterator[Block]:
-    backward = conversions.backward
-    if backward is None:
+    inverse = conversions.inverse
+    if inverse is None:
         yield Paragraph((conversions.without,))
         return
     symbols = symbols_of(derivation)
-    source = (" ", Cited(backward.source)) if backward.source else ()
-    yield Paragraph((*with_symbols(backward.because, symbols | HOW), *source))
-    yield from (Equation(sides=(proof.claim,)) for proof in backward.proofs)
-    yield Paragraph(with_symbols(backward.branch, symbols | WHICH))
+    source = (" ", Cited(inverse.source)) if inverse.source else ()
+    yield Paragraph((*with_symbols(inverse.because, symbols | HOW), *source))
+    yield from (Equation(sides=(proof.claim,)) for proof in inverse.proofs)
+    yield Paragraph(with_symbols(inverse.branch, symbols | WHICH))
     if has_functions:
-        given = "".join(f", {name}" for name in backward.given)
+        given = "".join(f", {name}" for name in inverse.given)
         yield Paragraph(_called([name.format(given) for name in _FUNCTIONS]))
 
 

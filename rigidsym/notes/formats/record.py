@@ -87,7 +87,7 @@ def _body(body: RigidBody, names: Names) -> dict[str, Any]:
 
 def _conversions(found: Conversions, names: Names) -> dict[str, Any]:
     """How the coordinates go over into the unit quaternion, and come back from it and from R."""
-    back, forward = found.backward, found.quaternion
+    back, forward = found.inverse, found.quaternion
     return {
         "quaternion": _step(forward, names) if forward else None,
         "quaternion_from_matrix": _proof(found.from_matrix, names),

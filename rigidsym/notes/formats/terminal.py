@@ -270,7 +270,7 @@ class _Screen(_Steps):
         yield self.style("Conversions", "heading")
         for step in self.steps[len(self.derivation.steps) :]:
             yield from self.step(step)
-        back = found.backward
+        back = found.inverse
         for sentence in (back.because, back.branch) if back else (found.without,):
             yield from self._wrapped(with_symbols(sentence, symbols_of(self.derivation)))
 
@@ -282,7 +282,7 @@ class _Screen(_Steps):
         for number, proofs in numbered:
             for proof in proofs:
                 yield from self._proof(f"({number})" if number else "", proof)
-        back = self.conversions and self.conversions.backward
+        back = self.conversions and self.conversions.inverse
         for proof in back.proofs if back else ():
             yield from self._proof("", proof)
         if self.conversions:

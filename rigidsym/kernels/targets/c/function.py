@@ -6,14 +6,26 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from rigidsym.kernels.ir import FUNCTIONS, Call, Expression, Guarded, Kernel, Name, Number, names_in
+from rigidsym.kernels.ir import (
+    FUNCTIONS,
+    Call,
+    Compare,
+    Expression,
+    Guarded,
+    Kernel,
+    Name,
+    Number,
+    names_in,
+)
 from rigidsym.kernels.targets.c.precision import PRECISIONS, Precision
 from rigidsym.kernels.targets.text import statements
 from rigidsym.kernels.targets.text.infix import infix, literal
 from rigidsym.kernels.targets.text.layout import bracketed
 
-_FUNCTIONS = {name: name for name in FUNCTIONS}
+_FUNCTIONS = {name: name for name in FUNCTIONS} | {"choice": "{0} ? {1} : {2}", "nan": "NAN"}
 show = partial(infix, functions=_FUNCTIONS)
+
+_PLAIN = frozenset({"sqrt", "abs", "atan2", "eps"})  # functions without far angles
 
 Texts = dict[str, str]  # by the suffix of the precision
 
@@ -129,7 +141,7 @@ def _unused(kernel: Kernel) -> Iterator[str]:
     """What C is told of the parameters that this kernel has no use for."""
     wholes = [*(assignment.value for assignment in kernel.assignments), *kernel.outputs]
     used = {name for whole in wholes for name in names_in(whole)}
-    if all(call.function in ("sqrt", "abs") for call in statements.calls_of(kernel).values()):
+    if all(call.function in _PLAIN for call in statements.calls_of(kernel).values()):
         yield "    (void)far;"
     yield from (f"    (void){name};" for name in kernel.components if name not in used)
 
@@ -153,9 +165,14 @@ def _lines(kernel: Kernel, precision: Precision) -> Iterator[str]:
                 yield f"    {real} {names[0]}, {names[1]};"
                 angle = argument.text
                 yield (f"    beyond |= sin_cos{suffix}(far, {angle}, &{names[0]}, &{names[1]});")
-            case Call(called, argument):
+            case Call("eps"):
+                yield f"    const {real} {name} = {precision.literal(precision.eps)};"
+            case Call(called):
                 used = {"abs": "fabs"}.get(called, called)
-                yield f"    const {real} {name} = {used}{suffix}({argument.text});"
+                given = ", ".join(argument.text for argument in value.arguments)
+                yield f"    const {real} {name} = {used}{suffix}({given});"
+            case Compare():
+                yield f"    const int {name} = {_text(value, precision)};"
             case _:
                 yield f"    const {real} {name} = {_text(value, precision)};"
 

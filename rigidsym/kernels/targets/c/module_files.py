@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rigidsym.kernels.conversions.conversions import ConversionProgram
 from rigidsym.kernels.ir import Kernel, Program
 from rigidsym.kernels.targets.c.precision import PRECISIONS
 from rigidsym.kernels.targets.numpy import printer as numpy
@@ -14,9 +13,7 @@ from rigidsym.system import resources
 _LETTERS = {"double": "NPY_DOUBLE", "float": "NPY_FLOAT"}
 
 
-def module_files(
-    program: Program, kernels: Sequence[Kernel], conversions: ConversionProgram | None
-) -> dict[str, str]:
+def module_files(program: Program, kernels: Sequence[Kernel]) -> dict[str, str]:
     """NAME_c.py, with the interface of the NumPy module, and NAME_module.c behind it."""
     environment = resources.environment(trim_blocks=True, lstrip_blocks=True)
     name = program.name
@@ -27,9 +24,7 @@ def module_files(
         types=[(p.real, p.suffix) for p in PRECISIONS],
         most_types=max(len(function["types"].split(",")) for function in functions),
     )
-    face = numpy.module_text(
-        program, conversions, "c/module.py.jinja", fill="_fill_compiled", name=name
-    )
+    face = numpy.module_text(program, "c/module.py.jinja", fill="_fill_compiled", name=name)
     return {f"{name}_c.py": face, f"{name}_module.c": glue}
 
 

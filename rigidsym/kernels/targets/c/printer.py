@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import pi
 from types import ModuleType
 
-from rigidsym.kernels.conversions.conversions import ConversionProgram, Formula
 from rigidsym.kernels.ir import Kernel, Program
 from rigidsym.kernels.lowering.sincos import two_over_pi
 from rigidsym.kernels.lowering.wrap_lines import narrowed
@@ -23,9 +22,9 @@ from rigidsym.kernels.targets.text.layout import filled
 from rigidsym.system import resources
 
 _WORDS = (
-    "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf nan NULL "
-    "SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED PICK always "
-    "wrapped wrappedf tile found rows count at i j"
+    "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf atan2f NULL "
+    "SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED tile found rows "
+    "count at i j"
 )
 RESERVED = numpy.RESERVED | {*_WORDS.split()}  # the Python module's, too
 _WIDTH = 92
@@ -33,33 +32,15 @@ _TILE = 32  # orientations that are evaluated side by side
 _WHOLE = frozenset({1, 2, 3, 4, 8})  # lengths of rows that compilers put together by whole vectors
 
 
-def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
+def render(program: Program) -> dict[str, str]:
     """The source, the header, and what makes a Python module of them."""
-    converting = conversions.kernels if conversions else ()
-    kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
+    kernels = list(map(_fitted, program.kernels))
     functions = [function(program.name, kernel) for kernel in kernels]
-    outlines, more = _converted(program, conversions)
-    both = [*kernels, *outlines]
     return {
-        f"{program.name}.c": _source(program, both, [*functions, *more], conversions),
-        f"{program.name}.h": _header(program, both, [*functions, *more], conversions),
-        **module_files(program, kernels, conversions),
+        f"{program.name}.c": _source(program, kernels, functions),
+        f"{program.name}.h": _header(program, kernels, functions),
+        **module_files(program, kernels),
     }
-
-
-def _converted(
-    program: Program, conversions: ConversionProgram | None
-) -> tuple[list[Kernel], list[Function]]:
-    """The formulas of the conversions: what they take and give, and their text."""
-    known = {argument.name: argument for argument in program.arguments}
-    if conversions is None or "q" not in known:
-        return [], []
-    from rigidsym.kernels.targets.c.c_conversions import converting, outline
-
-    known |= {argument.name: argument for argument in conversions.arguments}
-    outlines = [outline(formula, known) for formula in conversions.formulas]
-    pairs = zip(conversions.formulas, outlines, strict=True)
-    return outlines, [converting(program.name, formula, kernel) for formula, kernel in pairs]
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
@@ -78,23 +59,18 @@ def _source(
     program: Program,
     kernels: Sequence[Kernel],
     functions: Sequence[Function],
-    conversions: ConversionProgram | None,
 ) -> str:
     calls = [call for kernel in kernels for call in statements.calls_of(kernel).values()]
     orders = [call.order for call in calls if call.order is not None]
     called = {call.function for call in calls}
     taken = sorted({len(a.components) for kernel in kernels for a in kernel.arguments})
     given = sorted({len(kernel.outputs) for kernel in kernels})
-    formulas = conversions.formulas if conversions else ()
-    texts = [v for f in formulas for v in (*(value for _, value in f.lines), *f.outputs)]
     return _template("c/source.c.jinja").render(
         title=_safe(program.title),
         name=program.name,
         tile=_TILE,
         has_angles=bool(orders) or not called.isdisjoint(("sin", "cos")),
-        has_choices=any("$pick(" in text for text in texts),
-        has_wraps=any("$wrapped(" in text for text in texts),
-        has_roots=bool(formulas) or bool(orders) or not called.isdisjoint(("sqrt", "abs")),
+        has_roots=bool(orders) or not called.isdisjoint(("sqrt", "abs", "atan2")),
         has_guards=any(map(statements.guards_of, kernels)),
         has_series=bool(orders),
         orders=max(2, *orders) + 1 if orders else 0,
@@ -124,16 +100,14 @@ def _header(
     program: Program,
     kernels: Sequence[Kernel],
     functions: Sequence[Function],
-    conversions: ConversionProgram | None,
 ) -> str:
-    about = [*_about(program), *remarks.remarks(kernels), *_without(conversions)]
-    formulas = {f.name: f for f in conversions.formulas} if conversions else {}
+    about = [*_about(program), *remarks.remarks(kernels), *_beside(program)]
     return _template("c/header.h.jinja").render(
         about=comment([*about, remarks.GENERATED]),
         guard=f"{program.name.upper()}_H",
         precisions=PRECISIONS,
         functions=[
-            {"about": comment(_said(kernel, formulas.get(kernel.name))), **made.declared()}
+            {"about": comment(_about_kernel(kernel)), **made.declared()}
             for kernel, made in zip(kernels, functions, strict=True)
         ],
     )
@@ -168,18 +142,11 @@ def _about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
     return [
         remarks.headline(kernel),
         _vectors(kernel),
+        *kernel.remarks,
         remarks.cost(kernel),
         *remarks.bound(kernel),
         *remarks.poles(kernel),
     ]
-
-
-def _said(kernel: Kernel, formula: Formula | None) -> list[str | Sequence[str]]:
-    return _about_formula(kernel, formula) if formula else _about_kernel(kernel)
-
-
-def _about_formula(kernel: Kernel, formula: Formula) -> list[str | Sequence[str]]:
-    return [formula.about, _vectors(kernel), *formula.remarks]
 
 
 def _vectors(kernel: Kernel) -> list[str]:
@@ -198,17 +165,13 @@ def _units(units: Sequence[str]) -> str:
     return f" in {', '.join(distinct)}" if any(units) else ""
 
 
-def _without(conversions: ConversionProgram | None) -> Iterator[str]:
-    if conversions is None:
-        return
-    yield from conversions.remarks
-    if conversions.formulas:
-        yield "Conversions call atan2, hypot, sqrt, sin and cos of the C library."
-    if conversions.unwrapping:
-        yield (
-            "In the Python module alone: unwrap, which goes over a trajectory several times and "
-            "needs room for it."
-        )
+def _beside(program: Program) -> Iterator[str]:
+    """Remarks on conversions."""
+    yield from program.remarks
+    if any(statements.calls(kernel, "atan2") for kernel in program.kernels):
+        yield "Conversions call atan2 of the C library."
+    if program.unwrapping:
+        yield "unwrap is only in the Python module, since it needs room for a trajectory."
 
 
 def comment(paragraphs: Sequence[str | Sequence[str]]) -> str:

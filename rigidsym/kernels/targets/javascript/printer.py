@@ -7,13 +7,11 @@ orientation and one of many call it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from math import prod
 from types import ModuleType
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
-from rigidsym.kernels.conversions.conversions import ConversionProgram
 from rigidsym.kernels.ir import (
     FUNCTIONS,
     Argument,
@@ -47,18 +45,18 @@ _WORDS = (
 )
 RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
 
-_show = partial(infix, functions={name: name for name in FUNCTIONS})
+_FUNCTIONS = {name: name for name in FUNCTIONS} | {
+    "choice": "{0} ? {1} : {2}",
+    "nan": "NaN",
+    "==": "===",
+}
+_show = partial(infix, functions=_FUNCTIONS)
 
 
-def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
-    """The module, with the conversions where they are asked for."""
-    converting = conversions.kernels if conversions else ()
-    kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
-    return {
-        f"{program.name}.mjs": _module(
-            _about(program, kernels), kernels, _converted(program, conversions)
-        )
-    }
+def render(program: Program) -> dict[str, str]:
+    """The module."""
+    kernels = list(map(_fitted, program.kernels))
+    return {f"{program.name}.mjs": _module(_about(program, kernels), kernels)}
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
@@ -74,47 +72,19 @@ def bare(kernels: Sequence[Kernel]) -> str:
     return _module([], [_fitted(kernel) for kernel in kernels])
 
 
-def _module(
-    about: Sequence[Paragraph], kernels: Sequence[Kernel], added: Converted | None = None
-) -> str:
+def _module(about: Sequence[Paragraph], kernels: Sequence[Kernel]) -> str:
     last = max((c.order for c in _calls(kernels) if c.order is not None), default=-1)
-    added = added or Converted()
     template = resources.environment().get_template(TEMPLATE)
     return template.render(
-        about=comment([*about, *added.remarks] if about else []),
-        functions=[*map(_function, kernels), *added.functions],
-        imports=", ".join(sorted(_of_math(kernels) | added.imports)),
+        about=comment(about),
+        functions=list(map(_function, kernels)),
+        imports=", ".join(sorted(_of_math(kernels))),
         series=[_entry(order) for order in range(FIRST_SERIES, last + 1)],
         has_series=last >= 0,
         has_divisors=any(map(statements.guards_of, kernels)),
         has_batches=bool(about),
         has_matrices=any(len(shape) > 1 for k in kernels for shape in k.parts or (k.shape,)),
-        conversions=added.helpers,
-    )
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Converted:
-    """What conversions add to a module."""
-
-    functions: Sequence[Function] = ()
-    imports: frozenset[str] = frozenset()
-    helpers: str = ""
-    remarks: Sequence[str] = ()
-
-
-def _converted(program: Program, conversions: ConversionProgram | None) -> Converted:
-    vectors = {argument.name: argument.components for argument in program.arguments}
-    if conversions is None or "q" not in vectors:
-        return Converted()
-    from rigidsym.kernels.targets.javascript import javascript_conversions as converting
-
-    vectors |= {argument.name: argument.components for argument in conversions.arguments}
-    return Converted(
-        functions=[converting.function(formula, vectors) for formula in conversions.formulas],
-        imports=converting.imports(conversions),
-        helpers=converting.helpers(conversions),
-        remarks=conversions.remarks,
+        takes_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
     )
 
 
@@ -127,7 +97,7 @@ def _of_math(kernels: Sequence[Kernel]) -> set[str]:
     called = {call.function for call in _calls(kernels)}
     guards = {"abs"} if any(map(statements.guards_of, kernels)) else set()
     entire = {"sqrt", "tan"} if called.difference(FUNCTIONS) else set()
-    return called.intersection(FUNCTIONS) | guards | entire
+    return (called.intersection(FUNCTIONS) - {"eps"}) | guards | entire
 
 
 def _fitted(kernel: Kernel) -> Kernel:
@@ -168,7 +138,10 @@ def _vector(name: str, argument: Argument) -> Vector:
         name=name,
         given=argument.name,
         components=argument.components,
-        about=f"{', '.join(argument.components)}{unit}",
+        about=f"{', '.join(argument.components)}{unit}"
+        + ("; rows, or the entries row by row" if argument.is_matrix else ""),
+        entries=f"_flat({name})" if argument.is_matrix else "",
+        default=f"new Array({len(argument.components)}).fill(0)" if argument.is_optional else "",
     )
 
 
@@ -177,6 +150,8 @@ def _lines(kernel: Kernel) -> Iterator[str]:
         match value:
             case Guarded():
                 yield f"  const {name} = _or_nan({', '.join(_guard(value))});"
+            case Call("eps"):
+                yield f"  const {name} = Number.EPSILON;"
             case dict():
                 calls = sorted(value.items(), key=lambda named: named[1].order or 0)
                 orders = ", ".join(str(call.order) for _, call in calls)
@@ -236,7 +211,7 @@ def _entry(order: int) -> str:
 
 def _about(program: Program, kernels: Sequence[Kernel]) -> list[Paragraph]:
     """The paragraphs of the module's comment."""
-    rows = [(a.name, f"({len(a.components)})", a.about) for a in program.arguments]
+    rows = [(a.name, f"({', '.join(map(str, a.shape))})", a.about) for a in program.arguments]
     return [
         f"{program.title}: functions of plain arrays.",
         " ".join(program.convention),
@@ -251,6 +226,8 @@ def _about(program: Program, kernels: Sequence[Kernel]) -> list[Paragraph]:
         "float32, since JavaScript computes in double precision only.",
         *remarks.errors(program.kernels),
         *remarks.remarks(kernels),
+        *program.remarks,
+        *([remarks.WITHOUT_UNWRAP] if program.unwrapping else []),
         remarks.GENERATED,
     ]
 
@@ -259,6 +236,7 @@ def _about_kernel(kernel: Kernel, vectors: Sequence[Vector]) -> list[Paragraph]:
     """The paragraphs of a function's comment."""
     return [
         remarks.headline(kernel),
+        *kernel.remarks,
         remarks.cost(kernel),
         *remarks.bound(kernel),
         *remarks.poles(kernel),

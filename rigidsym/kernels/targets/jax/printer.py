@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from types import ModuleType
 
 from rigidsym.algebra.series import FIRST_SERIES
 from rigidsym.errors import MissingExtra
-from rigidsym.kernels.conversions.conversions import ConversionProgram
-from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Program, names_in
+from rigidsym.kernels.ir import FUNCTIONS, Call, Choice, Guarded, Kernel, Program, names_in
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.text import python, remarks, statements
 from rigidsym.kernels.targets.text.infix import infix
@@ -21,65 +19,35 @@ TEMPLATE = "jax/module.py.jinja"
 RESERVED = python.RESERVED | {"jax", "jnp", "like", "parts", "both"}
 _DERIVATIVES = 2  # that functions of n = |v| have: each takes two functions c_k more
 
-_show = partial(infix, functions={name: f"jnp.{name}" for name in FUNCTIONS})
+_FUNCTIONS = {name: f"jnp.{name}" for name in FUNCTIONS} | {
+    "atan2": "jnp.arctan2",
+    "eps": "_eps",
+}
+_show = partial(infix, functions=_FUNCTIONS)
 
 
-def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
-    """The module, with the conversions where they are asked for."""
-    converting = conversions.kernels if conversions else ()
-    kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
+def render(program: Program) -> dict[str, str]:
+    """The module."""
+    kernels = list(map(_fitted, program.kernels))
     last = statements.last_order(kernels)
     has_parts = any(kernel.parts for kernel in kernels)
     orders = range(FIRST_SERIES, last + 2 * _DERIVATIVES + 1) if last >= 0 else ()
-    added = _converted(program, conversions)
-    functions = [*map(_function, kernels), *added.functions]
-    names = [function["name"] for function in functions] + ["unwrap"] * bool(added.unwrap)
     text = (
         resources.environment()
         .get_template(TEMPLATE)
         .render(
-            about=docstring([*_about(program), *added.remarks]),
-            imports=_imports(
-                has_parts=has_parts, has_series=bool(orders), has_unwrap=bool(added.unwrap)
-            ),
-            exports=python.lines(f'"{name}",' for name in sorted(names)),
-            components=python.lines(
-                (*map(python.entry, python.arguments(program, conversions)), *added.components)
-            ),
-            functions=functions,
+            about=docstring(list(_about(program))),
+            imports=_imports(has_parts=has_parts, has_series=bool(orders)),
+            exports=python.lines(f'"{name}",' for name in sorted(k.name for k in kernels)),
+            components=python.lines(map(python.entry, program.arguments)),
+            functions=list(map(_function, kernels)),
             has_parts=has_parts,
             has_divisors=any(map(statements.guards_of, kernels)),
             series="\n".join(map(python.series_entry, orders)),
-            has_formulas=bool(added.functions),
-            unwrap=added.unwrap,
-            np="jnp",
+            helpers="".join(f"\n\n\n{text}" for text in python.helpers(kernels, "jax")),
         )
     )
     return {f"{program.name}_jax.py": text}
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Converted:
-    """What conversions add to a module."""
-
-    functions: Sequence[Mapping[str, str]] = ()
-    components: Sequence[str] = ()  # lines of the table of arguments
-    remarks: Sequence[str] = ()
-    unwrap: str = ""
-
-
-def _converted(program: Program, conversions: ConversionProgram | None) -> Converted:
-    coordinates = [argument for argument in program.arguments if argument.name == "q"]
-    if conversions is None or not coordinates:
-        return Converted()
-    from rigidsym.kernels.targets.jax import jax_conversions
-
-    return Converted(
-        functions=jax_conversions.functions(conversions, len(coordinates[0].components)),
-        components=jax_conversions.entries(conversions),
-        remarks=conversions.remarks,
-        unwrap=jax_conversions.unwrap(conversions),
-    )
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
@@ -91,10 +59,10 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
         raise MissingExtra("the target jax", "jax") from error
 
 
-def _imports(*, has_parts: bool, has_series: bool, has_unwrap: bool) -> str:
+def _imports(*, has_parts: bool, has_series: bool) -> str:
     """The lines before that of jax.numpy."""
     standard = ["from functools import cache"] * has_series + ["from math import prod"] * has_parts
-    jax = ["import jax"] * (has_series or has_unwrap)
+    jax = ["import jax"] * has_series
     return "".join(f"{line}\n" for line in [*standard, *[""] * bool(standard), *jax])
 
 
@@ -103,13 +71,12 @@ def _fitted(kernel: Kernel) -> Kernel:
 
 
 def _function(kernel: Kernel) -> dict[str, str]:
-    vectors = [argument.name for argument in kernel.arguments]
-    given = [f"{name}={name}" for name in vectors]
+    given = [python.passed(argument, "jnp") for argument in kernel.arguments]
     taken = list(_taken(kernel))
     return {
         "name": kernel.name,
         "ufunc": f'{kernel.name}.signature = "{python.ufunc(kernel)}"',
-        "signature": bracketed(0, f"def {kernel.name}(", vectors, "):"),
+        "signature": bracketed(0, f"def {kernel.name}(", python.taken(kernel), "):"),
         "about": docstring(python.about_kernel(kernel), indent=4),
         "body": "\n".join(
             [
@@ -147,8 +114,10 @@ def _lines(kernel: Kernel) -> Iterator[str]:
                 yield python.guard_line(4, name, value, "_or_nan")
             case dict():
                 yield python.entire_line(4, value, "_entire")
+            case Choice():
+                yield python.where_line(4, name, value, "jnp")
             case Call(function):
-                yield python.call_line(4, name, f"jnp.{function}", value)
+                yield python.call_line(4, name, _FUNCTIONS[function], value)
             case _:
                 yield assignment_lines(4, name, _show(value))
 
@@ -169,4 +138,7 @@ def _about(program: Program) -> Iterator[str | Sequence[str]]:
     )
     yield from remarks.errors(program.kernels)
     yield from remarks.remarks(program.kernels)
+    yield from program.remarks
+    if program.unwrapping:
+        yield remarks.WITHOUT_UNWRAP
     yield remarks.GENERATED

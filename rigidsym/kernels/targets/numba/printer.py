@@ -10,7 +10,6 @@ from typing import Any
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.errors import MissingExtra
-from rigidsym.kernels.conversions.conversions import ConversionProgram
 from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Name, Number, Program
 from rigidsym.kernels.lowering.sincos import reduction
 from rigidsym.kernels.targets import TARGETS
@@ -20,19 +19,22 @@ from rigidsym.kernels.targets.text.infix import infix, literal
 
 TEMPLATE = "numba/module.py.jinja"
 RESERVED = numpy.RESERVED | {"njit"}
-_FUNCTIONS = {name: name for name in FUNCTIONS} | {"sqrt": "np.sqrt"}
+_FUNCTIONS = {name: name for name in FUNCTIONS} | {
+    "sqrt": "np.sqrt",
+    "atan2": "np.arctan2",
+    "nan": "np.nan",
+}
 
 
-def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
-    """The module; of the conversions, those that are no kernels stay with NumPy."""
-    kernels = [*program.kernels, *(conversions.kernels if conversions else ())]
+def render(program: Program) -> dict[str, str]:
+    """The module; `unwrap` stays with NumPy."""
+    kernels = program.kernels
     calls = [call for kernel in kernels for call in statements.calls_of(kernel).values()]
     last = max((call.order for call in calls if call.order is not None), default=-1)
     found = reduction(53)
     polynomials = list(zip(_falling(found.sine), _falling(found.cosine), strict=True))
     text = numpy.module_text(
         program,
-        conversions,
         TEMPLATE,
         fill="_fill_compiled",
         reach=f"{found.reach:.0f}.0",
@@ -100,6 +102,8 @@ def _lines(kernel: Kernel) -> Iterator[str]:
                 yield from _entire(value)
             case Guarded():
                 yield f"{name} = _unless_lost({value.value.text}, {_limit(value)})"
+            case Call("eps"):
+                yield f"{name} = _eps"
             case Call("sin" | "cos", argument):
                 if value not in written:
                     pair = [Call("sin", argument), Call("cos", argument)]

@@ -18,18 +18,5 @@ class Function:
     scalar_about: str
     scalar_body: str
     exceptional: str
-    block_signature: str
-    block_body: str
+    block: str  # the function of arrays, one a component
     ufunc: str  # the line that states its signature as a generalised ufunc
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Additions:
-    """What conversions add to a module."""
-
-    functions: tuple[Function, ...] = ()
-    exports: tuple[str, ...] = ()
-    components: tuple[str, ...] = ()  # lines of the table of arguments
-    imports: frozenset[str] = frozenset()  # from math
-    helpers: str = ""  # text for the end of the module
-    remarks: tuple[str, ...] = ()

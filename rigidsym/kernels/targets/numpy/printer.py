@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from types import ModuleType
-from typing import TYPE_CHECKING
 
 from rigidsym.algebra.series import FIRST_SERIES
-from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Program
+from rigidsym.kernels.ir import FUNCTIONS, Call, Choice, Guarded, Kernel, Program
 from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.targets.numpy.function import OPTIONS, Additions, Function
+from rigidsym.kernels.targets.numpy.function import OPTIONS, Function
+from rigidsym.kernels.targets.numpy.unwrap import unwrap_text
 from rigidsym.kernels.targets.text import python, remarks, statements
 from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.layout import (
@@ -22,9 +22,6 @@ from rigidsym.kernels.targets.text.layout import (
 )
 from rigidsym.system import resources
 
-if TYPE_CHECKING:
-    from rigidsym.kernels.conversions.conversions import ConversionProgram
-
 TEMPLATE = "numpy/module.py.jinja"
 RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError"}
 
@@ -32,14 +29,13 @@ _MATH: Mapping[str, str] = {name: name for name in FUNCTIONS}
 _show = partial(infix, functions=_MATH)
 
 
-def render(program: Program, conversions: ConversionProgram | None = None) -> dict[str, str]:
-    """The module, with the conversions where they are asked for."""
-    return {f"{program.name}.py": module_text(program, conversions)}
+def render(program: Program) -> dict[str, str]:
+    """The module."""
+    return {f"{program.name}.py": module_text(program)}
 
 
 def module_text(
     program: Program,
-    conversions: ConversionProgram | None = None,
     template: str = TEMPLATE,
     *,
     fill: str = "_fill",
@@ -49,20 +45,18 @@ def module_text(
 
     `fill` is the function there that goes through the orientations.
     """
-    added = _additions(program, conversions)
-    converting = conversions.kernels if conversions else ()
-    kernels = [_fitted(kernel) for kernel in (*program.kernels, *converting)]
+    kernels = list(map(_fitted, program.kernels))
+    unwrap = [unwrap_text(program.unwrapping, _block)] if program.unwrapping else []
+    exports = [*_exports(kernels), *(["unwrap"] if unwrap else [])]
     placed = resources.environment().get_template(template)
     return placed.render(
-        about=docstring([*_about(program), *added.remarks]),
-        imports=_import(_imports(kernels) | added.imports),
-        exports=python.lines(f'"{name}",' for name in sorted((*_exports(kernels), *added.exports))),
-        components=python.lines(
-            (*map(python.entry, python.arguments(program, conversions)), *added.components)
-        ),
-        functions=[*map(_function, kernels), *added.functions],
+        about=docstring(_about(program)),
+        imports=_import(_imports(kernels)),
+        exports=python.lines(f'"{name}",' for name in sorted(exports)),
+        components=python.lines(map(python.entry, program.arguments)),
+        functions=list(map(_function, kernels)),
         has_parts=any(kernel.parts for kernel in kernels),
-        helpers="".join(f"\n\n{text}" for text in (*_helpers(kernels), added.helpers) if text),
+        helpers="".join(f"\n\n{text}" for text in (*_helpers(kernels), *unwrap)),
         fill=fill,
         **more,
     )
@@ -78,7 +72,9 @@ def _imports(kernels: Sequence[Kernel]) -> set[str]:
     calls = (call for kernel in kernels for call in statements.calls_of(kernel).values())
     functions = {call.function for call in calls}
     named = functions.intersection(FUNCTIONS)
-    return (named - {"abs"}) | ({"sqrt", "tan"} if functions - named else set())
+    if any(map(statements.gives_nan, kernels)):
+        named.add("nan")
+    return (named - {"abs", "eps"}) | ({"sqrt", "tan"} if functions - named else set())
 
 
 def _helpers(kernels: Sequence[Kernel]) -> list[str]:
@@ -92,16 +88,7 @@ def _helpers(kernels: Sequence[Kernel]) -> list[str]:
         table = [f"{python.series_entry(order)}\n" for order in range(FIRST_SERIES, last + 1)]
         series = f"{{\n{''.join(table)}}}" if table else "{}"
         found.append(environment.get_template("numpy/series.py.jinja").render(series=series))
-    return found
-
-
-def _additions(program: Program, conversions: ConversionProgram | None) -> Additions:
-    coordinates = [argument for argument in program.arguments if argument.name == "q"]
-    if conversions is None or not coordinates:
-        return Additions()
-    from rigidsym.kernels.targets.numpy.numpy_conversions import additions
-
-    return additions(conversions, f"({len(coordinates[0].components)},)")
+    return found + [f"{text}\n" for text in python.helpers(kernels, "numpy")]
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
@@ -124,23 +111,30 @@ def _exports(kernels: Sequence[Kernel]) -> Iterator[str]:
 
 def _function(kernel: Kernel) -> Function:
     block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
-    vectors = [argument.name for argument in kernel.arguments]
-    given = [f"{vector}={vector}" for vector in vectors]
+    given = [python.passed(argument, "np") for argument in kernel.arguments]
+    each = ((argument, name) for argument in kernel.arguments for name in argument.components)
+    floats = [f"{name}{python.default(argument, '0.0')}" for argument, name in each]
     shape = str(kernel.shape)
     return Function(
-        signature=bracketed(0, f"def {kernel.name}(", [*vectors, "*", *OPTIONS], "):"),
+        signature=bracketed(0, f"def {kernel.name}(", [*python.taken(kernel), "*", *OPTIONS], "):"),
         about=docstring(python.about_kernel(kernel), indent=4),
         body=_body(kernel, [block, scalar, shape, *("out", "threads"), *given]),
         ufunc=f'{kernel.name}.signature = "{python.ufunc(kernel)}"',
-        scalar_signature=bracketed(0, f"def {scalar}(", kernel.components, "):"),
+        scalar_signature=bracketed(0, f"def {scalar}(", floats, "):"),
         scalar_about=docstring(
             [f"`{kernel.name}` of one orientation; floats to {_nesting(kernel)}."], indent=4
         ),
         scalar_body="\n".join([*_scalar_lines(kernel), _scalar_return(kernel)]),
         exceptional=bracketed(8, "return _exceptional(", [block, shape, *kernel.components], ")"),
-        block_signature=bracketed(0, f"def {block}(", kernel.components, "):"),
-        block_body="\n".join([*_block_lines(kernel), _tuple(4, "return ", _outputs(kernel))]),
+        block=_block(kernel),
     )
+
+
+def _block(kernel: Kernel) -> str:
+    """The function of arrays, one a component."""
+    signature = bracketed(0, f"def _{kernel.name}(", kernel.components, "):")
+    lines = _block_lines(_fitted(kernel))
+    return "\n".join([signature, *lines, _tuple(4, "return ", _outputs(kernel))])
 
 
 def _body(kernel: Kernel, arguments: Sequence[str]) -> str:
@@ -158,8 +152,12 @@ def _nesting(kernel: Kernel) -> str:
 def _scalar_lines(kernel: Kernel) -> Iterator[str]:
     for name, value in statements.grouped(kernel):
         match value:
+            case Call("eps"):
+                yield f"        {name} = {2.0**-52!r}"
             case Call(function):
                 yield python.call_line(8, name, function, value)
+            case Choice():
+                yield python.choice_lines(8, name, value)
             case Guarded():
                 yield python.guard_line(8, name, value, "_or_nan_scalar")
             case dict():
@@ -179,8 +177,13 @@ def _block_lines(kernel: Kernel) -> Iterator[str]:
                 yield python.entire_line(4, value, "_entire")
             case Call() if name in pairs:
                 yield python.call_line(4, f"{name}, {pairs[name]}", "_sin_cos", value)
-            case Call("sqrt" | "abs" as function):
-                yield python.call_line(4, name, f"np.{function}", value)
+            case Call("sqrt" | "abs" | "atan2" as function):
+                called = {"atan2": "arctan2"}.get(function, function)
+                yield python.call_line(4, name, f"np.{called}", value)
+            case Call("eps"):
+                yield python.call_line(4, name, "_eps", value)
+            case Choice():
+                yield python.where_line(4, name, value, "np")
             case Call(function, argument):
                 if name not in pairs.values():  # no cosine that came with its sine
                     yield python.call_line(4, name, f"_{function}", value)
@@ -243,5 +246,6 @@ def _about(program: Program) -> list[str | Sequence[str]]:
         "attribute `signature`, its signature as a generalised ufunc.",
         *remarks.errors(program.kernels),
         *remarks.remarks(program.kernels),
+        *program.remarks,
         remarks.GENERATED,
     ]

@@ -4,10 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from math import isnan
 
-from rigidsym.kernels.ir import Call, Expression, Guarded, Name, Negative, Number, Product, Sum
+from rigidsym.kernels.ir import (
+    Call,
+    Choice,
+    Compare,
+    Expression,
+    Guarded,
+    Name,
+    Negative,
+    Number,
+    Product,
+    Sum,
+    parts,
+)
 
-_SUM, _PRODUCT, _ATOM = range(3)  # how tightly a piece of text holds together
+_CHOICE, _SUM, _PRODUCT, _ATOM = range(4)  # how tightly a piece of text holds together
 
 Literal = Callable[[float], str]
 
@@ -16,7 +29,8 @@ def infix(expression: Expression, functions: Mapping[str, str], number: Literal 
     """The expression in one line; `functions` are the target's names for functions.
 
     A function without a name there keeps its own, a guard is or_nan(value, scale), and `number`
-    is how the target writes a number.
+    is how the target writes a number. "choice" there is a form with three places, the condition
+    first, "nan" a word, and "==" the sign of equality.
     """
     return _text(expression, functions, number)[0]
 
@@ -39,11 +53,20 @@ def _text(expression: Expression, functions: Mapping[str, str], number: Literal)
     match expression:
         case Name(text):
             return text, _ATOM
+        case Number(value) if isnan(value):
+            return functions.get("nan", "nan"), _ATOM
         case Number(value):
             text = literal(value, number)
             return text, _PRODUCT if "/" in text else _ATOM
-        case Call(function, argument):
-            return f"{functions.get(function, function)}({argument.text})", _ATOM
+        case Call(function):
+            given = ", ".join(argument.text for argument in expression.arguments)
+            return f"{functions.get(function, function)}({given})", _ATOM
+        case Compare(relation, left, right):
+            sign = functions.get(relation, relation)
+            return f"{within(left, _SUM)} {sign} {within(right, _SUM)}", _CHOICE
+        case Choice():
+            form = functions.get("choice", "{1} if {0} else {2}")
+            return form.format(*(within(part, _CHOICE) for part in parts(expression))), _CHOICE
         case Guarded(value, scale):
             limit = "None" if scale is None else within(scale, _SUM)
             return f"or_nan({value.text}, {limit})", _ATOM

@@ -8,12 +8,25 @@ from importlib.util import module_from_spec, spec_from_loader
 from types import ModuleType
 
 from rigidsym.algebra.series import series_of, taylor
-from rigidsym.kernels.conversions.conversions import ConversionProgram
-from rigidsym.kernels.ir import FUNCTIONS, Argument, Call, Guarded, Kernel, Name, Number, Program
+from rigidsym.kernels.ir import (
+    FUNCTIONS,
+    Argument,
+    Call,
+    Choice,
+    Guarded,
+    Kernel,
+    Name,
+    Number,
+    Program,
+    parts,
+)
+from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.layout import WIDTH, bracketed, exploded
 from rigidsym.kernels.targets.text.remarks import bound, cost, headline, poles, table
+from rigidsym.kernels.targets.text.statements import calls
+from rigidsym.system import resources
 
-RESERVED = frozenset({*FUNCTIONS, "l", "O", "I"})  # linters refuse the last three
+RESERVED = frozenset({*FUNCTIONS, "nan", "l", "O", "I"})  # linters refuse the last three
 
 
 def module_from(name: str, source: str) -> ModuleType:
@@ -39,7 +52,25 @@ def module_from(name: str, source: str) -> ModuleType:
 
 
 def call_line(indent: int, names: str, function: str, call: Call) -> str:
-    return bracketed(indent, f"{names} = {function}(", [call.argument.text], ")")
+    given = [argument.text for argument in call.arguments]
+    return bracketed(indent, f"{names} = {function}(", given, ")")
+
+
+def where_line(indent: int, name: str, choice: Choice, library: str) -> str:
+    """x1 = np.where(x0 > 0.0, x0, 0.0)"""
+    values = [infix(part, {"nan": f"{library}.nan"}) for part in parts(choice)]
+    return bracketed(indent, f"{name} = {library}.where(", values, ")")
+
+
+def choice_lines(indent: int, name: str, choice: Choice) -> str:
+    """x1 = x0 if x0 > 0.0 else 0.0, or the same in three lines."""
+    condition, then, otherwise = (infix(part, {}) for part in parts(choice))
+    line = f"{' ' * indent}{name} = {then} if {condition} else {otherwise}"
+    if len(line) <= WIDTH:
+        return line
+    inner = "\n" + " " * (indent + 4)
+    body = f"{inner}{then}{inner}if {condition}{inner}else {otherwise}"
+    return f"{' ' * indent}{name} = ({body}\n{' ' * indent})"
 
 
 def guard_line(indent: int, name: str, guard: Guarded, function: str) -> str:
@@ -79,13 +110,38 @@ def unpacked(names: Sequence[str], value: str) -> str:
     return line if len(line) <= WIDTH else exploded(4, "(", names, f") = {value}")
 
 
+# arguments
+
+
+def default(argument: Argument, value: str) -> str:
+    return f"={value}" if argument.is_optional else ""
+
+
+def taken(kernel: Kernel) -> list[str]:
+    """The parameters of a function of arrays."""
+    return [f"{argument.name}{default(argument, 'None')}" for argument in kernel.arguments]
+
+
+def passed(argument: Argument, library: str) -> str:
+    """What a function of arrays passes on: name=value."""
+    name = value = argument.name
+    if argument.is_matrix:
+        value = f"_entries({name})"
+    if argument.is_optional:
+        zeros = f"{library}.zeros({len(argument.components)}, {library}.float32)"
+        value = f"{zeros} if {name} is None else {name}"
+    return f"{name}={value}"
+
+
+def helpers(kernels: Sequence[Kernel], library: str) -> list[str]:
+    """The functions for matrices, and for the spacing of floats, if the kernels need them."""
+    has_matrix = any(a.is_matrix for kernel in kernels for a in kernel.arguments)
+    has_eps = any(calls(kernel, "eps") for kernel in kernels)
+    names = ["matrices.py"] * has_matrix + ["epsilon.py"] * has_eps
+    return [resources.text("templates", f"{library}/{name}").rstrip() for name in names]
+
+
 # tables at the head of a module
-
-
-def arguments(program: Program, conversions: ConversionProgram | None) -> list[Argument]:
-    """All arguments that the functions of the module take, each once."""
-    more = conversions.arguments if conversions else ()
-    return list({a.name: a for a in (*program.arguments, *more)}.values())
 
 
 def entry(argument: Argument) -> str:
@@ -107,10 +163,14 @@ def tuple_of(items: Sequence[str]) -> str:
 
 def ufunc(kernel: Kernel) -> str:
     """The signature as a generalised ufunc: (3),(3)->(3)."""
-    inputs = ",".join(f"({len(argument.components)})" for argument in kernel.arguments)
+    inputs = ",".join(_packed(argument.shape) for argument in kernel.arguments)
     results = kernel.parts or (kernel.shape,)
-    outputs = ",".join("(" + ",".join(map(str, shape)) + ")" for shape in results)
+    outputs = ",".join(map(_packed, results))
     return f"{inputs}->{outputs}"
+
+
+def _packed(shape: Sequence[int]) -> str:
+    return f"({','.join(map(str, shape))})"
 
 
 # docstrings
@@ -118,23 +178,28 @@ def ufunc(kernel: Kernel) -> str:
 
 def about_arguments(program: Program) -> list[str]:
     """Lines that describe the arguments of all functions."""
-    return table([(a.name, f"(..., {len(a.components)})", a.about) for a in program.arguments])
+    return table([(a.name, _leading(a.shape), a.about) for a in program.arguments])
+
+
+def _leading(shape: Sequence[int]) -> str:
+    return f"({', '.join(['...', *map(str, shape)])})"
 
 
 def about_kernel(kernel: Kernel) -> list[str | Sequence[str]]:
     """The paragraphs of a function's docstring."""
     rows = [
-        (a.name, f"(..., {len(a.components)})", ", ".join(a.components) + _in_unit(a.units))
+        (a.name, _leading(a.shape), ", ".join(a.components) + _in_unit(a.units))
         for a in kernel.arguments
     ]
-    results = [", ".join(["...", *map(str, shape)]) for shape in kernel.parts or (kernel.shape,)]
+    results = map(_leading, kernel.parts or (kernel.shape,))
     unit = f"in {kernel.unit}" if kernel.unit else ""
-    returned = ("returns", ", ".join(f"({shape})" for shape in results), unit)
+    returned = ("returns", ", ".join(results), unit)
     both = f"Both are views of one array, (..., {len(kernel.outputs)}), the shape of `out`."
     return [
         headline(kernel),
         table([*rows, returned]),
         *([both] if kernel.parts else []),
+        *kernel.remarks,
         cost(kernel),
         *bound(kernel),
         *poles(kernel),

@@ -16,6 +16,8 @@ GENERATED = (
     "same name."
 )
 
+WITHOUT_UNWRAP = "unwrap is only in the modules for NumPy, Numba and C."
+
 _GUARDED = {
     "angle": "Angles such as pi/2 are not exact floats. Where a sine or cosine that divides is at "
     "most eps times its angle, the angle cannot be told from the pole, and what is divided is NaN. "

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from math import isnan
 
-from rigidsym.kernels.ir import Call, Expression, Guarded, Kernel, Name
+from rigidsym.kernels.ir import Call, Expression, Guarded, Kernel, Name, Number, walk
 
 Value = Expression | dict[str, Call]  # of an assignment, or the functions c_k of one square
 
@@ -31,6 +32,18 @@ def grouped(kernel: Kernel) -> Iterator[tuple[str, Value]]:
             yield assignment.name, value
         elif assignment.name == next(iter(groups[value.argument])):
             yield assignment.name, groups[value.argument]
+
+
+def calls(kernel: Kernel, function: str) -> bool:
+    """Whether it calls a function."""
+    return any(call.function == function for call in calls_of(kernel).values())
+
+
+def gives_nan(kernel: Kernel) -> bool:
+    """Whether NaN is among its numbers."""
+    wholes = [*(assignment.value for assignment in kernel.assignments), *kernel.outputs]
+    nodes = (node for whole in wholes for node in walk(whole))
+    return any(isinstance(node, Number) and isnan(node.value) for node in nodes)
 
 
 def last_order(kernels: Sequence[Kernel]) -> int:

@@ -1,0 +1,219 @@
+"""The middle one of three angles: from a spherical triangle, or from one half of the quaternion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from rigidsym.mechanics.conversions.three_axes import dot
+from rigidsym.mechanics.conversions.values import (
+    Choice,
+    Values,
+    Vector,
+    nearest,
+    number,
+    rounded,
+    square,
+)
+
+_STEPS = 2  # of least squares, from a start that is off by √eps at most
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Half:
+    """p± and m±, in one plane, by their components along a vector of it and across."""
+
+    given: Vector  # of p±
+    by_cosine: Vector  # of m±, the coefficients of cos β/2
+    by_sine: Vector  # the coefficients of sin β/2
+    square: sp.Expr  # of the vector's length
+
+    def compared(self, turned: Vector) -> Vector:
+        """Those of p± and of m±, for the cosine and the sine of β/2."""
+        cosine, sine = turned
+        pairs = zip(self.by_cosine, self.by_sine, strict=True)
+        return (*self.given, *(cosine * a + sine * b for a, b in pairs))
+
+    @property
+    def matrix(self) -> Vector:
+        """That of m±, column by column, and the square that its entries are measured by."""
+        return (*self.by_cosine, *self.by_sine, self.square)
+
+
+def halves_between(axes: Sequence[Vector], half: Vector, sign: int) -> tuple[Half, Half]:
+    """By the vectors 1± and e₂±: the longer serves where p± and m± are short too."""
+    first, middle, last = axes
+    scalar, *vector = half
+    cross = sp.Matrix(first).cross(sp.Matrix(middle))
+    before, after, opposite = dot(first, middle), dot(middle, last), dot(first, last)
+    mixed, skew = sign * dot(cross, last) / 2, (before + sign * after) / 2
+    one = (1 + sign * opposite) / 2
+    axis = (1 + sign * (2 * before * after - opposite)) / 2
+    return (
+        Half(
+            given=(scalar, dot(vector, first)),
+            by_cosine=(one, sp.S.Zero),
+            by_sine=(mixed, skew),
+            square=one,
+        ),
+        Half(
+            given=(dot(vector, middle), dot(vector, cross) - before * scalar),
+            by_cosine=(mixed, -skew),
+            by_sine=(axis, sp.S.Zero),
+            square=axis,
+        ),
+    )
+
+
+def longer(values: Values, halves: tuple[Half, Half], found: Sequence[Vector]) -> Vector:
+    """The values by the vector that is longer: by one vector where that is known."""
+    names = "abcdefgh"
+    lengths = [half.square for half in halves]
+    if all(length.is_number for length in lengths):
+        chosen = found[0] if number(lengths[0]) >= number(lengths[1]) else found[1]
+        return values.each(names[: len(chosen)], map(rounded, chosen))
+    sizes = values.each(("size", "size"), map(rounded, lengths))
+    is_first = sizes[0] >= sizes[1]
+    pairs = [[values.let("v", rounded(part)) for part in pair] for pair in zip(*found, strict=True)]
+    return tuple(
+        values.let(name, Choice(is_first, *pair))
+        for name, pair in zip(names[: len(pairs)], pairs, strict=True)
+    )
+
+
+def angle_between(values: Values, first: Vector, second: Vector) -> sp.Expr:
+    """The angle between two unit vectors."""
+    cosine, cross = dot(first, second), sp.Matrix(first).cross(sp.Matrix(second))
+    if all(part.is_number for part in (*first, *second)):
+        return nearest(sp.atan2(sp.sqrt(cross.dot(cross)), cosine))
+    sine = values.length("sine", values.each("xyz", map(rounded, cross)))
+    return values.let("side", sp.atan2(sine, values.let("cosine", rounded(cosine))))
+
+
+def flat_angle(values: Values, first: Vector, middle: Vector, last: Vector) -> sp.Expr:
+    """The middle angle at which the first axis, the middle one and the turned last are in one
+    plane, the outer ones on one side: atan2(B, A)."""
+    one, two, three = map(sp.Matrix, (first, middle, last))
+    across, along = one.dot(two.cross(three)), one.dot(three) - one.dot(two) * two.dot(three)
+    if all(part.is_number for part in (*first, *middle, *last)):
+        return nearest(sp.atan2(nearest(across), nearest(along)))
+    sine, cosine = values.each(("across", "along"), map(rounded, (across, along)))
+    return values.let("base", sp.atan2(sine, cosine))
+
+
+def middle_of_triangle(
+    values: Values, axes: Sequence[Vector], swing: sp.Expr
+) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """The middle angle by the three sides, where the triangle is flat, and how far from one.
+
+    The other middle angle is twice the flat one, less the first. The angle returned is in the
+    interval that ends at the flat triangle and holds 0.
+    """
+    first, middle, last = axes
+    sides = angle_between(values, first, middle), angle_between(values, middle, last)
+    base = flat_angle(values, first, middle, last)
+    apart = values.let("apart", sp.Abs(sides[0] - sides[1]) / 2)
+    together = values.let("together", (sides[0] + sides[1]) / 2)
+    half = values.let("half", swing / 2)
+    opened = values.positive("opened", _of_sines(values, half + apart, half - apart))
+    closed = values.positive("closed", _of_sines(values, together + half, together - half))
+    bend = values.let("bend", 2 * sp.atan2(sp.sqrt(opened), sp.sqrt(closed)))
+    angle = values.let("middle", base + Choice(base > 0, -bend, bend))
+    near = values.let("near_side", apart - half)
+    far = values.let("far_side", half - Choice(together > sp.pi / 2, sp.pi - together, together))
+    return angle, base, values.let("beyond", 2 * Choice(near > far, near, far))
+
+
+def _of_sines(values: Values, first: sp.Expr, second: sp.Expr) -> sp.Expr:
+    """The product of two sines; their angles are not taken apart."""
+    angles = values.each(("sum", "difference"), (first, second))
+    return sp.Mul(*map(sp.sin, angles))
+
+
+def middle_of_half(
+    values: Values,
+    fixed: tuple[Half, Half],
+    free: tuple[Half, Half],
+    length: sp.Expr,
+    whole: sp.Expr,
+    guesses: Sequence[sp.Expr],
+) -> tuple[sp.Expr, sp.Expr]:
+    """The one of the triangle's two middle angles for which the fixed half of p is that of m.
+
+    Returns the angle, and how far the fixed half is from what the turns reach. The components of
+    m± are a matrix times cos β/2 and sin β/2: an ellipse. By its first component alone follows a
+    third angle to choose from, for the triangle is none where e₂ is e₁ or e₃. Then steps of least
+    squares (Gauss, Newton) compare the fixed halves, and the lengths of the free ones, which tell
+    more where these are short.
+    """
+    *given, m = _measured(values, longer(values, fixed, [(*h.given, *h.matrix) for h in fixed]))
+    (n,) = _measured(values, longer(values, free, [half.matrix for half in free]))
+    size = m[-1]
+    a, b = values.each("ab", (part / (size * whole) for part in given))
+    half = _nearest(values, (a, b), m, guesses)
+    for _ in range(_STEPS):
+        cosine, sine = values.each(("cosine", "sine"), (sp.cos(half), sp.sin(half)))
+        misses = values.each(
+            ("miss", "miss"),
+            (a - (cosine * m[0] + sine * m[2]), b - (cosine * m[1] + sine * m[3])),
+        )
+        slopes = values.each(
+            ("slope", "slope"), (cosine * m[2] - sine * m[0], cosine * m[3] - sine * m[1])
+        )
+        along, across = values.each(
+            ("along", "across"), (cosine * n[0] + sine * n[2], cosine * n[1] + sine * n[3])
+        )
+        radius = values.length("radius", (along, across))
+        grows = values.let(
+            "grows",
+            along * (cosine * n[2] - sine * n[0]) + across * (cosine * n[3] - sine * n[1]),
+        )
+        slope = values.let("slope", grows / Choice(sp.Eq(radius, 0), sp.S.One, radius))
+        miss = values.let("miss", length / whole - radius)
+        step = values.let("step", dot((*misses, miss), (*slopes, slope)))
+        weight = values.let("weight", square((*slopes, slope)))
+        half = values.let("half", half + step / (weight + values.tiny))  # not rounding alone
+    beyond = values.let("beyond", 2 * values.length("missed", misses))
+    return values.wrapped("middle", 2 * half), beyond
+
+
+def _measured(values: Values, found: Vector) -> tuple[sp.Expr | Vector, ...]:
+    """What is before the matrix, and the matrix over the length that measures it, with that."""
+    *before, c, d, e, f, size = found
+    root = values.let("size", sp.sqrt(Choice(size > 0, size, sp.S.One)))
+    return (*before, (*values.each("mnpq", (entry / root for entry in (c, d, e, f))), root))
+
+
+def _nearest(values: Values, given: Vector, m: Vector, guesses: Sequence[sp.Expr]) -> sp.Expr:
+    """Half the middle angle for which the given components are nearest to those of m±."""
+    a, b = given
+    base = values.let("base", m[0] * m[0] + m[2] * m[2])
+    turn = values.let("turn", m[0] * m[3] - m[1] * m[2])
+    skew = values.let("skew", base * b - (m[0] * m[1] + m[2] * m[3]) * a)
+    side = values.let("side", skew * turn)
+    opened = values.let("opened", sp.sqrt(values.positive("opened", base - a * a)))
+    signed = Choice(side < 0, -opened, opened)
+    third = values.let("third", sp.atan2(m[2], m[0]) + sp.atan2(signed, a))
+    half, least = sp.S.Zero, sp.oo
+    for guess, handicap in ((guesses[0] / 2, 0), (guesses[1] / 2, 0), (third, values.reach)):
+        angle = values.let("guess", guess)
+        cosine, sine = values.each(("cosine", "sine"), (sp.cos(angle), sp.sin(angle)))
+        along, across = values.each(
+            ("along", "across"), (cosine * m[0] + sine * m[2], cosine * m[1] + sine * m[3])
+        )
+        is_opposite = values.let("agreement", a * along + b * across) < 0
+        angle = values.let("guess", Choice(is_opposite, angle + sp.pi, angle))
+        differences = (
+            values.let("off", a - Choice(is_opposite, -along, along)),
+            values.let("off", b - Choice(is_opposite, -across, across)),
+        )
+        miss = values.length("miss", differences)
+        if least is sp.oo:
+            half, least = angle, miss
+        else:  # the triangle is better where it is one
+            is_nearer = values.let("raised", miss + handicap) < least
+            half = values.let("half", Choice(is_nearer, angle, half))
+            least = values.let("least", Choice(is_nearer, miss, least))
+    return half

@@ -1,0 +1,132 @@
+"""Conversions as lists of named values, each an expression in those before it.
+
+Where a formula has cases, such as the poles of Euler angles, a value is a `Choice`. The order of
+the operations is part of a conversion, since its digits depend on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import sympy as sp
+
+Vector = tuple[sp.Expr, ...]
+
+QUATERNION = ("w", "x", "y", "z")
+MATRIX = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
+
+_DIGITS = 30
+_ZERO = sp.Float("1e-25")  # a number known to 30 digits is larger or zero
+
+
+class Choice(sp.Function):
+    """Choice(condition, a, b): a where the comparison holds, else b."""
+
+    nargs = 3
+
+    @classmethod
+    def eval(cls, condition: sp.Basic, then: sp.Expr, otherwise: sp.Expr) -> sp.Expr | None:
+        if condition in (sp.true, sp.false):
+            return then if condition == sp.true else otherwise
+        return None
+
+
+class Epsilon(sp.Function):
+    """The distance from one to the next float, in the type of the argument."""
+
+    nargs = 1
+
+
+def symbols(names: Iterable[str]) -> tuple[sp.Dummy, ...]:
+    """Symbols that equal no other, even of the same name."""
+    return tuple(map(sp.Dummy, names))
+
+
+class Values:
+    """Named values in order.
+
+    `given` is one of the inputs, for its type.
+    """
+
+    def __init__(self, given: sp.Expr) -> None:
+        self.lines: list[tuple[sp.Symbol, sp.Expr]] = []
+        self._known: dict[sp.Expr, sp.Symbol] = {}
+        self._eps = Epsilon(given)
+
+    @property
+    def tiny(self) -> sp.Expr:
+        """Four times the distance from one to the next float."""
+        return 4 * self._eps
+
+    @property
+    def reach(self) -> sp.Expr:
+        """The square root of that distance, in radians."""
+        return self.let("reach", sp.sqrt(self._eps))
+
+    def let(self, name: str, value: sp.Expr) -> sp.Expr:
+        """A name for a value that is neither a number nor a symbol."""
+        if value.is_number or value.is_Symbol or (-value).is_Symbol:
+            return value
+        if value not in self._known:
+            symbol = self._known[value] = sp.Dummy(name)
+            self.lines.append((symbol, value))
+        return self._known[value]
+
+    def each(self, names: Iterable[str], values: Iterable[sp.Expr]) -> Vector:
+        return tuple(self.let(name, value) for name, value in zip(names, values, strict=True))
+
+    def length(self, name: str, vector: Sequence[sp.Expr]) -> sp.Expr:
+        return self.let(name, sp.sqrt(square(vector)))
+
+    def positive(self, name: str, value: sp.Expr) -> sp.Expr:
+        """The value, or zero if it is negative."""
+        value = self.let(name, value)
+        return self.let(name, Choice(value < 0, sp.S.Zero, value))
+
+    def wrapped(self, name: str, value: sp.Expr) -> sp.Expr:
+        """An angle between −2π and 2π, taken into (−π, π]."""
+        angle = self.let(name, value)
+        turned = Choice(angle <= -sp.pi, angle + 2 * sp.pi, angle)
+        return self.let(name, Choice(angle > sp.pi, angle - 2 * sp.pi, turned))
+
+
+def square(vector: Sequence[sp.Expr]) -> sp.Expr:
+    return sp.Add(*(part**2 for part in vector))
+
+
+def number(exact: sp.Expr) -> float:
+    """The nearest float; zero is zero in whatever radicals it is written."""
+    value = sp.N(exact, _DIGITS)
+    return 0.0 if abs(value) < _ZERO else float(value)
+
+
+def nearest(exact: sp.Expr) -> sp.Expr:
+    """The same as a SymPy number."""
+    found = number(exact)
+    return sp.Float(found) if found else sp.S.Zero
+
+
+def rounded(expression: sp.Expr) -> sp.Expr:
+    """A sum of products in which every irrational number is rounded once."""
+    terms = sp.Add.make_args(sp.expand(expression))
+    return sp.Add(*(_rounded_term(sp.Mul.make_args(term)) for term in terms))
+
+
+def _rounded_term(factors: Sequence[sp.Expr]) -> sp.Expr:
+    size = sp.Mul(*(factor for factor in factors if factor.is_number))
+    size = size if size.is_Rational else nearest(size)
+    return sp.Mul(size, *(factor for factor in factors if not factor.is_number))
+
+
+def scaled(values: Values, quaternion: Sequence[sp.Expr]) -> Vector:
+    """The quaternion over the sum of its parts' sizes: any length will do, and zero gives NaN."""
+    quarters = [values.let("quarter", sp.Abs(part) / 4) for part in quaternion]  # no overflow
+    size = values.let("size", sp.Add(*quarters))
+    return values.each(QUATERNION, [part / size for part in quaternion])
+
+
+def short_way(values: Values, quaternion: Sequence[sp.Expr]) -> Vector:
+    """The same rotation by the quaternion whose scalar is not negative."""
+    w, *vector = quaternion
+    flipped = [Choice(w < 0, -part, part) for part in vector]
+    return values.each(QUATERNION, [sp.Abs(w), *flipped])
