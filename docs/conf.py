@@ -19,8 +19,11 @@ myst_heading_anchors = 3
 html_theme = "furo"
 html_title = f"rigidsym {version}"
 html_extra_path = ["derivation.schema.json"]
+if (built := Path(__file__).parents[1] / "build" / "gallery").is_dir():
+    html_extra_path.append(str(built))
+
 html_static_path = ["_static"]
-html_css_files = ["math.css"]
+html_css_files = ["notes.css"]
 html_math_renderer = "mathml"
 html_show_sphinx = False
 exclude_patterns = ["_build"]

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from types import NoneType
 
 import click
+from gallery import rotation_gallery, solid_gallery  # noqa: F401
 from schema import rows, schema
 
 import rigidsym

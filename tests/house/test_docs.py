@@ -181,3 +181,15 @@ def test_the_schema_has_every_key_of_a_body(schema):
 def test_the_schema_refuses_what_the_reader_refuses(text, schema):
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(tomllib.loads(text), schema)
+
+
+# the gallery
+
+
+def test_the_gallery_writes_the_files_of_an_item(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(str(DOCS))
+    item = importlib.import_module("gallery").Item("ZXZ")
+    name = item.write(tmp_path, pdf=False)
+    endings = {".html", "_page.html", ".py", ".c", ".h", ".mjs"}
+    assert {path.name.removeprefix(name) for path in (tmp_path / name).iterdir()} == endings
+    assert item.entry().count("<svg") == item.entry().count("<math") == 1
