@@ -3,7 +3,7 @@
 import { cross, dot, length, minus, plus, same, scaled, within } from "./vectors.mjs";
 
 const SCALE = 120; // pixels a length
-const TYPE = 18 / SCALE; // the size of the letters, in lengths
+const TYPE = 17 / SCALE; // the size of the letters, in lengths
 const AXIS = 1.35; // lengths of the axes
 const NODE = 1.2;
 const STEP = (7.5 * Math.PI) / 180; // between the points of an arc
@@ -74,7 +74,8 @@ function turnLines({ arcs }, camera) {
   return arcs.map(({ centre, start, side, radius, angle, name }) => {
     const at = (t) => camera.project(
       plus(centre, plus(scaled(radius * Math.cos(t), start), scaled(radius * Math.sin(t), side))));
-    return { kind: "turn", name, centre: camera.project(centre), points: sampled(at, 0, angle), arrow: Math.abs(angle) > 0.02 };
+    const isSeen = Math.abs(angle) > 0.02;
+    return { kind: "turn", name: isSeen && name, centre: camera.project(centre), points: sampled(at, 0, angle), arrow: isSeen };
   });
 }
 
@@ -221,6 +222,16 @@ function pen(stroke) {
   return [element("polyline", line), ...(stroke.arrow ? [headOf(stroke)] : [])];
 }
 
+/** A label; the dot of a rate is drawn, since fonts differ in where they set it. */
+function lettering({ kind, name, centre: [x, y] }) {
+  const letters = name.normalize("NFD").replace("\u0307", "");
+  const place = { x: (x * SCALE).toFixed(1), y: (-y * SCALE).toFixed(1), dy: ".32em" };
+  const text = element("text", { class: kind, ...place }, letters.normalize("NFC"));
+  if (letters.length === name.normalize("NFD").length) return [text];
+  const dot = { cx: (x * SCALE + 1.5).toFixed(1), cy: (-y * SCALE - 0.52 * TYPE * SCALE).toFixed(1), r: 1.6 };
+  return [text, element("circle", { class: `dot ${kind}`, ...dot })];
+}
+
 /**
  * Draw a posed scene into a group of an SVG.
  * `shown` has the sets of lines that are wanted: circles, angles, sum, rings, frames, trace.
@@ -245,9 +256,6 @@ export function draw(group, pose, camera, { shown, body, omega, omegaName, trace
     ...turns.map(({ centre, points }) => element("polygon", { class: "area turn", points: written([centre, ...points]) })),
     ...behind.filter(({ hidden }) => !hidden).flatMap(pen),
     ...lines.flatMap(pen),
-    ...labelsOf(lines).map(({ kind, name, centre: [x, y] }) => {
-      const place = { x: (x * SCALE).toFixed(1), y: (-y * SCALE).toFixed(1), dy: ".32em" };
-      return element("text", { class: kind, ...place }, name);
-    }),
+    ...labelsOf(lines).flatMap(lettering),
   );
 }

@@ -84,7 +84,9 @@ function follow(pose, turns) {
   const axis = kernels.turns && turns.length ? turns.at(-1).axis : STANDARD[2];
   const tip = within(axis, pose.frames.at(-1));
   const last = view.trace.at(-1);
-  if (last && length(minus(tip, last)) < 0.01) return;
+  const step = last ? length(minus(tip, last)) : 1;
+  if (step < 0.01) return;
+  if (step > 0.3) view.trace = []; // a jump is not a motion
   view.trace.push(tip);
   if (view.trace.length > MOST_TRACE) view.trace.shift();
 }
@@ -288,7 +290,7 @@ at("play").addEventListener("click", () => {
   const wasPlaying = last !== null;
   if (wasPlaying) pause();
   setDone(count);
-  if (calm.matches) change(() => advance(0.1))();
+  if (calm.matches) change(() => advance(0.1 * Number(at("speed").value)))();
   else if (!wasPlaying) start();
 });
 at("one-by-one")?.addEventListener("click", () => {

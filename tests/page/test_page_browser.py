@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import time
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -399,3 +401,167 @@ def test_axe_finds_nothing_in_either_theme(tab, theme, tmp_path):
     tab.run(axe_source() + "; undefined")
     faults = tab.run("axe.run().then((found) => found.violations.map((fault) => fault.help))")
     assert faults == []
+
+
+# --- the figure that teaches
+
+STROKES = """
+(kind) => [...document.querySelectorAll(`#figure polyline.${kind}`)].map((line) =>
+  line.getAttribute("points").split(" ").map((point) => point.split(",").map(Number)))
+"""
+
+
+@pytest.mark.parametrize("rotation", ["ZXZ", "xyz", "z(phi) x(theta) z(psi) y(delta)"])
+def test_the_turns_add_up_to_the_angular_velocity(tab, rotation, tmp_path):
+    opened(tab, page_of(rotation), tmp_path)
+    terms = tab.run(f"({STROKES})('term')")
+    (omega,) = tab.run(f"({STROKES})('omega')")
+    assert len(terms) == len(carried(page_of(rotation))["scene"]["turns"])
+    assert terms[0][0] == omega[0] == [0, 0]
+    assert all(one[-1] == other[0] for one, other in pairwise(terms))
+    np.testing.assert_allclose(terms[-1][-1], omega[-1], atol=0.2)
+
+
+def test_angles_and_rates_are_in_degrees(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    tab.run(f"({SET_ALL})({json.dumps({'q-1': 90.0, 'q_dot-0': 0, 'q_dot-1': 0, 'q_dot-2': 36})})")
+    cells = "[...document.querySelectorAll('#angular_velocity_body-value data')]"
+    assert tab.run(f"{cells}.map((cell) => cell.textContent)") == ["0.00", "0.00", "36.00"]
+    np.testing.assert_allclose(tab.run(f"{cells}.map((c) => Number(c.value))")[2], np.pi / 5)
+
+
+def test_the_turns_are_made_one_by_one(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    tab.click("[data-show=frames]")
+    said = "document.getElementById('turn-words').textContent"
+    assert tab.run(said).count("+") == 2  # Ω as a sum
+    for done, sentence, frames in (
+        (0, "Turn 1 of 3", 0),
+        (1.5, "Turn 2 of 3", 3),
+        (2, "3 of 3", 6),
+    ):
+        tab.run(
+            f"(() => {{ const s = document.getElementById('turns'); s.value = {done};"
+            "s.dispatchEvent(new Event('input')); })()"
+        )
+        assert sentence in tab.run(said)
+        assert len(tab.run(f"({STROKES})('between')")) == frames
+        assert tab.run(f"({STROKES})('omega')") == []
+    tab.click("#reset")
+    tab.click("#one-by-one")
+    tab.wait_for("document.getElementById('turns').valueAsNumber > 0.2")
+    tab.wait_for("document.getElementById('turns').valueAsNumber === 3")
+    tab.wait_for("document.getElementById('play').textContent === 'Play'")
+    assert len(tab.run(f"({STROKES})('omega')")) == 1
+
+
+def test_the_body_is_where_the_matrix_takes_it(tab, tmp_path):
+    opened(tab, page_of("zyx"), tmp_path)
+    matrix = np.reshape(tab.run(NUMBERS)["rotation_matrix-value"], (3, 3))
+    axes = {tuple(line[-1]) for line in tab.run(f"({STROKES})('body')") if len(line) == 2}
+    view = carried(page_of("zyx"))["scene"]
+    a, e = np.radians([view["azimuth"], view["elevation"]])
+    across = np.array([-np.sin(a), np.cos(a), 0])
+    up = np.array([-np.sin(e) * np.cos(a), -np.sin(e) * np.sin(a), np.cos(e)])
+    for column in matrix.T:
+        expected = 1.35 * 120 * np.array([across @ column, -up @ column])
+        assert any(np.allclose(expected, axis, atol=0.2) for axis in axes)
+
+
+def test_gimbal_rings_lock_where_two_of_them_are_in_one_plane(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    assert tab.run("document.querySelectorAll('.ring').length") == 0
+    tab.click("[data-show=rings]")
+    assert tab.run("document.querySelectorAll('.ring').length") > 6
+    assert tab.run("document.querySelectorAll('.locked').length") == 0
+    tab.run(f"({SET_ALL})({json.dumps({'q-1': 0.5})})")
+    assert tab.run("document.querySelectorAll('.locked').length") > 6
+
+
+def test_the_axis_leaves_a_trace_while_it_moves(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    assert tab.run(f"({STROKES})('trace')") == []
+    tab.run("document.getElementById('speed').value = '4'")
+    tab.click("#play")
+    tab.wait_for("document.querySelectorAll('#figure .trace').length > 0")
+    tab.click("#play")
+    tab.click("#reset")
+    assert tab.run(f"({STROKES})('trace')") == []
+
+
+def test_speed_is_a_factor_of_time(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path, prefers_reduced_motion="reduce")
+    before = tab.run(STATE)
+    tab.run("document.getElementById('speed').value = '4'")
+    tab.click("#play")
+    moved = tab.run(STATE)["q-0"] - before["q-0"]
+    assert abs(moved - 0.1 * 4 * before["q_dot-0"]) < 1e-9
+
+
+def test_a_link_holds_the_whole_state(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    tab.call("Browser.grantPermissions", permissions=["clipboardReadWrite"])
+    tab.run(f"({SET_ALL})({json.dumps({'q-0': -12.5, 'q-1': 75.0, 'q_dot-2': 7.0})})")
+    tab.click("[data-show=rings]")
+    tab.run(
+        "(() => { for (const [id, value] of [['azimuth', '-50'], ['body', 'coin']]) {"
+        "const field = document.getElementById(id); field.value = value;"
+        "field.dispatchEvent(new Event('input')); } })()"
+    )
+    tab.wait_for("location.hash.includes('coin')")
+    lines = "document.querySelectorAll('#figure g *').length"
+    state, count = tab.run(STATE), tab.run(lines)
+    tab.click("#link")
+    tab.wait_for("document.getElementById('said').textContent === 'The link is copied.'")
+    link = tab.run("navigator.clipboard.readText()")
+    tab.call("Page.navigate", url="about:blank")
+    tab.call("Page.navigate", url=link)
+    tab.wait_for("document.documentElement?.className === 'scripted'")
+    tab.events.clear()
+    assert tab.run(STATE) == pytest.approx(state, abs=1e-7)
+    assert tab.run("document.getElementById('body').value") == "coin"
+    assert tab.run(lines) == count
+
+
+@pytest.mark.parametrize(
+    "words", ["q=1 x", "q=&view=&turns=&show=&body=bishop", "%", "q=1e999 2 3"]
+)
+def test_a_broken_link_breaks_nothing(tab, words, tmp_path):
+    file = tmp_path / "page.html"
+    file.write_text(page_of("ZXZ"), encoding="utf-8")
+    tab.call("Page.navigate", url="about:blank")
+    tab.call("Page.navigate", url=f"{file.as_uri()}#{words}")
+    tab.wait_for("document.documentElement?.className === 'scripted'")
+    assert all(np.isfinite(value) for value in tab.run(STATE).values())
+    assert tab.run("document.getElementById('body').value") == "top"
+    tab.events.clear()
+
+
+@pytest.mark.parametrize(
+    ("button", "ending", "head"), [("svg", "svg", b"<svg"), ("png", "png", b"\x89PNG")]
+)
+def test_the_figure_is_saved(tab, button, ending, head, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    tab.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
+    tab.click(f"#save-{button}")
+    file = tmp_path / f"{motion_of('ZXZ').name}.{ending}"
+    for _ in range(100):
+        if file.exists() and file.stat().st_size:
+            break
+        time.sleep(0.05)
+    data = file.read_bytes()
+    assert data.startswith(head)
+    if ending == "svg":
+        text = data.decode()
+        assert "class=" not in text.split("<g>")[1]
+        assert "stroke: rgb(" in text
+    tab.events.clear()  # the download itself
+
+
+def test_the_board_fills_the_screen(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    tab.click("#full")
+    tab.wait_for("document.fullscreenElement?.id === 'board'")
+    tab.wait_for("document.getElementById('full').textContent === 'Leave full screen'")
+    tab.click("#full")
+    tab.wait_for("document.fullscreenElement === null")
