@@ -1,4 +1,4 @@
-"""Mathematics as MathML by the printer of the notes, and reference pages made from the code."""
+"""Mathematics of the pages as MathML, and reference pages made from the code."""
 
 from __future__ import annotations
 
@@ -8,22 +8,29 @@ from typing import Any
 
 import from_code
 from docutils import nodes
+from math_core import LatexToMathML
 from sphinx.application import Sphinx
-
-from rigidsym.notes.formats.mathml import mathml
 
 _FROM_CODE = re.compile(r"^```\{from-code\} (\w+)\n```$", re.M)
 
+_CONVERTER = LatexToMathML(fancy_error=False)
+
+
+def mathml(latex: str, *, is_display: bool = False) -> str:
+    """One formula, with its LaTeX for readers that do not know MathML."""
+    element = _CONVERTER.convert_with_local_state(latex, displaystyle=is_display)
+    return str(element).replace("<math", f'<math alttext="{escape(latex)}"', 1)
+
 
 def inline(translator: Any, node: nodes.math) -> None:
-    translator.body.append(mathml(node.astext(), node.astext()))
+    translator.body.append(mathml(node.astext()))
     raise nodes.SkipNode
 
 
 def display(translator: Any, node: nodes.math_block) -> None:
     latex = node.astext()
     label = f' id="{escape(node["label"])}"' if node.get("label") else ""
-    formula = mathml(latex, latex, is_display=True)
+    formula = mathml(latex, is_display=True)
     translator.body.append(f'<div class="formula" tabindex="0"{label}>{formula}</div>\n')
     raise nodes.SkipNode
 

@@ -10,6 +10,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from rigidsym.errors import QuantityError
+from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, Notation as Notation
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import Body, derive as derivation_of
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
@@ -17,7 +18,6 @@ from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.notes.formula.manner import DEFAULT, Manner
 from rigidsym.system.limits import time_limit
 from rigidsym.text.names import offer
 
@@ -37,7 +37,7 @@ class Motion(Derivation):
     It can print kernels and notes, which do not know of each other.
     """
 
-    notation: Manner = DEFAULT
+    notation: Notation = DEFAULT
 
     def __post_init__(self) -> None:
         printer = _Printer(self)
@@ -86,7 +86,7 @@ class Motion(Derivation):
 
         converting = self.conversions if conversions else None
         module = f"{self.name}.py" if with_kernels else None
-        return note(self, module=module, manner=self.notation, conversions=converting)
+        return note(self, module=module, notation=self.notation, conversions=converting)
 
     def page(self, *, with_kernels: bool = True) -> str:
         """One HTML file that needs no network: the note, and a figure with sliders."""
@@ -132,7 +132,7 @@ class _Printer:
 
         motion = self.motion
         return EquationPrinter(
-            arguments=motion.arguments, model=motion.model, manner=motion.notation
+            arguments=motion.arguments, model=motion.model, notation=motion.notation
         )
 
 

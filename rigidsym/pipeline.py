@@ -22,9 +22,8 @@ from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.body import RigidBody
-from rigidsym.motion import QUANTITIES, Motion, derive
+from rigidsym.motion import CHOICES, DEFAULT, QUANTITIES, Motion, Notation, derive
 from rigidsym.notes.formats.record import record
-from rigidsym.notes.formula.manner import CHOICES, DEFAULT, Manner
 from rigidsym.notes.note import Note
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.spec.faults import Source
@@ -123,7 +122,7 @@ def vocabulary() -> Vocabulary:
         quantities=QUANTITIES,
         kernels=tuple(TARGETS),
         note=NOTE_FORMATS,
-        notation=Manner,
+        notation=Notation,
         choices=CHOICES,
         derivative=read_request,
     )
@@ -137,7 +136,7 @@ def motion_of(spec: DerivationSpec) -> Motion:
     (model,) = spec.models
     body = integrated(spec).body
     motion = derive(model, only=spec.quantities, body=body, theory=spec.theory)
-    notation = cast("Manner | None", spec.notation) or DEFAULT
+    notation = cast("Notation | None", spec.notation) or DEFAULT
     return replace(motion, name=spec.name, title=spec.title or motion.title, notation=notation)
 
 

@@ -126,7 +126,7 @@ def _write(output: Output, out: Path) -> tuple[list[Path], RigidsymError | None]
 def _show(output: Output, written: list[Path], *, full: bool) -> None:
     width = min(shutil.get_terminal_size((88, 24)).columns, 120)
     motion = output.motion
-    text = show(motion, width=width, manner=motion.notation, conversions=output.conversions)
+    text = show(motion, width=width, notation=motion.notation, conversions=output.conversions)
     lines = text.split("\n")
     left = 0 if full else max(0, len(lines) - MOST_LINES)
     click.echo("\n".join(lines[: len(lines) - left]))

@@ -7,6 +7,7 @@ import tomllib
 import click
 
 from rigidsym.commands.command import Command, command as make
+from rigidsym.formula.unicode_pen import columns
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import quantities
@@ -15,7 +16,6 @@ from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.solids import SHAPES
-from rigidsym.notes.layout.text_width import columns
 from rigidsym.system.resources import names, text
 
 _TURNS = 'such as "z(phi) x(theta) [1,1,0](psi) y(pi/4)"; a name such as alpha0 is a constant'

@@ -8,12 +8,12 @@ from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import sympy as sp
-from sympy.printing.conventions import split_super_sub
-from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.algebra.adjoin import rate_of
 from rigidsym.errors import ModelError
-from rigidsym.mechanics.derivation import Argument, Markup
+from rigidsym.formula.naming import named
+from rigidsym.formula.reader import formula
+from rigidsym.mechanics.derivation import Argument
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import time_function
 
@@ -21,13 +21,6 @@ if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
 
 _SUFFIXES = ("", "_dot", "_ddot")  # of names, by the order of the derivative
-_DOTS = ("", "\u0307", "\u0308")
-_ACCENTS = ("{}", r"\dot{{{}}}", r"\ddot{{{}}}")
-_QUOTIENTS = (  # of words: LaTeX, text
-    ("{}", "{}"),
-    (r"\frac{{d\,{}}}{{dt}}", "d {}/dt"),
-    (r"\frac{{d^{{2}}{}}}{{dt^{{2}}}}", "d² {}/dt²"),
-)
 _CENTRE = ("X", "Y", "Z")
 POINT = tuple(sp.Symbol(f"p_{axis}") for axis in "xyz")
 DIRECTION = tuple(sp.Symbol(f"n_{axis}") for axis in "xyz")
@@ -45,8 +38,8 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
         _coordinates(model, 0, "q", "coordinates"),
         _coordinates(model, 1, "q_dot", "their time derivatives"),
         _coordinates(model, 2, "q_ddot", "their second time derivatives"),
-        _angular_velocity("space", _SPACE, r"\Omega_{}", "Ω{}"),
-        _angular_velocity("body", _BODY, r"\Omega'_{}", "Ω′{}"),
+        _angular_velocity("space", _SPACE, r"\Omega_{}"),
+        _angular_velocity("body", _BODY, r"\Omega'_{}"),
         *((_centre(0), _centre(1), *_of_lines()) if body else ()),
         *_parameters(model, body),
     )
@@ -76,7 +69,7 @@ def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument,
             name="parameters",
             symbols=symbols,
             names=names,
-            notation=tuple(map(_marked, names)),
+            notation=tuple(map(named, names)),
             units=("",) * len(model.constants) + tuple(p.unit for p in of_body),
             about=f"constants: {'; '.join(about)}",
         ),
@@ -90,7 +83,7 @@ def _centre(order: int) -> Argument:
         name=f"centre{suffix}",
         symbols=tuple(_derivative(time_function(name), order) for name in _CENTRE),
         names=tuple(name + suffix for name in _CENTRE),
-        notation=tuple(_marked(name, order) for name in _CENTRE),
+        notation=tuple(named(name, order) for name in _CENTRE),
         units=(_per_second("m", order),) * 3,
         about=f"space components of the {('position', 'velocity')[order]} of the centre of mass",
     )
@@ -104,7 +97,7 @@ def _of_lines() -> tuple[Argument, ...]:
             name=name,
             symbols=symbols,
             names=tuple(symbol.name for symbol in symbols),
-            notation=tuple(_marked(symbol.name) for symbol in symbols),
+            notation=tuple(named(symbol.name) for symbol in symbols),
             units=(unit,) * 3,
             about=words,
         )
@@ -121,7 +114,7 @@ def _coordinates(model: RotationModel, order: int, name: str, about: str) -> Arg
         name=name,
         symbols=tuple(_derivative(coordinate, order) for coordinate in model.coordinates),
         names=tuple(label + suffix for label in plain),
-        notation=tuple(_marked(label, order) for label in plain),
+        notation=tuple(named(label, order) for label in plain),
         units=tuple(_per_second(unit, order) for unit in model.coordinate_units),
         about=about,
     )
@@ -132,37 +125,17 @@ def _derivative(coordinate: sp.Expr, order: int) -> sp.Expr:
     return rate_of(_derivative(coordinate, order - 1)) if order else coordinate
 
 
-@lru_cache(maxsize=1024)
-def _marked(label: str, order: int = 0) -> Markup:
-    """A name, or its derivative: φ̇₁, and d yaw₁/dt.
-
-    A dot above a word would stand above one of its letters, as if they were factors, and so the
-    derivative of a word is a quotient in every notation.
-    """
-    head, above, below = split_super_sub(label)
-    latex, text = sp.latex(sp.Symbol(head)), pretty_symbol(label)
-    scripts = f"_{{{' '.join(below)}}}" if below else ""
-    scripts += f"^{{{' '.join(above)}}}" if above else ""
-    if latex == head and len(head) > 1:  # a word, not a product of letters
-        quotient, on_a_line = _QUOTIENTS[order]
-        word = rf"\mathit{{{head}}}{scripts}"
-        return Markup(quotient.format(word), on_a_line.format(text))
-    return Markup(_ACCENTS[order].format(latex) + scripts, text[0] + _DOTS[order] + text[1:])
-
-
 def _per_second(unit: str, order: int) -> str:
     return unit if order == 0 else f"{unit or '1'}/s{'^' + str(order) if order > 1 else ''}"
 
 
 @cache
-def _angular_velocity(
-    frame: str, symbols: tuple[sp.Symbol, ...], latex: str, text: str
-) -> Argument:
+def _angular_velocity(frame: str, symbols: tuple[sp.Symbol, ...], typed: str) -> Argument:
     return Argument(
         name=f"omega_{frame}",
         symbols=symbols,
         names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3)),
-        notation=tuple(Markup(latex.format(k), text.format("₀₁₂₃"[k])) for k in (1, 2, 3)),
+        notation=tuple(formula(typed.format(k)) for k in (1, 2, 3)),
         units=("rad/s",) * 3,
         about=f"{frame} components of the angular velocity",
     )

@@ -1,47 +1,39 @@
-"""What is proved beside the steps, as formulas for both ways of printing."""
+"""Formulas of what is proved beside the steps."""
 
 from __future__ import annotations
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Bracket, Formula, Rate
 
 
-def fill(latex: str, text: str, *symbols: Markup) -> Markup:
-    """Both templates filled with the symbols: {0}, {1}, ... in LaTeX and in text."""
-    return Markup(
-        latex.format(*(symbol.latex for symbol in symbols)),
-        text.format(*(symbol.text for symbol in symbols)),
-    )
+def rate_of(matrix: Formula) -> Formula:
+    return Rate(matrix)
 
 
-def rate_of(matrix: Markup) -> Markup:
-    return fill(r"\frac{{d{0}}}{{dt}}", "d{0}/dt", matrix)
+def rate_of_whole(product: Formula) -> Formula:
+    return Rate(Bracket(product))
 
 
-def rate_of_whole(product: Markup) -> Markup:
-    return fill(r"\frac{{d}}{{dt}}\left({0}\right)", "d({0})/dt", product)
+def transpose_of(matrix: Formula) -> Formula:
+    return formula(r"#1^{\mathsf T}", matrix)
 
 
-def transpose_of(matrix: Markup) -> Markup:
-    return fill(r"{0}^{{\mathsf T}}", "{0}ᵀ", matrix)
+def spin_of(matrix: Formula) -> Formula:
+    return formula("#1#2", rate_of(matrix), transpose_of(matrix))
 
 
-def spin_of(matrix: Markup) -> Markup:
-    return fill(r"{0}{1}", "{0}·{1}", rate_of(matrix), transpose_of(matrix))
+def orthogonal(matrix: Formula) -> Formula:
+    return formula(r"#1#2 = \mathbf{1}", matrix, transpose_of(matrix))
 
 
-def orthogonal(matrix: Markup) -> Markup:
-    return fill(r"{0}{1} = \mathbf{{1}}", "{0} {1} = 1", matrix, transpose_of(matrix))
+def proper(matrix: Formula) -> Formula:
+    return formula(r"\det #1 = 1", matrix)
 
 
-def proper(matrix: Markup) -> Markup:
-    return fill(r"\det {0} = 1", "det {0} = 1", matrix)
-
-
-def stays_orthogonal(matrix: Markup) -> Markup:
+def stays_orthogonal(matrix: Formula) -> Formula:
     """The derivative of the statement that the matrix is orthogonal."""
-    return fill(
-        r"{0}{1} + {2}{3} = \mathbf{{0}}",
-        "{0} {1} + {2} {3} = 0",
+    return formula(
+        r"#1#2 + #3#4 = \mathbf{0}",
         rate_of(matrix),
         transpose_of(matrix),
         matrix,
@@ -49,27 +41,26 @@ def stays_orthogonal(matrix: Markup) -> Markup:
     )
 
 
-def skew(spin: Markup) -> Markup:
-    return fill(r"{0} + \left({0}\right)^{{\mathsf T}} = \mathbf{{0}}", "{0} + ({0})ᵀ = 0", spin)
+def skew(spin: Formula) -> Formula:
+    return formula(r"#1 + \left(#1\right)^{\mathsf T} = \mathbf{0}", spin)
 
 
-def is_operator(vector: Markup, matrix: Markup, sign: str = "") -> Markup:
+def is_operator(vector: Formula, matrix: Formula, sign: str = "") -> Formula:
     """The matrix is the skew operator of plus or minus the vector."""
-    latex, text = r"{1} = " + sign + r"\mathbf{{C}}({0})", "{1} = " + sign.replace("-", "−")
-    return fill(latex, text + "C({0})", vector, matrix)
+    return formula(rf"#2 = {sign}\mathbf{{C}}(#1)", vector, matrix)
 
 
-def rotates(rotation: Markup, body: Markup, space: Markup) -> Markup:
-    return fill(r"{2} = {0}\,{1}", "{2} = {0} {1}", rotation, body, space)
+def rotates(rotation: Formula, body: Formula, space: Formula) -> Formula:
+    return formula(r"#3 = #1\,#2", rotation, body, space)
 
 
-def maps_rates(matrix: Markup, rates: Markup, omega: Markup) -> Markup:
-    return fill(r"{0}\,{1} = {2}", "{0} {1} = {2}", matrix, rates, omega)
+def maps_rates(matrix: Formula, rates: Formula, omega: Formula) -> Formula:
+    return formula(r"#1\,#2 = #3", matrix, rates, omega)
 
 
-def inverse_of(matrix: Markup, inverse: Markup) -> Markup:
-    return fill(r"{0}{1} = \mathbf{{1}}", "{0} {1} = 1", matrix, inverse)
+def inverse_of(matrix: Formula, inverse: Formula) -> Formula:
+    return formula(r"#1#2 = \mathbf{1}", matrix, inverse)
 
 
-def solves(matrix: Markup, inverse: Markup, omega: Markup) -> Markup:
-    return fill(r"{0}\left({1}{2}\right) = {2}", "{0} ({1} {2}) = {2}", matrix, inverse, omega)
+def solves(matrix: Formula, inverse: Formula, omega: Formula) -> Formula:
+    return formula(r"#1\,(#2#3) = #3", matrix, inverse, omega)

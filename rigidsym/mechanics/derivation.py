@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, Self
 import sympy as sp
 
 from rigidsym.errors import DerivationError, QuantityError
+from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.models.rotation import Citation, RotationModel
 from rigidsym.text.names import offer
 
@@ -24,14 +25,6 @@ OF_RATES = frozenset(  # the quantities that the singularities are about
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Markup:
-    """One formula or symbol, for the two ways of printing it."""
-
-    latex: str
-    text: str  # Unicode, one line
-
-
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Proof:
     """One claim and what became of it.
@@ -40,7 +33,7 @@ class Proof:
     not know all relations, so that nothing is decided; the residual is what is left over.
     """
 
-    claim: Markup  # R Rᵀ = 1
+    claim: Formula  # R Rᵀ = 1
     status: Status
     residual: sp.ImmutableMatrix | None = None  # what is left over; None where it is zero
 
@@ -57,12 +50,12 @@ class Quantity:
     """What a step defines."""
 
     name: str  # in Python, in kernels, in JSON
-    symbol: Markup
+    symbol: Formula
     about: str  # words: "angular velocity, space components"
     unit: str = ""  # SI, "" for a pure number
     inputs: tuple[str, ...] = ()  # the arguments it depends on, by name: "q", "q_dot", ...
     shape: Shape = "matrix"  # the expression of a vector is n x 1, that of a scalar 1 x 1
-    definition: Markup = Markup("", "")  # how it follows: C⁻¹(dR/dt Rᵀ)
+    definition: Formula = NOTHING  # how it follows: C⁻¹(dR/dt Rᵀ)
     source: Citation | None = None
 
     @property
@@ -81,7 +74,7 @@ class Argument:
     name: str  # "q"
     symbols: tuple[sp.Expr, ...]  # the SymPy expressions the components stand for
     names: tuple[str, ...]  # plain names of the components: "phi_dot"
-    notation: tuple[Markup, ...]  # how a component is printed
+    notation: tuple[Formula, ...]  # how a component is printed
     units: tuple[str, ...]  # a unit a component
     about: str  # "coordinates", "space components of the angular velocity"
 
@@ -91,7 +84,7 @@ class VectorTerm:
     """coefficient · vector."""
 
     coefficient: sp.Expr
-    vector: Markup  # v̇, v × v̇, ...
+    vector: Formula  # v̇, v × v̇, ...
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -120,7 +113,7 @@ class Found:
     because: str
     proofs: tuple[Proof, ...] = ()
     vector_form: VectorForm | None = None
-    definition: Markup | None = None  # if the step says better what it follows from
+    definition: Formula | None = None  # if the step says better what it follows from
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,9 +173,9 @@ class Statement:
     name: str
     number: int | None  # in the lecture; None for what it leaves without one
     section: str  # the heading that it stands under
-    because: tuple[str | Markup, ...]  # how it follows from those before
-    sides: tuple[Markup, ...]  # of the equation
-    claims: tuple[tuple[str, Markup], ...]  # what is to be proved, by name
+    because: tuple[str | Formula, ...]  # how it follows from those before
+    sides: tuple[Formula, ...]  # of the equation
+    claims: tuple[tuple[str, Formula], ...]  # what is to be proved, by name
     source: Citation
     proofs: tuple[Proof, ...] = ()
     shows_summands: bool = False  # whether the matrix of the generic particle belongs to it

@@ -19,8 +19,9 @@ from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.rational import Rationals
 from rigidsym.algebra.signs import Bounds, sign_within
 from rigidsym.errors import DerivationError, NotARotation
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.counterexamples import is_nonzero_somewhere
-from rigidsym.mechanics.derivation import Markup, Proof
+from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.rotation import Pullback
 from rigidsym.models.so3 import TIME
 
@@ -48,7 +49,7 @@ class Constants(NamedTuple):
 
 
 def identity(
-    left: sp.MatrixBase, claim: Markup, name: str, conditions: Sequence[sp.Expr] = ()
+    left: sp.MatrixBase, claim: Formula, name: str, conditions: Sequence[sp.Expr] = ()
 ) -> Proof:
     """The proof that a matrix of rational functions of a body's constants is zero."""
     field = Rationals(left, conditions)
@@ -64,7 +65,7 @@ class Prover:
         self.codec = codec
 
     def vanishes(
-        self, residual: RingMatrix, claim: Markup, *, divided_by: PolyElement | None = None
+        self, residual: RingMatrix, claim: Formula, *, divided_by: PolyElement | None = None
     ) -> Proof:
         """The proof that a matrix is zero, and that its divisor is not.
 
@@ -83,7 +84,7 @@ class Prover:
             )
         return Proof(claim=claim, status="unproved", residual=left)
 
-    def cancel(self, quotients: Sequence[Quotient], claim: Markup) -> Proof:
+    def cancel(self, quotients: Sequence[Quotient], claim: Formula) -> Proof:
         """The proof that quotients are zero, and that none of their divisors is."""
         numerators = RingMatrix.column(self.codec.ring, (q.numerator for q in quotients))
         proof = self.vanishes(numerators, claim)
@@ -93,7 +94,11 @@ class Prover:
         return self._unless_zero(below, claim)
 
     def is_root(
-        self, squared: RingMatrix, value: sp.Expr, bounds: Mapping[sp.Symbol, Bounds], claim: Markup
+        self,
+        squared: RingMatrix,
+        value: sp.Expr,
+        bounds: Mapping[sp.Symbol, Bounds],
+        claim: Formula,
     ) -> Proof:
         """The proof that a value is the positive root of what its square equals.
 
@@ -105,7 +110,7 @@ class Prover:
             return Proof(claim=claim, status="unproved", residual=sp.ImmutableMatrix([[value]]))
         return proof
 
-    def is_rotation(self, residual: RingMatrix, claim: Markup) -> Proof:
+    def is_rotation(self, residual: RingMatrix, claim: Formula) -> Proof:
         """As `vanishes`, for the claims that make a matrix a rotation; raises NotARotation."""
         try:
             return self.vanishes(residual, claim)
@@ -137,7 +142,7 @@ class Prover:
         inputs = [*pullback.coordinates, *given]
         return codec_for(inputs, constraints=pullback.constraints), values
 
-    def _unless_zero(self, divisors: Iterable[PolyElement], claim: Markup) -> Proof:
+    def _unless_zero(self, divisors: Iterable[PolyElement], claim: Formula) -> Proof:
         """Exact, unless a divisor may be zero everywhere; it is then what is left over."""
         for divisor in () if self._is_decided else divisors:
             left = self._decoded(RingMatrix.of(self.codec.ring, [[divisor]]))

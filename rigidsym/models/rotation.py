@@ -218,6 +218,12 @@ class RotationModel:
         return _constants(self._parts)
 
     @property
+    def names(self) -> set[str]:
+        """Of the coordinates and constants."""
+        names = {coordinate.func.__name__ for coordinate in self.coordinates}
+        return names | {symbol.name for symbol in self.matrix.free_symbols}
+
+    @property
     def coordinate_units(self) -> tuple[str, ...]:
         return self.units or ("rad",) * len(self.coordinates)
 

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document.compose import compose
 from rigidsym.notes.document.document import Document
 from rigidsym.notes.formats.latex import print_latex
-from rigidsym.notes.formula.manner import DEFAULT, Manner
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -58,7 +58,7 @@ def note(
     *,
     module: str | None = None,
     functions: Sequence[str] | None = None,
-    manner: Manner = DEFAULT,
+    notation: Notation = DEFAULT,
     conversions: Conversions | None = None,
 ) -> Note:
     """The note of a derivation, and of the conversions where they are given.
@@ -69,17 +69,13 @@ def note(
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
     document = _composed(derivation)(
-        derivation, module=module, functions=names if module else (), manner=manner
+        derivation, module=module, functions=names if module else (), notation=notation
     )
     if conversions is None:
         return Note(document)
     from rigidsym.notes.document.conversion_section import with_conversions
 
-    return Note(
-        with_conversions(
-            document, derivation, conversions, has_functions=bool(module), manner=manner
-        )
-    )
+    return Note(with_conversions(document, derivation, conversions, has_functions=bool(module)))
 
 
 def _composed(derivation: Derivation) -> Callable[..., Document]:

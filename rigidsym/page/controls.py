@@ -9,9 +9,10 @@ from math import degrees, lcm, pi
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Argument, Derivation, Markup
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.prose.words import unit_in_words
 
 _DEGREE = pi / 180
@@ -30,7 +31,7 @@ class Control:
 
     kind: str  # the argument that it is part of: q, q_dot, parameters
     place: int
-    symbol: Markup
+    symbol: Formula
     name: str  # spoken: "phi"
     unit: str  # "°", "rad/s"; "" for a pure number
     low: float
@@ -54,7 +55,7 @@ class Group:
 
 
 def groups_of(
-    derivation: Derivation, notation: Notation, shown: dict[sp.Expr, float]
+    derivation: Derivation, letters: Letters, shown: dict[sp.Expr, float]
 ) -> tuple[Group, ...]:
     """The groups of sliders; `shown` are angles in radians that make a clear figure."""
     model = derivation.model
@@ -65,7 +66,7 @@ def groups_of(
         "parameters": _constants(made.get("parameters"), model),
     }
     groups = {
-        kind: tuple(_named(each, made[kind], notation) for each in found[kind]) for kind in found
+        kind: tuple(_named(each, made[kind], letters) for each in found[kind]) for kind in found
     }
     return tuple(
         Group(title=_SECTIONS[kind], controls=controls)
@@ -74,9 +75,9 @@ def groups_of(
     )
 
 
-def _named(control: Control, argument: Argument, notation: Notation) -> Control:
+def _named(control: Control, argument: Argument, letters: Letters) -> Control:
     """In the notation of the note."""
-    return replace(control, symbol=notation.name(argument.symbols[control.place]))
+    return replace(control, symbol=letters.name(argument.symbols[control.place]))
 
 
 def _coordinates(

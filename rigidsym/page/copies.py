@@ -39,5 +39,5 @@ def copies_of(derivation: Derivation, document: Document) -> Mapping[str, Mappin
 def _latex(document: Document) -> Iterator[tuple[str, str]]:
     for equation in document.equations:
         plain = replace(equation, is_result=False)  # who copies it has boxes of their own
-        inside = display(plain, document.notation, _PAPER).latex
+        inside = display(plain, document.letters, _PAPER).text
         yield equation.label, f"\\[\n{inside}\n\\]\n"

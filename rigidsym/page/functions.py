@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from rigidsym.formula.tree import NOTHING, Symbol
 from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets.javascript import printer as javascript
-from rigidsym.mechanics.derivation import Derivation, Markup, Quantity, Step
+from rigidsym.mechanics.derivation import Derivation, Quantity, Step
 from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
@@ -21,7 +22,7 @@ TURNS = "turns"
 CONDITIONS = ("conditions", "condition_slopes")
 
 _WITH_A_MARGIN = "rate_matrix_space"
-_NAMELESS = Markup("", "")
+_NAMELESS = NOTHING
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -87,7 +88,7 @@ def _step(
     """A function that is evaluated like the quantities but is in no note."""
     quantity = Quantity(
         name=name,
-        symbol=Markup(name, name),
+        symbol=Symbol(name),
         definition=_NAMELESS,
         about=about,
         unit="",

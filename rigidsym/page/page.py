@@ -9,17 +9,17 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from typing import Any
 
+from rigidsym.formula.tree import NOTHING, PLUS, Formula, Number, Symbol, equal, joined, row
 from rigidsym.kernels.lowering.lower import MARGIN
-from rigidsym.mechanics.derivation import Derivation, Markup, Step
+from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document.document import Document, Equation, Paragraph, Text
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.html import Printer, escape, rendered
-from rigidsym.notes.formats.mathml import mathml
 from rigidsym.notes.prose.singular_words import singular
 from rigidsym.notes.prose.words import unit_in_words, words
 from rigidsym.page.controls import Control, groups_of
@@ -54,11 +54,11 @@ def print_page(derivation: Derivation, document: Document) -> str:
     printer = PagePrinter(document, copied=copies)
     groups = groups_of(
         functions.derivation,
-        document.notation,
-        shown_angles(derivation.model, document.notation),
+        document.letters,
+        shown_angles(derivation.model, document.letters),
     )
     controls = [control for group in groups for control in group.controls]
-    stage = stage_of(derivation.model, document.notation)
+    stage = stage_of(derivation.model, document.letters)
     in_degrees = any(control.unit == "°" for control in controls)
     body = _body(derivation.model)
     choices = _choices(derivation.model, document)
@@ -72,7 +72,7 @@ def print_page(derivation: Derivation, document: Document) -> str:
         "inputs": functions.arguments,
         "in_degrees": in_degrees,
         "passive": derivation.model.passive,
-        "spoken": document.notation.manner.words("angular velocity, body components"),
+        "spoken": document.letters.notation.words("angular velocity, body components"),
         "turn_words": _turn_words(derivation.model, document, printer),
         "languages": LANGUAGES,
         "copies": copies,
@@ -86,16 +86,20 @@ def print_page(derivation: Derivation, document: Document) -> str:
         policy=f"'sha256-{digest}'",
         script=script,
         groups=[
-            {"title": group.title, "controls": [*map(_shown, group.controls)]} for group in groups
+            {
+                "title": group.title,
+                "controls": [_shown(control, printer) for control in group.controls],
+            }
+            for group in groups
         ],
-        values=[_value(step, document, in_degrees=in_degrees) for step in functions.steps],
+        values=[_value(step, printer, in_degrees=in_degrees) for step in functions.steps],
         pole=_pole(functions),
         stage=stage,
         bodies=[(name, name.capitalize(), name == body) for name in SHAPES],
         choices=choices,
         has_turns=has_turns(derivation.model),
         count=len(stage["turns"]),
-        title_of_figure=escape(document.notation.manner.words(_FIGURE)),
+        title_of_figure=escape(document.letters.notation.words(_FIGURE)),
     )
 
 
@@ -114,9 +118,7 @@ class PagePrinter(Printer):
 
     def words(self, text: Text) -> str:
         """A sentence, in the notation of the document."""
-        symbol = self.document.notation.manner.symbol
-        renamed = (symbol(span) if isinstance(span, Markup) else span for span in text)
-        return self._block(Paragraph(tuple(renamed)))
+        return self._block(Paragraph(text))
 
 
 def _script(functions: Functions, data: object) -> str:
@@ -148,7 +150,7 @@ def _body(model: RotationModel) -> str:
 
 def _choices(model: RotationModel, document: Document) -> list[tuple[str, str, bool]]:
     """Name, label and initial state of what can be shown in the figure."""
-    omega = escape(label(document.notation.manner.symbol(SPACE.omega)))
+    omega = escape(label(document.letters.notation.applied(SPACE.omega)))
     return [
         (name, text.format(omega), is_shown)
         for name, (text, is_shown) in _SHOWN.items()
@@ -160,39 +162,43 @@ def _turn_words(model: RotationModel, document: Document, printer: PagePrinter) 
     """What is seen during each turn, and at the end how Ω is the sum of the turns."""
     if not has_turns(model):
         return ["", ""]
-    scene = scene_of(model, document.notation)
+    scene = scene_of(model, document.letters)
     posed = scene.posed(scene.view.angles) if scene else None
     rays = [posed.named(arc.axis) for arc in posed.arcs] if posed else []
-    axes = [ray.name if ray else Markup("", "") for ray in rays]
+    axes = [ray.name if ray else NOTHING for ray in rays]
     if not axes:
-        axes = [Markup(f"N_{k}", f"N_{k}") for k in range(1, len(model.turns) + 1)]
-    angles = [turn["name"] for turn in stage_of(model, document.notation)["turns"]]
+        axes = [Symbol("N", index=Number(str(k))) for k in range(1, len(model.turns) + 1)]
+    angles = [turn["name"] for turn in stage_of(model, document.letters)["turns"]]
     sentences = [
         printer.words(words("Turn {} of {}: by {} about {}", str(k), str(len(axes)), angle, axis))
         for k, (angle, axis) in enumerate(zip(angles, axes, strict=True), start=1)
     ]
-    return [*sentences, _sum(model, document, axes)]
+    return [*sentences, _sum(model, document, axes, printer)]
 
 
-def _sum(model: RotationModel, document: Document, axes: list[Markup]) -> str:
+def _sum(
+    model: RotationModel, document: Document, axes: Sequence[Formula], printer: PagePrinter
+) -> str:
     """Ω = φ̇ e_z + θ̇ e_N + ψ̇ e_z′."""
-    omega = document.notation.manner.symbol(SPACE.omega)
-    rates = [rate_of(turn.angle, document.notation) for turn in model.turns]
-    terms = [(rate, axis) for rate, axis in zip(rates, axes, strict=True) if rate.text != "0"]
-    latex = " + ".join(rf"{r.latex}\,\mathbf{{e}}_{{{a.latex}}}" for r, a in terms)
-    text = " + ".join(f"{r.text} e_{a.text}" for r, a in terms)
-    return f"<p>{mathml(f'{omega.latex} = {latex}', f'{omega.text} = {text}')}</p>"
+    omega = document.letters.notation.applied(SPACE.omega)
+    rates = [rate_of(turn.angle, document.letters) for turn in model.turns]
+    terms = [
+        row(rate, Symbol("e", "bold", index=axis))
+        for rate, axis in zip(rates, axes, strict=True)
+        if rate != Number("0")
+    ]
+    return f"<p>{printer.formula(equal(omega, joined(terms, PLUS)))}</p>"
 
 
-def _value(step: Step, document: Document, *, in_degrees: bool) -> dict[str, Any]:
+def _value(step: Step, printer: PagePrinter, *, in_degrees: bool) -> dict[str, Any]:
     """A table of numbers, as the template places it."""
-    quantity, manner = step.quantity, document.notation.manner
+    quantity = step.quantity
     rows, columns = step.expression.shape
     unit = "°/s" if in_degrees and quantity.unit else unit_in_words(quantity.unit or "")
     return {
         "id": f"{quantity.name}-value",
-        "symbol": _formula(manner.symbol(quantity.symbol)),
-        "about": escape(manner.text(quantity.about)),
+        "symbol": printer.formula(quantity.symbol),
+        "about": escape(printer.notation.words(quantity.about)),
         "unit": escape(unit) if quantity.unit else "",
         "rows": range(rows),
         "columns": range(columns),
@@ -226,12 +232,12 @@ def _pole(functions: Functions) -> str:
     return "" if kernel is None else escape(kernel.symbol)
 
 
-def _shown(control: Control) -> dict[str, str]:
+def _shown(control: Control, printer: PagePrinter) -> dict[str, str]:
     """A slider as the template places it."""
     unit = control.unit.replace("°", "degrees").replace("/s", " per second")
     return {
         "key": control.key,
-        "symbol": _formula(control.symbol),
+        "symbol": printer.formula(control.symbol),
         "name": escape(f"{control.name}{', in ' if unit else ''}{unit}"),
         "unit": escape(control.unit),
         "low": f"{control.low:g}",
@@ -245,7 +251,3 @@ def _data(control: Control) -> dict[str, Any]:
     """A slider as the script knows it."""
     kept = ("kind", "place", "start", "factor", "period", "high", "step")
     return {name: getattr(control, name) for name in kept}
-
-
-def _formula(symbol: Markup) -> str:
-    return mathml(symbol.latex, symbol.text)

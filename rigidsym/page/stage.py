@@ -7,18 +7,17 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.tree import NOTHING, Formula, Number, Symbol
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import AXES, TIME
 from rigidsym.notes.figure.camera import STANDARD, Vector
 from rigidsym.notes.figure.scene import BODY, MOST_TURNS, RADII, Scene, scene_of, turns_of
 from rigidsym.notes.figure.svg import as_in_formulas
-from rigidsym.notes.formula.formula import markup
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.scalars import formula_of
 
 _AZIMUTH, _ELEVATION = 35, 22  # degrees, where the note has no figure
-_INDICES = "₁₂₃₄₅"
 
 
 def has_turns(model: RotationModel) -> bool:
@@ -26,29 +25,29 @@ def has_turns(model: RotationModel) -> bool:
     return 1 <= len(model.turns) <= MOST_TURNS
 
 
-def shown_angles(model: RotationModel, notation: Notation) -> dict[sp.Expr, float]:
+def shown_angles(model: RotationModel, letters: Letters) -> dict[sp.Expr, float]:
     """The coordinates that are angles of turns, as in the figure of the note; radians."""
-    scene = scene_of(model, notation)
+    scene = scene_of(model, letters)
     angles = scene.view.angles if scene else ()
     pairs = zip(turns_of(model), angles, strict=False)
     return {turn.angle: angle for turn, angle in pairs if turn.angle in model.coordinates}
 
 
-def stage_of(model: RotationModel, notation: Notation) -> dict[str, Any]:
+def stage_of(model: RotationModel, letters: Letters) -> dict[str, Any]:
     """What the script needs to draw: rays, turns, names as plain text, the viewer in degrees.
 
     A ray has a direction in the frame after `frame` turns, or is the axis of that turn. `vector`
     holds the positions of its components among the coordinates, and `angle` that of the angle.
     """
-    scene = scene_of(model, notation)
+    scene = scene_of(model, letters)
     view = scene.view if scene else None
-    named = notation.manner.symbol
+    named = letters.notation.applied
     angles = {turn.angle for turn in turns_of(model)} if model.vector else set()
     return {
         "azimuth": view.azimuth if view else _AZIMUTH,
         "elevation": view.elevation if view else _ELEVATION,
-        "rays": [*(_rays_of(scene) if scene else _rays(model, notation))],
-        "turns": [*_turns(model, scene, notation)],
+        "rays": [*(_rays_of(scene) if scene else _rays(model, letters))],
+        "turns": [*_turns(model, scene, letters)],
         "letters": AXES,
         "vector": [*map(model.coordinates.index, model.vector)],
         "angle": next((k for k, q in enumerate(model.coordinates) if q in angles), None),
@@ -56,14 +55,14 @@ def stage_of(model: RotationModel, notation: Notation) -> dict[str, Any]:
     }
 
 
-def label(symbol: Markup) -> str:
+def label(symbol: Formula) -> str:
     """A symbol in the picture; browsers do not place an arrow above a letter reliably."""
     return as_in_formulas(symbol.text.replace("\u20d7", ""))
 
 
-def rate_of(angle: sp.Expr, notation: Notation) -> Markup:
+def rate_of(angle: sp.Expr, letters: Letters) -> Formula:
     """The rate of the angle of a turn: φ̇."""
-    return markup(angle.diff(TIME), notation)
+    return formula_of(angle.diff(TIME), letters)
 
 
 def _rays_of(scene: Scene) -> Iterator[dict[str, Any]]:
@@ -72,31 +71,29 @@ def _rays_of(scene: Scene) -> Iterator[dict[str, Any]]:
         yield _ray(ray.kind, ray.name, ray.frame, None if is_axis else ray.direction)
 
 
-def _rays(model: RotationModel, notation: Notation) -> Iterator[dict[str, Any]]:
+def _rays(model: RotationModel, letters: Letters) -> Iterator[dict[str, Any]]:
     """Those of axes that are not numbers, or of the single turn that R is."""
     count = len(model.turns) if has_turns(model) else 1
     for name, direction in zip(AXES, STANDARD, strict=True):
-        yield _ray("space", Markup(name, name), 0, direction)
+        yield _ray("space", Symbol(name), 0, direction)
     for axis, direction in zip(BODY, STANDARD, strict=True):
-        yield _ray("body", notation.manner.symbol(axis), count, direction)
+        yield _ray("body", letters.notation.applied(axis), count, direction)
     for k in range(count):
-        name = f"N{_INDICES[k]}" if has_turns(model) else "e"
-        yield _ray("node", Markup(name, name), k, None)
+        axis = Symbol("N", index=Number(str(k + 1))) if has_turns(model) else Symbol("e", "bold")
+        yield _ray("node", axis, k, None)
 
 
-def _ray(kind: str, name: Markup, frame: int, direction: Vector | None) -> dict[str, Any]:
+def _ray(kind: str, name: Formula, frame: int, direction: Vector | None) -> dict[str, Any]:
     return {"kind": kind, "name": label(name), "frame": frame, "direction": direction}
 
 
-def _turns(
-    model: RotationModel, scene: Scene | None, notation: Notation
-) -> Iterator[dict[str, Any]]:
+def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Iterator[dict[str, Any]]:
     """Names, radius and line of each turn; its axis and its angle are evaluated."""
     turns = turns_of(model) if has_turns(model) or scene else ()
     starts = [turn.start for turn in scene.turns] if scene and model.turns else [None] * len(turns)
     for turn, start, radius in zip(turns, starts, RADII, strict=False):
-        rate = rate_of(turn.angle, notation) if model.turns else Markup("", "")
-        name = label(markup(turn.angle, notation))
+        rate = rate_of(turn.angle, letters) if model.turns else NOTHING
+        name = label(formula_of(turn.angle, letters))
         yield {"name": name, "rate_name": label(rate), "start": start, "radius": radius}
     if not turns:
         yield {"name": "", "rate_name": "", "start": None, "radius": RADII[0]}

@@ -31,6 +31,7 @@ ORDER = (
     "errors",
     "system",
     "text",
+    "formula",
     "algebra",
     "data",
     "models",

@@ -10,8 +10,9 @@ import pytest
 import sympy as sp
 from hypothesis import given, strategies as st
 
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.arguments import arguments_of
-from rigidsym.mechanics.derivation import Markup
 from rigidsym.models.chain import axis_turn, chain
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.quaternions import AxisAngle, UnitQuaternion
@@ -23,7 +24,7 @@ from rigidsym.notes.figure.drawing import Box, Drawing, Ellipse, Label, Stroke, 
 from rigidsym.notes.figure.scene import MOST_TURNS, scene_of
 from rigidsym.notes.figure.svg import svg
 from rigidsym.notes.figure.tikz import tikz
-from rigidsym.notes.formula.notation import notation_of
+from rigidsym.notes.formula.letters import letters_of
 from rigidsym.notes.prose.figure_words import figure_of
 from rigidsym.notes.prose.words import plain
 
@@ -37,7 +38,7 @@ def letters(text: str, *, names: str = "abcdef") -> RotationModel:
 
 
 def drawn(model: RotationModel):
-    figure = figure_of(model, notation_of(arguments_of(model)))
+    figure = figure_of(model, letters_of(arguments_of(model)))
     assert figure is not None
     return figure
 
@@ -142,8 +143,8 @@ def test_one_turn_keeps_its_axis():
 
 def test_the_axes_between_are_numbered():
     labels = [label.symbol for label in drawn(CHAINS["chain zxyz"]).drawing.labels]
-    assert Markup("N_1", "N₁") in labels
-    assert Markup("N_2", "N₂") in labels
+    assert formula("N_1") in labels
+    assert formula("N_2") in labels
 
 
 @pytest.mark.parametrize(
@@ -180,10 +181,10 @@ def test_what_is_no_product_of_turns_has_no_figure():
         matrix=Turn(axis="z", angle=a).matrix,
         source=Citation(text="a book"),
     )
-    assert figure_of(given_model, notation_of(())) is None
-    assert figure_of(letters(LETTERS), notation_of(())) is None
+    assert figure_of(given_model, letters_of(())) is None
+    assert figure_of(letters(LETTERS), letters_of(())) is None
     symbolic = chain([axis_turn(sp.symbols("u v w"), a)])
-    assert figure_of(symbolic, notation_of(())) is None
+    assert figure_of(symbolic, letters_of(())) is None
 
 
 # --- the pens ---
@@ -220,7 +221,7 @@ def test_a_drawing_stays_inside_its_box(drawing):
 
 
 def test_words_in_a_picture_are_escaped():
-    label = Label(kind="turn", symbol=Markup("a<b", "a<b&\u202e"), place=(0.0, 0.0))
+    label = Label(kind="turn", symbol=Symbol("a<b&\u202e"), place=(0.0, 0.0))
     drawing = Drawing(strokes=(Stroke(kind="turn", points=((0, 0), (1, 1))),), labels=(label,))
     written = svg(drawing, title="<t>", description='"d"', name="f")
     assert ">a&lt;b&amp; </text>" in written
@@ -274,7 +275,7 @@ def test_a_segment_crosses_a_box_if_one_of_its_points_is_inside(start, end):
 
 def test_a_label_that_has_no_free_place_takes_the_least_bad():
     hatch = [Stroke(kind="guide", points=((x / 20, -3.0), (x / 20, 3.0))) for x in range(-60, 61)]
-    label = placed("space", Markup("x", "x"), beyond([(0, 0), (1, 0)]), hatch, [])
+    label = placed("space", Symbol("x"), beyond([(0, 0), (1, 0)]), hatch, [])
     met = [s for stroke in hatch for s in stroke.segments if label.box.is_crossed_by(s)]
     assert 0 < len(met) <= 3  # it is about as wide as two gaps of the hatch
     assert hypot(*label.place) < 2
@@ -283,7 +284,7 @@ def test_a_label_that_has_no_free_place_takes_the_least_bad():
 @pytest.mark.parametrize("name", ["rotation vector", "oblique", "chain zxyzx", "words"])
 def test_the_angle_drawn_is_the_angle_of_the_turn(name):
     """Also where the line that is carried along is not perpendicular to the axis."""
-    scene = scene_of(CHAINS[name], notation_of(arguments_of(CHAINS[name])))
+    scene = scene_of(CHAINS[name], letters_of(arguments_of(CHAINS[name])))
     assert scene is not None
     angles = scene.view.angles
     for arc, angle in zip(scene.posed(angles).arcs, angles, strict=True):

@@ -16,11 +16,13 @@ from markdown_it import MarkdownIt
 import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.errors import MissingExtra
+from rigidsym.formula.latex_pen import MarkdownPen
+from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.rotation import Citation
 from rigidsym.models.so3 import elementary, time_function
-from rigidsym.notes.formats.markdown import escape, formula
+from rigidsym.notes.formats.markdown import escape
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.note import note
 
@@ -67,12 +69,11 @@ def test_every_equation_has_its_tag(motion):
     ("latex", "expected"),
     [
         (r"\mathbf{R}\,\mathbf{x}'", r"\mathbf{R}\thinspace \mathbf{x}'"),
-        (r"\mathbf{R}_z R_{12}", r"\mathbf{R} _z R _{12}"),
-        ("a \\\\[2pt]\nb \\\\ c", "a \\cr\nb \\cr c"),
+        (r"\mathbf{R}_z\,R_{12}", r"\mathbf{R} _z\thinspace R _{12}"),
     ],
 )
 def test_mathematics_in_characters_that_markdown_leaves_alone(latex, expected):
-    assert formula(latex) == expected
+    assert MarkdownPen().write(formula(latex)).text == expected
 
 
 @pytest.mark.parametrize(
@@ -185,7 +186,7 @@ def test_a_step_shows_itself_in_jupyter():
 
 def test_a_step_of_a_vector_shows_itself_as_one():
     latex = rs.derive("rotation_vector").step("angular_velocity_body")._repr_latex_()
-    assert r"= \dot{\mathbf{v}} + \frac{\cos n - 1}{n^{2}}" in latex
+    assert r"= \dot{\mathbf{v}} + \frac{\cos n - 1}{n^2}" in latex
     assert "pmatrix" not in latex
 
 

@@ -10,7 +10,10 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.motions import derived
-from rigidsym.mechanics.derivation import Derivation, Markup, Place, Proof, Singularity
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Symbol
+from rigidsym.formula.unicode_pen import columns
+from rigidsym.mechanics.derivation import Derivation, Place, Proof, Singularity
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.rotation import LECTURE, Citation, RotationModel
@@ -20,7 +23,6 @@ from rigidsym.notes.document.document import Document, Equation, Paragraph, Tabl
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.layout.entries import entry_names, indexed
-from rigidsym.notes.layout.text_width import columns
 from rigidsym.notes.note import Note, note
 from rigidsym.notes.prose.singular_words import determined
 from rigidsym.notes.prose.words import listed, plain, unit_in_words, with_symbols
@@ -54,7 +56,7 @@ def _two_turns(**changes: object) -> RotationModel:
 def _with_an_unproved_step(motion: Derivation) -> Derivation:
     phi = motion.argument("q").symbols[0]
     left = sp.ImmutableMatrix([sp.sin(phi), 0, 1 - sp.cos(phi)])
-    proof = Proof(claim=Markup("a = b", "a = b"), status="unproved", residual=left)
+    proof = Proof(claim=formula("a = b"), status="unproved", residual=left)
     steps = list(motion.steps)
     steps[4] = replace(steps[4], proofs=(proof,))
     return replace(motion, steps=tuple(steps))
@@ -234,8 +236,8 @@ def test_lists_in_words(items, expected):
 
 
 def test_symbols_in_a_sentence_become_formulas():
-    phi, rate = Markup(r"\phi", "φ"), Markup(r"\dot{\phi}", "φ\u0307")
-    symbols = {"φ": phi, "φ\u0307": rate, "bank": Markup("b", "bank")}
+    phi, rate = formula(r"\phi"), formula(r"\dot{\phi}")
+    symbols = {"φ": phi, "φ\u0307": rate, "bank": Symbol("bank")}
     sentence = "First φ, then φ\u0307 along the banks."
     assert with_symbols(sentence, symbols) == (
         "First ",
@@ -274,20 +276,20 @@ def test_what_idle_rates_leave_determined():
 
 
 def test_the_entries_of_a_listed_symbol_are_what_it_lists():
-    names = indexed(Markup(r"\left(k_x, k_y, k_z\right)", "(k_x, k_y, k_z)"), (3,))
+    names = indexed(formula("(k_x, k_y, k_z)"), (3,))
     assert [(name.latex, name.text) for name in names] == [("k_x",) * 2, ("k_y",) * 2, ("k_z",) * 2]
 
 
 def test_names_of_entries():
     motion = derived("ZXZ")
     names = {step.quantity.name: entry_names(step, motion.arguments) for step in motion.steps}
-    assert names["rotation_matrix"][1] == Markup("R_{12}", "R₁₂")
-    assert names["rotation_rate"][8] == Markup(r"\dot{R}_{33}", "R\u0307₃₃")
-    assert names["rate_matrix_body"][0] == Markup("W'_{11}", "W′₁₁")
-    assert names["inverse_rate_matrix_space"][1] == Markup(r"\bigl(W^{-1}\bigr)_{12}", "(W⁻¹)₁₂")
-    assert names["angular_velocity_body"][2] == Markup(r"\Omega'_3", "Ω′₃")
+    assert names["rotation_matrix"][1] == formula("R_{12}")
+    assert names["rotation_rate"][8] == formula(r"\dot{R}_{33}")
+    assert names["rate_matrix_body"][0] == formula("W'_{11}")
+    assert names["inverse_rate_matrix_space"][1] == formula("(W^{-1})_{12}")
+    assert names["angular_velocity_body"][2] == formula(r"\Omega'_3")
     assert names["rates_from_angular_velocity_body"][1].text == "θ\u0307"
-    assert names["angular_acceleration_body"][0].latex == r"\dot{\Omega}'_{1}"
+    assert names["angular_acceleration_body"][0].latex == r"\dot{\Omega}'_1"
 
 
 # --- escaping ---
@@ -388,7 +390,7 @@ def test_the_table_of_symbols_says_what_each_constant_is():
     body = _symbols(rs.derive("ZXZ", body=rs.solid("cone", radius=a, height=h)))
     assert body["X, Y, Z"] == ("space components of the position of the centre of mass", "m")
     assert body["M, h, a"] == ("constant of the body", "—")
-    assert body["pₓ, p_y, p_z"] == ("a point, in the axes of the body", "m")
+    assert body["p_x, p_y, p_z"] == ("a point, in the axes of the body", "m")
     assert body["(a₁, a₂, a₃)"][1] == "1/√(kg m²)"
     assert _symbols(rs.derive("unit_quaternion"))["J"][1] == "1"
 

@@ -11,6 +11,8 @@ from sympy import Rational, pi, symbols
 import rigidsym as rs
 from helpers.typesetting import BEGIN, END, bound_together
 from rigidsym.errors import MissingTool, ToolFailed
+from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.tree import Matrix
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.chain import axis_turn, chain as chain_of
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
@@ -19,9 +21,8 @@ from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import elementary, time_function
 from rigidsym.notes.formats import pdf as typesetting
 from rigidsym.notes.formats.pdf import typeset
-from rigidsym.notes.formula.formula import latex
-from rigidsym.notes.formula.notation import notation_of
-from rigidsym.notes.layout.text_width import ems, matrix_ems
+from rigidsym.notes.formula.letters import letters_of
+from rigidsym.notes.formula.scalars import matrix_of
 from rigidsym.notes.note import note
 
 GREEK = ("phi", "theta", "psi")
@@ -127,17 +128,13 @@ def _formulas_with_widths(angles: tuple[str, ...]) -> list[tuple[str, float]]:
     widths: dict[str, float] = {}
     for sequence in ("ZXZ", "ZYX", "yxz"):
         motion = derive(EulerAngles(sequence, angles))
-        notation = notation_of(motion.arguments)
+        letters = letters_of(motion.arguments)
         for step in motion.steps:
-            widths |= {s.latex: ems(s.latex) for s in (step.quantity.symbol, *_claims(step))}
-            for shorthand in (False, True):
-                rows = [
-                    [latex(entry, notation, shorthand=shorthand) for entry in row]
-                    for row in step.expression.tolist()
-                ]
-                widths |= {entry: ems(entry) for entry in chain(*rows)}
-                inside = r" \\ ".join(" & ".join(row) for row in rows)
-                widths[rf"\begin{{pmatrix}}{inside}\end{{pmatrix}}"] = matrix_ems(rows)
+            formulas = [step.quantity.symbol, *_claims(step)]
+            rows = matrix_of(step.expression, letters)
+            formulas += [*chain(*rows), Matrix(tuple(map(tuple, rows)))]
+            for pen in (LatexPen(), LatexPen(short=True)):
+                widths |= {piece.text: piece.width for piece in map(pen.write, formulas)}
     return list(widths.items())
 
 

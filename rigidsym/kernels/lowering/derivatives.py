@@ -16,7 +16,7 @@ from math import prod
 import sympy as sp
 
 from rigidsym.errors import KernelError
-from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Step
+from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
 
 KINDS = {
@@ -190,7 +190,7 @@ def _cotangent(step: Step) -> Argument:
         name=name,
         symbols=_symbols(names),
         names=names,
-        notation=tuple(Markup(text, text) for text in names),
+        notation=(),  # it is in no note
         units=("",) * count,
         about=f"a weight for each entry of {step.quantity.name}, row by row",
     )

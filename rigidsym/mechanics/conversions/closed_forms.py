@@ -11,13 +11,14 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
 from rigidsym.models.matrices import DirectionCosines
 from rigidsym.models.quaternions import AxisAngle, CayleyKlein, Quaternion, UnitQuaternion
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.vectors import GibbsVector, ModifiedRodrigues, RotationVector
 
-Claim = tuple[tuple[sp.Expr, ...], Markup]  # what vanishes, and how it is written
+Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
 Parts = tuple[sp.Expr, ...]
 
 
@@ -89,7 +90,7 @@ def _quaternion(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         claims=(
             (
                 _differences(_along(length, parts), q),
-                Markup(r"|\mathbf{q}|\,\mathbf{p} = \mathbf{q}", "|q| p = q"),
+                formula(r"|\mathbf{q}|\,\mathbf{p} = \mathbf{q}"),
             ),
         ),
     )
@@ -103,7 +104,7 @@ def _unit(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         because="The coordinates are the unit quaternion.",
         back_because="The coordinates are the unit quaternion.",
         branch=f"The length is 1. {_KEPT}",
-        claims=(((_square(q) - 1,), Markup(r"\mathbf{q}\cdot\mathbf{q} = 1", "q·q = 1")),),
+        claims=(((_square(q) - 1,), formula(r"\mathbf{q}\cdot\mathbf{q} = 1")),),
     )
 
 
@@ -116,7 +117,7 @@ def _cayley_klein(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         because="α = w + i z and β = y + i x are the entries of the matrix of the quaternion.",
         back_because="α = w + i z and β = y + i x are the entries of the matrix of the quaternion.",
         branch=f"|α|² + |β|² = 1. {_KEPT}",
-        claims=(((_square(q) - 1,), Markup(r"|\alpha|^2 + |\beta|^2 = 1", "|α|² + |β|² = 1")),),
+        claims=(((_square(q) - 1,), formula(r"|\alpha|^2 + |\beta|^2 = 1")),),
     )
 
 
@@ -128,20 +129,17 @@ def _axis_angle(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         rule="axis_angle",
         quaternion=parts,
         order=order,
-        because="A turn by φ about e is the quaternion cos φ/2 + e sin φ/2.",
-        back_because="The vector part points along the axis, and its length is sin φ/2.",
+        because="A turn by φ about e is the quaternion cos(φ/2) + e sin(φ/2).",
+        back_because="The vector part points along the axis, and its length is sin(φ/2).",
         branch="The angle is in [0, π]; without a turn, the axis is x.",
         claims=(
             (
                 _differences(parts[1:], _along(half, axis)),
-                Markup(r"\mathbf{p}_v = \sin\tfrac{\varphi}{2}\,\mathbf{e}", "p_v = sin φ/2 e"),
+                formula(r"\mathbf{p}_v = \sin\tfrac{\varphi}{2}\,\mathbf{e}"),
             ),
             (
                 (_square(parts[1:]) - half**2,),
-                Markup(
-                    r"|\mathbf{p}_v|^2 = \sin^2\tfrac{\varphi}{2}",
-                    "|p_v|² = sin² φ/2",
-                ),
+                formula(r"|\mathbf{p}_v|^2 = \sin^2\tfrac{\varphi}{2}"),
             ),
         ),
     )
@@ -155,17 +153,17 @@ def _rotation_vector(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm
         rule="rotation_vector",
         quaternion=parts,
         order=order,
-        because="With n = |v|, the turn by n about v/n is the quaternion cos n/2 + v/n sin n/2.",
-        back_because="The vector part points along v, and its length is sin n/2.",
+        because="With n = |v|, a turn by n about v/n is the quaternion cos(n/2) + (v/n) sin(n/2).",
+        back_because="The vector part points along v, and its length is sin(n/2).",
         branch=f"The length is in [0, π]. {_SHORT}",
         claims=(
             (
                 _differences(_along(angle, parts[1:]), _along(half, q)),
-                Markup(r"n\,\mathbf{p}_v = \sin\tfrac{n}{2}\,\mathbf{v}", "n p_v = sin n/2 v"),
+                formula(r"n\,\mathbf{p}_v = \sin\tfrac{n}{2}\,\mathbf{v}"),
             ),
             (
                 (_square(parts[1:]) - half**2,),
-                Markup(r"|\mathbf{p}_v|^2 = \sin^2\tfrac{n}{2}", "|p_v|² = sin² n/2"),
+                formula(r"|\mathbf{p}_v|^2 = \sin^2\tfrac{n}{2}"),
             ),
         ),
     )
@@ -184,7 +182,7 @@ def _gibbs(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         claims=(
             (
                 _differences(_along(parts[0], q), parts[1:]),
-                Markup(r"p_w\,\mathbf{g} = \mathbf{p}_v", "p_w g = p_v"),
+                formula(r"p_w\,\mathbf{g} = \mathbf{p}_v"),
             ),
         ),
     )
@@ -197,13 +195,13 @@ def _modified(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         rule="modified_rodrigues",
         quaternion=parts,
         order=order,
-        because="cos n/2 and sin n/2 are rational in s = tan n/4 e.",
+        because="cos(n/2) and sin(n/2) are rational in s = tan(n/4) e.",
         back_because="The vector part is divided by one plus the scalar.",
         branch="Of the two sets, the one with s·s ≤ 1, the turn by at most π.",
         claims=(
             (
                 _differences(_along(1 + parts[0], q), parts[1:]),
-                Markup(r"(1 + p_w)\,\mathbf{s} = \mathbf{p}_v", "(1 + p_w) s = p_v"),
+                formula(r"(1 + p_w)\,\mathbf{s} = \mathbf{p}_v"),
             ),
         ),
     )

@@ -16,6 +16,8 @@ from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import AlgebraError
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.conversions.closed_forms import ClosedForm, closed_form
 from rigidsym.mechanics.conversions.davenport_angles import (
     DavenportAngles,
@@ -37,7 +39,7 @@ from rigidsym.mechanics.conversions.turn_chain import (
     known_claims,
     turn_chain,
 )
-from rigidsym.mechanics.derivation import Markup, Proof, Quantity, Step
+from rigidsym.mechanics.derivation import Proof, Quantity, Step
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.quaternions import UnitQuaternion
@@ -47,7 +49,7 @@ from rigidsym.models.so3 import hat
 Parts = tuple[sp.Expr, ...]  # of a quaternion, scalar first
 
 LONGEST_CHAIN = 4  # turns whose product is written out: its terms double with each
-P = Markup(r"\mathbf{p}", "p")
+P = formula(r"\mathbf{p}")
 SHEPPERD = Citation(
     text="S. Shepperd, Quaternion from Rotation Matrix, Journal of Guidance and Control 1 (1978)"
 )
@@ -66,8 +68,8 @@ QUATERNION = Quantity(
 )
 UNIT = "_unit"  # ends the names of what holds for quaternions of length one
 _OF_UNIT_LENGTH = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
-_TURNS = Markup(r"\mathbf{R}(\mathbf{p}) = \mathbf{R}", "R(p) = R")
-_UNIT = Markup(r"\mathbf{p}\cdot\mathbf{p} = 1", "p·p = 1")
+_TURNS = formula(r"\mathbf{R}(\mathbf{p}) = \mathbf{R}")
+_UNIT = formula(r"\mathbf{p}\cdot\mathbf{p} = 1")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -296,7 +298,7 @@ def _by_form(model: RotationModel, form: ClosedForm) -> InverseConversion:
 
 
 def _vanishing(
-    model: RotationModel, claims: Sequence[tuple[tuple[sp.Expr, ...], Markup]]
+    model: RotationModel, claims: Sequence[tuple[tuple[sp.Expr, ...], Formula]]
 ) -> tuple[Proof, ...]:
     """Proofs that the residuals of each claim reduce to zero."""
     if not claims:
@@ -316,7 +318,7 @@ def _read_off() -> Proof:
     model = UnitQuaternion()
     column = sp.Matrix(model.coordinates)
     residual = tuple(outer_product(model.matrix) - 4 * column * column.T)
-    claim = Markup(r"4\,\mathbf{p}\mathbf{p}^{\mathsf T} = \mathbf{K}", "4 p pᵀ = K")
+    claim = formula(r"4\,\mathbf{p}\mathbf{p}^{\mathsf T} = \mathbf{K}")
     return _vanishing(model, [(residual, claim)])[0]
 
 

@@ -2,7 +2,7 @@
 
 With e₁, e₂ the first two axes and C the fixed turn about e₂ that takes e₁ to the third axis,
 R C = R₁(α) R₂(β + λ) R₁(γ): two turns about one axis with a turn across between them. In the frame
-e₁, e₂, e₁ × e₂ its quaternion has the components cos β′/2 (cos σ, sin σ) and sin β′/2 (cos δ,
+e₁, e₂, e₁ × e₂ its quaternion has the components cos(β′/2) (cos σ, sin σ) and sin(β′/2) (cos δ,
 sin δ), with β′ = β + λ, σ = (α + γ)/2, δ = (α − γ)/2. Nothing cancels where β′ is near 0 or π.
 """
 
@@ -13,11 +13,12 @@ from dataclasses import dataclass
 import sympy as sp
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import hat
 
-Claim = tuple[tuple[sp.Expr, ...], Markup]  # what vanishes, and how it is written
+Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -139,14 +140,11 @@ def davenport_claims(model: RotationModel, rule: DavenportAngles) -> list[Claim]
     ]
 
 
-def _component(place: int) -> Markup:
-    half = r"\tfrac{\beta'}{2}"
+def _component(place: int) -> Formula:
     outer, inner = ("cos", "cos", "sin", "sin")[place], ("cos", "sin", "cos", "sin")[place]
-    latex, text = ((r"\sigma", "σ"), (r"\delta", "δ"))[place // 2]
-    return Markup(
-        rf"a_{place} = \kappa\,\{outer} {half}\,\{inner} {latex}",
-        f"a{'₀₁₂₃'[place]} = κ {outer} β′/2 {inner} {text}",
-    )
+    angle = (r"\sigma", r"\delta")[place // 2]
+    half = r"\frac{\beta'}{2}"
+    return formula(rf"a_{place} = \kappa\,\{outer}{half}\,\{inner}{angle}")
 
 
 def _scaled(direction: tuple[sp.Expr, ...], angle: sp.Expr) -> tuple[sp.Expr, ...]:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.conversions.values import Values, Vector
-from rigidsym.mechanics.derivation import Argument, Markup
+from rigidsym.mechanics.derivation import Argument
 
 Line = tuple[sp.Symbol, sp.Expr]
 
@@ -43,7 +44,7 @@ def argument_of(name: str, components: Sequence[sp.Symbol], about: str) -> Argum
         name=name,
         symbols=tuple(components),
         names=names,
-        notation=tuple(Markup(text, text) for text in names),
+        notation=tuple(map(Symbol, names)),
         units=("",) * len(names),
         about=about,
     )

@@ -7,12 +7,13 @@ from functools import reduce
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
 from rigidsym.models.chain import axis_turn, chain
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import time_function
 
-Claim = tuple[tuple[sp.Expr, ...], Markup]
+Claim = tuple[tuple[sp.Expr, ...], Formula]
 
 
 def three_axes() -> RotationModel:
@@ -45,18 +46,15 @@ def outer_claims(model: RotationModel) -> list[Claim]:
     return [
         (
             _difference(plus, turned_plus),
-            Markup(r"\mathbf{p}_+ = e^{\mathbf{e}_1\sigma}\,\mathbf{m}_+", "p₊ = exp(e₁ σ) m₊"),
+            formula(r"\mathbf{p}_+ = e^{\mathbf{e}_1\sigma}\,\mathbf{m}_+"),
         ),
         (
             _difference(minus, turned_minus),
-            Markup(r"\mathbf{p}_- = e^{\mathbf{e}_1\delta}\,\mathbf{m}_-", "p₋ = exp(e₁ δ) m₋"),
+            formula(r"\mathbf{p}_- = e^{\mathbf{e}_1\delta}\,\mathbf{m}_-"),
         ),
         (
             (lengths[0] - cosine, lengths[1] + cosine),
-            Markup(
-                r"2\,|\mathbf{p}_\pm|^2 = 1 \pm \mathbf{e}_1\cdot\mathbf{R}\,\mathbf{e}_3",
-                "2 |p±|² = 1 ± e₁·R e₃",
-            ),
+            formula(r"2\,|\mathbf{p}_\pm|^2 = 1 \pm \mathbf{e}_1\cdot\mathbf{R}\,\mathbf{e}_3"),
         ),
     ]
 
@@ -71,20 +69,19 @@ def middle_claims(model: RotationModel) -> list[Claim]:
     return [
         (
             (cosine - before * after - along * sp.cos(beta) - across * sp.sin(beta),),
-            Markup(
-                r"\mathbf{e}_1\cdot\mathbf{R}\,\mathbf{e}_3 = k_1 k_3 + A\cos\beta + B\sin\beta",
-                "e₁·R e₃ = k₁ k₃ + A cos β + B sin β",
+            formula(
+                r"\mathbf{e}_1\cdot\mathbf{R}\,\mathbf{e}_3 = k_1 k_3 + A\cos\beta + B\sin\beta"
             ),
         ),
         (
             (along**2 + across**2 - (1 - before**2) * (1 - after**2),),
-            Markup("A^2 + B^2 = (1 - k_1^2)(1 - k_3^2)", "A² + B² = (1 − k₁²)(1 − k₃²)"),
+            formula("A^2 + B^2 = (1 - k_1^2)(1 - k_3^2)"),
         ),
     ]
 
 
 def half_claims(model: RotationModel) -> list[Claim]:
-    """What m± = 1± cos β/2 + e₂± sin β/2 is by its components along 1± and e₁ 1±."""
+    """What m± = 1± cos(β/2) + e₂± sin(β/2) is by its components along 1± and e₁ 1±."""
     first, middle, last = (sp.Matrix(turn.direction) for turn in model.turns)
     zero, one = sp.S.Zero, (sp.S.One, sp.S.Zero, sp.S.Zero, sp.S.Zero)
     squares, alongs, across = [], [], []
@@ -98,24 +95,15 @@ def half_claims(model: RotationModel) -> list[Claim]:
     return [
         (
             tuple(squares),
-            Markup(
-                r"2\,|\mathbf{1}_\pm|^2 = 1 \pm \mathbf{e}_1\cdot\mathbf{e}_3",
-                "2 |1±|² = 1 ± e₁·e₃",
-            ),
+            formula(r"2\,|\mathbf{1}_\pm|^2 = 1 \pm \mathbf{e}_1\cdot\mathbf{e}_3"),
         ),
         (
             tuple(alongs),
-            Markup(
-                r"2\,\mathbf{1}_\pm\cdot\mathbf{e}_{2\pm} = \pm B",
-                "2 1±·e₂± = ±B",
-            ),
+            formula(r"2\,\mathbf{1}_\pm\cdot\mathbf{e}_{2\pm} = \pm B"),
         ),
         (
             tuple(across),
-            Markup(
-                r"2\,(\mathbf{e}_1\mathbf{1}_\pm)\cdot\mathbf{e}_{2\pm} = k_1 \pm k_3",
-                "2 (e₁ 1±)·e₂± = k₁ ± k₃",
-            ),
+            formula(r"2\,(\mathbf{e}_1\mathbf{1}_\pm)\cdot\mathbf{e}_{2\pm} = k_1 \pm k_3"),
         ),
     ]
 
@@ -134,20 +122,16 @@ def triangle_claims(model: RotationModel) -> list[Claim]:
     return [
         (
             (sines + cosines - sp.cos(side) - 2 * apart,),
-            Markup(
-                r"\cos(\theta_1 - \theta_3) - \cos\chi = "
-                r"2 \sin\tfrac{\chi + \theta_1 - \theta_3}{2} "
-                r"\sin\tfrac{\chi - \theta_1 + \theta_3}{2}",
-                "cos(θ₁ − θ₃) − cos χ = 2 sin((χ + θ₁ − θ₃)/2) sin((χ − θ₁ + θ₃)/2)",
+            formula(
+                r"\cos(\theta_1 - \theta_3) - \cos\chi = 2 \sin\tfrac{\chi + \theta_1 "
+                r"- \theta_3}{2} \sin\tfrac{\chi - \theta_1 + \theta_3}{2}"
             ),
         ),
         (
             (sines - cosines + sp.cos(side) - 2 * together,),
-            Markup(
-                r"\cos\chi - \cos(\theta_1 + \theta_3) = "
-                r"2 \sin\tfrac{\theta_1 + \theta_3 + \chi}{2} "
-                r"\sin\tfrac{\theta_1 + \theta_3 - \chi}{2}",
-                "cos χ − cos(θ₁ + θ₃) = 2 sin((θ₁ + θ₃ + χ)/2) sin((θ₁ + θ₃ − χ)/2)",
+            formula(
+                r"\cos\chi - \cos(\theta_1 + \theta_3) = 2 \sin\tfrac{\theta_1 + "
+                r"\theta_3 + \chi}{2} \sin\tfrac{\theta_1 + \theta_3 - \chi}{2}"
             ),
         ),
     ]

@@ -4,7 +4,7 @@ Let e₁, e₂, e₃ be the axes as the known turns before them leave them. For 
 x₊ = (x − e₁ x e₃)/2 and x₋ = (x + e₁ x e₃)/2 obey e₁ x₊ = x₊ e₃ and e₁ x₋ = −x₋ e₃. So a turn by α
 on the left and one by γ on the right, p = exp(e₁ α/2) m exp(e₃ γ/2), leave p₊ = exp(e₁ σ) m₊ and
 p₋ = exp(e₁ δ) m₋ with σ = (α + γ)/2 and δ = (α − γ)/2, whatever the angle between the axes. What
-is between, m, is 1 for two turns and cos β/2 + e₂ sin β/2 for three. |p₋|/|p₊| = tan χ/2, where χ
+is between, m, is 1 for two turns and cos(β/2) + e₂ sin(β/2) for three. |p₋|/|p₊| = tan χ/2, where χ
 is the angle between e₁ and R e₃: the third side of a spherical triangle with the corners e₁, e₂ and
 the turned e₃, whose angle at e₂ is β, counted from where the triangle is flat.
 """
@@ -20,11 +20,12 @@ import sympy as sp
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import rodrigues
 
-Claim = tuple[tuple[sp.Expr, ...], Markup]  # what vanishes, and how it is written
+Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
 
 WITTENBURG_LILOV_2003 = Citation(
     text="J. Wittenburg, L. Lilov, Decomposition of a Finite Rotation into Three Rotations about "
@@ -211,12 +212,12 @@ def _because(rule: TurnChain) -> str:
     )
     if len(rule.solved) < _MOST:
         return f"{halves}, where e₃ is the second axis and m = 1."
-    halves = f"{halves}, where m = cos β/2 + e₂ sin β/2"
+    halves = f"{halves}, where m = cos(β/2) + e₂ sin(β/2)"
     if not rule.has_two_sets:
         fixed, angle = ("₋", "difference") if rule.mirror > 0 else ("₊", "sum")
         return (
             f"{halves}. As half the {angle} is 0, the middle angle is that of m{fixed} = p{fixed}, "
-            "which is linear in cos β/2 and sin β/2, with k₁ = e₁·e₂, k₃ = e₂·e₃ and "
+            "which is linear in cos(β/2) and sin(β/2), with k₁ = e₁·e₂, k₃ = e₂·e₃ and "
             "B = e₁·(e₂ × e₃)."
         )
     return (
@@ -283,15 +284,14 @@ def known_claims(model: RotationModel, rule: TurnChain) -> list[Claim]:
     factors += [turn.matrix for turn in rule.right]
     product = reduce(lambda a, b: a * b, factors)
     count = len(rule.solved)
-    latex = [rf"\mathbf{{R}}_{k}" for k in range(1, count + 1)]
-    text = [f"R{'₁₂₃'[k]}" for k in range(count)]
+    factors = [rf"\mathbf{{R}}_{k}" for k in range(1, count + 1)]
     if rule.before:
-        latex, text = [r"\mathbf{R}_a", *latex], ["Rₐ", *text]
+        factors = [r"\mathbf{R}_a", *factors]
     if rule.right:
-        latex, text = [*latex, r"\mathbf{R}_b"], [*text, "R_b"]
+        factors = [*factors, r"\mathbf{R}_b"]
     return [
         (
             tuple(product - model.matrix),
-            Markup(r"\mathbf{R} = " + r"\,".join(latex), f"R = {' '.join(text)}"),
+            formula(r"\mathbf{R} = " + "".join(factors)),
         )
     ]

@@ -12,8 +12,9 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics import claims
-from rigidsym.mechanics.derivation import Found, Markup, Proof
+from rigidsym.mechanics.derivation import Found, Proof
 from rigidsym.mechanics.kinematics import composition
 from rigidsym.mechanics.kinematics.composition import hat
 from rigidsym.mechanics.kinematics.rates import Inverse
@@ -232,7 +233,7 @@ class _Kinematics:
         matrix: RingMatrix,
         because: str,
         *proofs: Proof,
-        symbol: Markup,
+        symbol: Formula,
         below: PolyElement | None = None,
     ) -> Found:
         """A matrix over `below`, as a function of the vector too where it is one."""
@@ -247,7 +248,7 @@ class _Kinematics:
         return Found(self.present.matrix(omega), because, proofs, form)
 
     @property
-    def _shown_symbol(self) -> Markup:
+    def _shown_symbol(self) -> Formula:
         return COSINES if self.model.passive else ROTATION
 
     def _shown(self, matrix: RingMatrix) -> RingMatrix:
@@ -257,7 +258,7 @@ class _Kinematics:
     def _shown_spin(self) -> RingMatrix:
         return self.values.spin_of_transpose if self.model.passive else self.values.spin
 
-    def _inverse_symbol(self, frame: Frame) -> Markup:
+    def _inverse_symbol(self, frame: Frame) -> Formula:
         return frame.inverse if len(self.model.coordinates) == 3 else frame.right_inverse
 
 

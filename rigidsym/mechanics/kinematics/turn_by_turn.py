@@ -9,10 +9,11 @@ from types import MappingProxyType
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics import claims
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.counterexamples import points
-from rigidsym.mechanics.derivation import Definition, Found, Markup, Proof, Singularities
+from rigidsym.mechanics.derivation import Definition, Found, Proof, Singularities
 from rigidsym.mechanics.kinematics.recursion import OrthogonalRows, Recursion
 from rigidsym.mechanics.kinematics.recursion_proofs import (
     Encoded,
@@ -212,7 +213,7 @@ class TurnByTurn:
     def _shown(self, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
         return sp.ImmutableMatrix(matrix.T if self.model.passive else matrix)
 
-    def _inverse_symbol(self, frame: Frame) -> Markup:
+    def _inverse_symbol(self, frame: Frame) -> Formula:
         return frame.inverse if len(self.model.coordinates) == 3 else frame.right_inverse
 
     def _rate_matrix(self, frame: Frame) -> sp.ImmutableMatrix:
@@ -254,7 +255,7 @@ class TurnByTurn:
         rates = sp.Matrix.hstack(*columns.values())
         return (rates * rates.T).det()
 
-    def _inverts(self, rows: OrthogonalRows, claim: Markup) -> tuple[Proof, ...]:
+    def _inverts(self, rows: OrthogonalRows, claim: Formula) -> tuple[Proof, ...]:
         """W Uᵀ D⁻¹ L⁻¹ = G L⁻ᵀ D⁻¹ L⁻¹, which is 1 if G = L D Lᵀ."""
         gram, product = gram_of_rows()
         columns = self._proved(list(rows_residuals(self.recursion, rows)), claim)
@@ -262,7 +263,7 @@ class TurnByTurn:
             return (columns,)
         return (identity(gram - product, claim, self.model.name),)
 
-    def _holds(self, claim: Markup, *laws: str) -> Proof:
+    def _holds(self, claim: Formula, *laws: str) -> Proof:
         """The proof of a claim from laws that hold for every turn."""
         return self._proved([part for law in laws for part in self._residuals(law)], claim)
 
@@ -275,7 +276,7 @@ class TurnByTurn:
     def _by_law(self) -> dict[str, list[Encoded]]:
         return {}
 
-    def _proved(self, parts: Sequence[Encoded], claim: Markup) -> Proof:
+    def _proved(self, parts: Sequence[Encoded], claim: Formula) -> Proof:
         """Exact where all parts are; else the first that is not."""
         proofs = [Prover(self.model, codec).vanishes(residual, claim) for codec, residual in parts]
         return next((proof for proof in proofs if not proof.is_exact), proofs[-1])

@@ -16,54 +16,59 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.quotient import Quotient
-from rigidsym.mechanics.claims import fill
-from rigidsym.mechanics.derivation import Markup, VectorForm, VectorTerm
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import VectorForm, VectorTerm
 from rigidsym.mechanics.kinematics.composition import hat
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.so3 import TIME
 
 LENGTH = sp.Symbol("n", positive=True)  # |v|
 
-V = Markup(r"\mathbf{v}", "v")
-V_DOT = Markup(r"\dot{\mathbf{v}}", "v̇")
-CROSS = Markup(r"\mathbf{v}\times\dot{\mathbf{v}}", "v × v̇")
-TWICE = Markup(r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})", "v × (v × v̇)")
-ALONG = Markup(r"(\mathbf{v}\cdot\dot{\mathbf{v}})\,\mathbf{v}", "(v·v̇) v")
+V = formula(r"\mathbf{v}")
+V_DOT = formula(r"\dot{\mathbf{v}}")
+CROSS = formula(r"\mathbf{v}\times\dot{\mathbf{v}}")
+TWICE = formula(r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})")
+ALONG = formula(r"(\mathbf{v}\cdot\dot{\mathbf{v}})\,\mathbf{v}")
 
-_ONE = Markup(r"\mathbf{1}", "1")
-_SKEW = Markup(r"\mathbf{C}(\mathbf{v})", "C(v)")
-_SQUARE = Markup(r"\mathbf{C}(\mathbf{v})^{2}", "C(v)²")
-_OUTER = Markup(r"\mathbf{v}\,\mathbf{v}^{\mathsf T}", "v vᵀ")
+_ONE = formula(r"\mathbf{1}")
+_SKEW = formula(r"\mathbf{C}(\mathbf{v})")
+_SQUARE = formula(r"\mathbf{C}(\mathbf{v})^{2}")
+_OUTER = formula(r"\mathbf{v}\,\mathbf{v}^{\mathsf T}")
 _APPLIED = {  # to a vector w
-    _ONE: ("{0}", "{0}"),
-    _SKEW: (r"\mathbf{{v}}\times{0}", "v × {0}"),
-    _SQUARE: (r"\mathbf{{v}}\times(\mathbf{{v}}\times{0})", "v × (v × {0})"),
-    _OUTER: (r"(\mathbf{{v}}\cdot{0})\,\mathbf{{v}}", "(v·{0}) v"),
+    _ONE: "#1",
+    _SKEW: r"\mathbf{v}\times #1",
+    _SQUARE: r"\mathbf{v}\times(\mathbf{v}\times #1)",
+    _OUTER: r"(\mathbf{v}\cdot #1)\,\mathbf{v}",
 }
-_TERMS_OF = r"{0}\text{{ in terms of }}\mathbf{{v}}"
+_TERMS_OF = r"#1\text{ in terms of }\mathbf{v}"
 
-Weighted = list[tuple[PolyElement, Markup, RingMatrix]]  # coefficient, its vector, over the ring
+Weighted = list[tuple[PolyElement, Formula, RingMatrix]]  # coefficient, its vector, over the ring
 
 
 def vector_form(
-    prove: Prover, vector: Sequence[sp.Expr], omega: RingMatrix, symbol: Markup
+    prove: Prover, vector: Sequence[sp.Expr], omega: RingMatrix, symbol: Formula
 ) -> VectorForm | None:
     """Ω or Ω′ in terms of v, v̇, v × v̇ and v × (v × v̇); None if there is no such form."""
     if not vector:
         return None
     work = Vectors(vector, prove)
-    claim = fill(_TERMS_OF + r", \dot{{\mathbf{{v}}}}", "{0} in terms of v, v̇", symbol)
+    claim = formula(_TERMS_OF + r", \dot{\mathbf{v}}", symbol)
     return work.shortest(work.forms(omega), omega, prove.codec.ring.one, claim)
 
 
 def matrix_form(
-    prove: Prover, vector: Sequence[sp.Expr], matrix: RingMatrix, below: PolyElement, symbol: Markup
+    prove: Prover,
+    vector: Sequence[sp.Expr],
+    matrix: RingMatrix,
+    below: PolyElement,
+    symbol: Formula,
 ) -> VectorForm | None:
     """A matrix (3, 3) over `below` as a 1 + b C(v) + c v vᵀ, or with C(v)²; None if it is not."""
     if not vector or matrix.shape != (3, 3):
         return None
     work = Vectors(vector, prove)
-    claim = fill(_TERMS_OF, "{0} in terms of v", symbol)
+    claim = formula(_TERMS_OF, symbol)
     return work.shortest(work.matrix_forms(matrix), matrix, below, claim)
 
 
@@ -72,19 +77,19 @@ def applied_form(
     vector: Sequence[sp.Expr],
     matrix: RingMatrix,
     below: PolyElement,
-    symbol: Markup,
+    symbol: Formula,
     *,
-    to: tuple[Markup, RingMatrix],
+    to: tuple[Formula, RingMatrix],
 ) -> VectorForm | None:
     """A matrix (3, 3) over `below`, applied to a vector w, (3, 1): a w + b v × w + ..."""
     if not vector or matrix.shape != (3, 3):
         return None
     work, (name, w) = Vectors(vector, prove), to
     forms = [
-        [(c, fill(*_APPLIED[basis], name), part @ w) for c, basis, part in form]
+        [(c, formula(_APPLIED[basis], name), part @ w) for c, basis, part in form]
         for form in work.matrix_forms(matrix)
     ]
-    claim = fill(_TERMS_OF + ", {1}", "{0} in terms of v, {1}", symbol, name)
+    claim = formula(_TERMS_OF + ", #2", symbol, name)
     return work.shortest(forms, matrix @ w, below, claim)
 
 
@@ -152,7 +157,7 @@ class Vectors:
         ]
 
     def shortest(
-        self, forms: Iterable[Weighted], whole: RingMatrix, below: PolyElement, claim: Markup
+        self, forms: Iterable[Weighted], whole: RingMatrix, below: PolyElement, claim: Formula
     ) -> VectorForm | None:
         """The shortest of the forms that equal whole/below, proved as it is printed."""
         equal = [form for form in forms if self._is_equal(form, whole)]

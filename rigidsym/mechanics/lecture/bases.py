@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Statement
-from rigidsym.mechanics.lecture.symbols import BODY_INERTIA, INERTIA, OMEGA, R, f, statement
+from rigidsym.mechanics.lecture.symbols import BODY_INERTIA, INERTIA, OMEGA, R, statement
 
 _BASIS = "Another basis"
 _MOMENTS = "Moments of inertia"
@@ -18,22 +19,19 @@ STATEMENTS: tuple[Statement, ...] = (
             "A rotation ",
             R,
             " takes the basis to another, ",
-            f(r"\mathbf{e}'_j = \mathbf{R}\,\mathbf{e}_j", "e′_j = R e_j"),
+            formula(r"\mathbf{e}'_j = \mathbf{R}\,\mathbf{e}_j"),
             ". The components of ",
             OMEGA,
             " there are its products with the new vectors,",
         ),
         (
-            f(r"\Omega'_j", "Ω′_j"),
-            f(r"\boldsymbol{\Omega}\cdot\mathbf{e}'_j", "Ω·e′_j"),
-            f(r"\boldsymbol{\Omega}\cdot\mathbf{R}\,\mathbf{e}_j", "Ω·R e_j"),
+            formula(r"\Omega'_j"),
+            formula(r"\boldsymbol{\Omega}\cdot\mathbf{e}'_j"),
+            formula(r"\boldsymbol{\Omega}\cdot\mathbf{R}\,\mathbf{e}_j"),
         ),
         (
             "keeps_products",
-            f(
-                r"\mathbf{u}\cdot\mathbf{v} = \mathbf{R}\mathbf{u}\cdot\mathbf{R}\mathbf{v}",
-                "u·v = R u·R v",
-            ),
+            formula(r"\mathbf{u}\cdot\mathbf{v} = \mathbf{R}\mathbf{u}\cdot\mathbf{R}\mathbf{v}"),
         ),
         place="section 2.1",
     ),
@@ -46,22 +44,20 @@ STATEMENTS: tuple[Statement, ...] = (
             "where it becomes its inverse:",
         ),
         (
-            f(r"\Omega'_j", "Ω′_j"),
-            f(r"\mathbf{R}^{-1}\boldsymbol{\Omega}\cdot\mathbf{e}_j", "R⁻¹ Ω·e_j"),
+            formula(r"\Omega'_j"),
+            formula(r"\mathbf{R}^{-1}\boldsymbol{\Omega}\cdot\mathbf{e}_j"),
         ),
         (
             "goes_over",
-            f(
-                r"\mathbf{R}^{-1}\mathbf{u}\cdot\mathbf{v} = \mathbf{u}\cdot\mathbf{R}\mathbf{v}",
-                "R⁻¹ u·v = u·R v",
+            formula(
+                r"\mathbf{R}^{-1}\mathbf{u}\cdot\mathbf{v} = \mathbf{u}\cdot\mathbf{R}\mathbf{v}"
             ),
         ),
         (
             "components",
-            f(
-                r"\boldsymbol{\Omega}\cdot\mathbf{R}\,\mathbf{e}_j = "
-                r"\mathbf{R}^{-1}\boldsymbol{\Omega}\cdot\mathbf{e}_j",
-                "Ω·R e_j = R⁻¹ Ω·e_j",
+            formula(
+                r"\boldsymbol{\Omega}\cdot\mathbf{R}\,\mathbf{e}_j = \mathbf{R}^{-1}"
+                r"\boldsymbol{\Omega}\cdot\mathbf{e}_j"
             ),
         ),
         place="section 2.1",
@@ -72,23 +68,19 @@ STATEMENTS: tuple[Statement, ...] = (
         _BASIS,
         ("In one line, for all three components,",),
         (
-            f(
+            formula(
                 r"\boldsymbol{\Omega}' = \mathbf{R}^{-1}\boldsymbol{\Omega} "
-                r"\quad\Leftrightarrow\quad \boldsymbol{\Omega}",
-                "Ω′ = R⁻¹ Ω ⇔ Ω",
+                r"\quad\Leftrightarrow\quad \boldsymbol{\Omega}"
             ),
-            f(r"\mathbf{R}\,\boldsymbol{\Omega}'", "R Ω′"),
+            formula(r"\mathbf{R}\,\boldsymbol{\Omega}'"),
         ),
         (
             "inverse",
-            f(r"\mathbf{R}^{-1} = \mathbf{R}^{\mathsf T}", "R⁻¹ = Rᵀ"),
+            formula(r"\mathbf{R}^{-1} = \mathbf{R}^{\mathsf T}"),
         ),
         (
             "and_back",
-            f(
-                r"\mathbf{R}(\mathbf{R}^{-1}\boldsymbol{\Omega}) = \boldsymbol{\Omega}",
-                "R (R⁻¹ Ω) = Ω",
-            ),
+            formula(r"\mathbf{R}(\mathbf{R}^{-1}\boldsymbol{\Omega}) = \boldsymbol{\Omega}"),
         ),
         place="section 2.1",
     ),
@@ -98,24 +90,19 @@ STATEMENTS: tuple[Statement, ...] = (
         _BASIS,
         ("The energy is a number and does not depend on the basis; by (7)",),
         (
-            f("E_R", "E_R"),
-            f(
-                r"\frac{1}{2}\boldsymbol{\Omega}^{\mathsf T}\mathbf{I}\,\boldsymbol{\Omega}",
-                "½ Ωᵀ I Ω",
-            ),
-            f(
-                r"\frac{1}{2}\boldsymbol{\Omega}'^{\mathsf T}\mathbf{R}^{\mathsf T}\mathbf{I}\,"
-                r"\mathbf{R}\,\boldsymbol{\Omega}'",
-                "½ Ω′ᵀ Rᵀ I R Ω′",
+            formula("E_R"),
+            formula(r"\frac{1}{2}\boldsymbol{\Omega}^{\mathsf T}\mathbf{I}\,\boldsymbol{\Omega}"),
+            formula(
+                r"\frac{1}{2}\boldsymbol{\Omega}'^{\mathsf T}\mathbf{R}^{\mathsf T}"
+                r"\mathbf{I}\,\mathbf{R}\,\boldsymbol{\Omega}'"
             ),
         ),
         (
             "same_energy",
-            f(
+            formula(
                 r"(\mathbf{R}\boldsymbol{\Omega}')^{\mathsf T}\mathbf{I}\,\mathbf{R}"
-                r"\boldsymbol{\Omega}' = \boldsymbol{\Omega}'^{\mathsf T}\mathbf{R}^{\mathsf T}"
-                r"\mathbf{I}\,\mathbf{R}\,\boldsymbol{\Omega}'",
-                "(R Ω′)ᵀ I R Ω′ = Ω′ᵀ Rᵀ I R Ω′",
+                r"\boldsymbol{\Omega}' = \boldsymbol{\Omega}'^{\mathsf T}"
+                r"\mathbf{R}^{\mathsf T}\mathbf{I}\,\mathbf{R}\,\boldsymbol{\Omega}'"
             ),
         ),
         place="section 2.1",
@@ -127,19 +114,18 @@ STATEMENTS: tuple[Statement, ...] = (
         (
             "The matrix in the middle is therefore the inertia tensor in the new basis. It is also "
             "what (4) gives for the places ",
-            f(r"\mathbf{x}'_i = \mathbf{R}^{-1}\mathbf{x}_i", "x′ᵢ = R⁻¹ xᵢ"),
+            formula(r"\mathbf{x}'_i = \mathbf{R}^{-1}\mathbf{x}_i"),
             " seen from there:",
         ),
         (
             BODY_INERTIA,
-            f(r"\mathbf{R}^{\mathsf T}\mathbf{I}\,\mathbf{R}", "Rᵀ I R"),
+            formula(r"\mathbf{R}^{\mathsf T}\mathbf{I}\,\mathbf{R}"),
         ),
         (
             "tensor_turns",
-            f(
-                r"\mathbf{R}^{\mathsf T}\,\mathbf{I}(\mathbf{R}\mathbf{x}'_i)\,\mathbf{R} = "
-                r"\mathbf{I}(\mathbf{x}'_i)",
-                "Rᵀ I(R x′ᵢ) R = I(x′ᵢ)",
+            formula(
+                r"\mathbf{R}^{\mathsf T}\,\mathbf{I}(\mathbf{R}\mathbf{x}'_i)"
+                r"\,\mathbf{R} = \mathbf{I}(\mathbf{x}'_i)"
             ),
         ),
         place="section 2.1",
@@ -150,25 +136,24 @@ STATEMENTS: tuple[Statement, ...] = (
         _MOMENTS,
         (
             "With ",
-            f(r"\mathbf{x}_i = (a_i, b_i, c_i)", "xᵢ = (aᵢ, bᵢ, cᵢ)"),
+            formula(r"\mathbf{x}_i = (a_i, b_i, c_i)"),
             " and the product of two cross products, (4) is",
         ),
         (INERTIA,),
         (
             "lagrange",
-            f(
-                r"(\mathbf{u}\times\mathbf{v})\cdot(\mathbf{w}\times\boldsymbol{\Omega}) = "
-                r"(\mathbf{u}\cdot\mathbf{w})(\mathbf{v}\cdot\boldsymbol{\Omega}) - "
-                r"(\mathbf{u}\cdot\boldsymbol{\Omega})(\mathbf{v}\cdot\mathbf{w})",
-                "(u × v)·(w × Ω) = (u·w)(v·Ω) − (u·Ω)(v·w)",
+            formula(
+                r"(\mathbf{u}\times\mathbf{v})\cdot(\mathbf{w}"
+                r"\times\boldsymbol{\Omega}) = (\mathbf{u}\cdot\mathbf{w})(\mathbf{v}"
+                r"\cdot\boldsymbol{\Omega}) - (\mathbf{u}"
+                r"\cdot\boldsymbol{\Omega})(\mathbf{v}\cdot\mathbf{w})"
             ),
         ),
         (
             "entries",
-            f(
-                r"\mathbf{I} = \sum_i m_i\bigl((\mathbf{x}_i\cdot\mathbf{x}_i)\mathbf{1} - "
-                r"\mathbf{x}_i\mathbf{x}_i^{\mathsf T}\bigr)",
-                "I = Σ mᵢ ((xᵢ·xᵢ) 1 − xᵢ xᵢᵀ)",
+            formula(
+                r"\mathbf{I} = \sum_i m_i\bigl((\mathbf{x}_i\cdot\mathbf{x}_i)"
+                r"\mathbf{1} - \mathbf{x}_i\mathbf{x}_i^{\mathsf T}\bigr)"
             ),
         ),
         place="section 2.2",
@@ -181,23 +166,22 @@ STATEMENTS: tuple[Statement, ...] = (
         (
             "The moment of inertia about a line sums the masses times the squares of their "
             "distances ",
-            f(r"d^{\perp}_i", "d⊥ᵢ"),
+            formula(r"d^{\perp}_i"),
             " from it. For the line through the centre of mass along a unit vector ",
-            f(r"\mathbf{e}", "e"),
+            formula(r"\mathbf{e}"),
             " the tensor gives it at once; for a vector of the basis it is an entry of the "
             "diagonal. The other entries are the products of inertia.",
         ),
         (
-            f("I", "I"),
-            f(r"\sum_i m_i(d^{\perp}_i)^2", "Σ mᵢ (d⊥ᵢ)²"),
-            f(r"\mathbf{e}^{\mathsf T}\mathbf{I}\,\mathbf{e}", "eᵀ I e"),
+            formula("I"),
+            formula(r"\sum_i m_i(d^{\perp}_i)^2"),
+            formula(r"\mathbf{e}^{\mathsf T}\mathbf{I}\,\mathbf{e}"),
         ),
         (
             "about_a_line",
-            f(
-                r"\sum_i m_i|\mathbf{x}_i - (\mathbf{x}_i\cdot\mathbf{e})\mathbf{e}|^2 = "
-                r"\mathbf{e}^{\mathsf T}\mathbf{I}\,\mathbf{e}",
-                "Σ mᵢ |xᵢ − (xᵢ·e) e|² = eᵀ I e",
+            formula(
+                r"\sum_i m_i|\mathbf{x}_i - (\mathbf{x}_i\cdot\mathbf{e})"
+                r"\mathbf{e}|^2 = \mathbf{e}^{\mathsf T}\mathbf{I}\,\mathbf{e}"
             ),
         ),
         place="section 2.2",
@@ -215,26 +199,23 @@ STATEMENTS: tuple[Statement, ...] = (
             " along these axes,",
         ),
         (
-            f("E_R", "E_R"),
-            f(
-                r"\frac{1}{2}\bigl[I'_{11}\Omega_1^2 + I'_{22}\Omega_2^2 + I'_{33}\Omega_3^2\bigr]",
-                "½ [I′₁₁ Ω₁² + I′₂₂ Ω₂² + I′₃₃ Ω₃²]",
+            formula("E_R"),
+            formula(
+                r"\frac{1}{2}\bigl[I'_{11}\Omega_1^2 + I'_{22}\Omega_2^2 + I'_{33}\Omega_3^2\bigr]"
             ),
         ),
         (
             "stays_symmetric",
-            f(
+            formula(
                 r"(\mathbf{R}^{\mathsf T}\mathbf{I}\,\mathbf{R})^{\mathsf T} = "
-                r"\mathbf{R}^{\mathsf T}\mathbf{I}\,\mathbf{R}",
-                "(Rᵀ I R)ᵀ = Rᵀ I R",
+                r"\mathbf{R}^{\mathsf T}\mathbf{I}\,\mathbf{R}"
             ),
         ),
         (
             "energy_in_principal_axes",
-            f(
+            formula(
                 r"\boldsymbol{\Omega}'^{\mathsf T}\mathbf{I}'\,\boldsymbol{\Omega}' = "
-                r"\sum_k I'_{kk}\Omega_k^2",
-                "Ω′ᵀ I′ Ω′ = Σ I′_kk Ω_k²",
+                r"\sum_k I'_{kk}\Omega_k^2"
             ),
         ),
         place="section 2.3",

@@ -19,7 +19,8 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
-from rigidsym.mechanics.derivation import Derivation, Markup, Proof, Statement, Step
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Derivation, Proof, Statement, Step
 from rigidsym.mechanics.kinematics.composition import hat, unhat
 from rigidsym.mechanics.lecture import bases, momenta, rigid_body
 from rigidsym.mechanics.particles import IN_BODY, MASS, Sum
@@ -86,7 +87,7 @@ class _Theory:
         """Each claim of a statement, put to the ring."""
         return tuple(self._proof(name, claim) for name, claim in statement.claims)
 
-    def _proof(self, name: str, claim: Markup) -> Proof:
+    def _proof(self, name: str, claim: Formula) -> Proof:
         left = _CLAIMS[name](self)
         matrix = left if isinstance(left, RingMatrix) else RingMatrix.column(self.ring, [left])
         return self.prover.vanishes(matrix, claim)

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from rigidsym.mechanics.derivation import Markup, Statement
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Statement
 from rigidsym.models.rotation import lecture
 
-Words = tuple[str | Markup, ...]
+Words = tuple[str | Formula, ...]
 
 
-def f(latex: str, text: str) -> Markup:
-    return Markup(latex, text)
-
-
-R = f(r"\mathbf{R}", "R")
-OMEGA, BODY_OMEGA = f(r"\boldsymbol{\Omega}", "Ω"), f(r"\boldsymbol{\Omega}'", "Ω′")
-INERTIA, BODY_INERTIA = f(r"\mathbf{I}", "I"), f(r"\mathbf{I}'", "I′")
-CENTRE, PLACE = f(r"\mathbf{r}_C", "r_C"), f(r"\mathbf{r}_i", "rᵢ")
-RELATIVE, AT_REST = f(r"\mathbf{x}_i", "xᵢ"), f(r"\mathbf{x}'_i", "x′ᵢ")
-RELATIVE_RATE = f(r"\dot{\mathbf{x}}_i", "ẋᵢ")
-WHOLE, MASS = f("M", "M"), f("m_i", "mᵢ")
-SPIN = f(r"\frac{d\mathbf{R}}{dt}\mathbf{R}^{\mathsf T}", "dR/dt·Rᵀ")
-NO_MOMENT = f(r"\sum_i m_i\,\mathbf{x}_i = \mathbf{0}", "Σ mᵢ xᵢ = 0")
-NO_MOMENTUM = f(r"\sum_i m_i\,\dot{\mathbf{x}}_i = \mathbf{0}", "Σ mᵢ ẋᵢ = 0")
-MASSES = f(r"\sum_i m_i = M", "Σ mᵢ = M")
+R = formula(r"\mathbf{R}")
+OMEGA, BODY_OMEGA = formula(r"\boldsymbol{\Omega}"), formula(r"\boldsymbol{\Omega}'")
+INERTIA, BODY_INERTIA = formula(r"\mathbf{I}"), formula(r"\mathbf{I}'")
+CENTRE, PLACE = formula(r"\mathbf{r}_C"), formula(r"\mathbf{r}_i")
+RELATIVE, AT_REST = formula(r"\mathbf{x}_i"), formula(r"\mathbf{x}'_i")
+RELATIVE_RATE = formula(r"\dot{\mathbf{x}}_i")
+WHOLE, MASS = formula("M"), formula("m_i")
+SPIN = formula(r"\frac{d\mathbf{R}}{dt}\mathbf{R}^{\mathsf T}")
+NO_MOMENT = formula(r"\sum_i m_i\,\mathbf{x}_i = \mathbf{0}")
+NO_MOMENTUM = formula(r"\sum_i m_i\,\dot{\mathbf{x}}_i = \mathbf{0}")
+MASSES = formula(r"\sum_i m_i = M")
 
 
 def statement(
@@ -30,8 +28,8 @@ def statement(
     name: str,
     section: str,
     because: Words,
-    sides: tuple[Markup, ...],
-    *claims: tuple[str, Markup],
+    sides: tuple[Formula, ...],
+    *claims: tuple[str, Formula],
     place: str,
     shows_summands: bool = False,
 ) -> Statement:

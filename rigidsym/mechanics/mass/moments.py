@@ -21,7 +21,8 @@ from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.rational import Rationals
 from rigidsym.errors import BodyError
-from rigidsym.mechanics.derivation import Markup, Proof
+from rigidsym.formula.reader import formula
+from rigidsym.mechanics.derivation import Proof
 from rigidsym.mechanics.prove import Constants, Prover
 from rigidsym.models.distribution import (
     Composite,
@@ -34,12 +35,8 @@ from rigidsym.models.distribution import (
 )
 
 _PAIRS = tuple((i, j) for i in range(3) for j in range(i, 3))
-_ANTIDERIVATIVES = Markup(
-    r"\frac{\partial F}{\partial u} = f \text{ for every integral}", "∂F/∂u = f for every integral"
-)
-_ELEMENT = Markup(
-    r"\frac{dA}{du\,dv} = \sqrt{\det\mathbf{J}^{\mathsf T}\mathbf{J}}", "element = √(det JᵀJ)"
-)
+_ANTIDERIVATIVES = formula(r"\frac{\partial F}{\partial u} = f \text{ for every integral}")
+_ELEMENT = formula(r"\frac{dA}{du\,dv} = \sqrt{\det\mathbf{J}^{\mathsf T}\mathbf{J}}")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rigidsym.mechanics.claims import fill, transpose_of
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.claims import transpose_of
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_SPACE, MASS
 from rigidsym.mechanics.quantities.table import read_table
@@ -13,34 +14,32 @@ from rigidsym.mechanics.quantities.table import read_table
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
 
-CENTRE = Markup(r"\mathbf{r}_C", "r_C")
-CENTRE_VELOCITY = Markup(r"\dot{\mathbf{r}}_C", "ṙ_C")
-KINETIC = Markup("E_K", "E_K")
-TRANSLATIONAL = Markup("E_C", "E_C")
-ROTATIONAL = Markup("E_R", "E_R")
-MOMENTUM = Markup(r"\mathbf{L}", "L")
-MOMENTUM_CENTRE = Markup(r"\mathbf{L}_C", "L_C")
-MOMENTUM_ROTATION = Markup(r"\mathbf{L}_R", "L_R")
-MOMENTUM_BODY = Markup(r"\mathbf{L}'_R", "L′_R")
+CENTRE = formula(r"\mathbf{r}_C")
+CENTRE_VELOCITY = formula(r"\dot{\mathbf{r}}_C")
+KINETIC = formula("E_K")
+TRANSLATIONAL = formula("E_C")
+ROTATIONAL = formula("E_R")
+MOMENTUM = formula(r"\mathbf{L}")
+MOMENTUM_CENTRE = formula(r"\mathbf{L}_C")
+MOMENTUM_ROTATION = formula(r"\mathbf{L}_R")
+MOMENTUM_BODY = formula(r"\mathbf{L}'_R")
 
 
-def half_product(omega: Markup, inertia: Markup) -> Markup:
+def half_product(omega: Formula, inertia: Formula) -> Formula:
     """½ Ωᵀ I Ω."""
-    return fill(
-        r"\tfrac{{1}}{{2}}\,{0}\,{1}\,{2}", "½ {0} {1} {2}", transpose_of(omega), inertia, omega
-    )
+    return formula(r"\tfrac{1}{2}\,#1\,#2\,#3", transpose_of(omega), inertia, omega)
 
 
-def _sum(first: Markup, second: Markup) -> Markup:
-    return fill("{0} + {1}", "{0} + {1}", first, second)
+def _sum(first: Formula, second: Formula) -> Formula:
+    return formula("#1 + #2", first, second)
 
 
-def _product(matrix: Markup, vector: Markup) -> Markup:
-    return fill("{0}{1}", "{0} {1}", matrix, vector)
+def _product(matrix: Formula, vector: Formula) -> Formula:
+    return formula("#1#2", matrix, vector)
 
 
-_HALF_SQUARE = fill(r"\tfrac{{1}}{{2}} {0}\,|{1}|^2", "½ {0} |{1}|²", MASS, CENTRE_VELOCITY)
-_ARM = fill(r"{0}\times({1}\,{2})", "{0} × ({1} {2})", CENTRE, MASS, CENTRE_VELOCITY)
+_HALF_SQUARE = formula(r"\tfrac{1}{2} #1\,|#2|^2", MASS, CENTRE_VELOCITY)
+_ARM = formula(r"#1\times(#2\,#3)", CENTRE, MASS, CENTRE_VELOCITY)
 
 ENERGY_QUANTITIES = read_table(
     """
@@ -86,45 +85,41 @@ def body_in_words(body: RigidBody | None) -> tuple[str, ...]:
 
 # Claims.
 
-_PARTICLE = Markup(r"\mathbf{x}_i", "xᵢ")
-_PARTICLE_VELOCITY = Markup(r"\dot{\mathbf{x}}_i", "ẋᵢ")
-_POSITION = Markup(r"\mathbf{r}_i", "rᵢ")
-_VELOCITY = Markup(r"\dot{\mathbf{r}}_i", "ṙᵢ")
-_SUM = Markup(r"{\textstyle\sum_i} m_i", "Σ mᵢ")
+_PARTICLE = formula(r"\mathbf{x}_i")
+_PARTICLE_VELOCITY = formula(r"\dot{\mathbf{x}}_i")
+_POSITION = formula(r"\mathbf{r}_i")
+_VELOCITY = formula(r"\dot{\mathbf{r}}_i")
+_SUM = formula(r"{\textstyle\sum_i} m_i")
 
 
-def _equal(first: Markup, second: Markup) -> Markup:
-    return fill("{0} = {1}", "{0} = {1}", first, second)
+def _equal(first: Formula, second: Formula) -> Formula:
+    return formula("#1 = #2", first, second)
 
 
-def _half_sum(velocity: Markup) -> Markup:
+def _half_sum(velocity: Formula) -> Formula:
     """½ Σ mᵢ |v|²."""
-    return fill(r"\tfrac{{1}}{{2}} {0}\,|{1}|^2", "½ {0} |{1}|²", _SUM, velocity)
+    return formula(r"\tfrac{1}{2} #1\,|#2|^2", _SUM, velocity)
 
 
-def _crossed_sum(position: Markup, velocity: Markup) -> Markup:
+def _crossed_sum(position: Formula, velocity: Formula) -> Formula:
     """Σ mᵢ x × v."""
-    return fill(r"{0}\,{1}\times{2}", "{0} {1} × {2}", _SUM, position, velocity)
+    return formula(r"#1\,#2\times#3", _SUM, position, velocity)
 
 
-def _twice_energy(momentum: Markup, omega: Markup) -> Markup:
-    return fill(r"{0}\cdot{1} = 2 {2}", "{0} · {1} = 2 {2}", momentum, omega, ROTATIONAL)
+def _twice_energy(momentum: Formula, omega: Formula) -> Formula:
+    return formula(r"#1\cdot#2 = 2 #3", momentum, omega, ROTATIONAL)
 
 
-_ROTATED = fill(r"({0}\,{1}\,{2})", "({0} {1} {2})", ROTATION, INERTIA, transpose_of(ROTATION))
+_ROTATED = formula(r"(#1\,#2\,#3)", ROTATION, INERTIA, transpose_of(ROTATION))
 TRANSLATION_OF_PARTICLES = _equal(_half_sum(CENTRE_VELOCITY), TRANSLATIONAL)
 BOTH_FORMS = _equal(half_product(SPACE.omega, _ROTATED), ROTATIONAL)
 ROTATION_OF_PARTICLES = _equal(_half_sum(_PARTICLE_VELOCITY), ROTATIONAL)
 ENERGY_SPLITS = _equal(_half_sum(_VELOCITY), _sum(TRANSLATIONAL, ROTATIONAL))
-NO_CROSS_TERM = fill(r"{0}\,{1} = \mathbf{{0}}", "{0} {1} = 0", _SUM, _PARTICLE_VELOCITY)
+NO_CROSS_TERM = formula(r"#1\,#2 = \mathbf{0}", _SUM, _PARTICLE_VELOCITY)
 MOMENTUM_OF_CENTRE = _equal(_crossed_sum(CENTRE, CENTRE_VELOCITY), MOMENTUM_CENTRE)
 TWICE_ENERGY_BODY = _twice_energy(MOMENTUM_BODY, BODY.omega)
 TWICE_ENERGY = _twice_energy(MOMENTUM_ROTATION, SPACE.omega)
-MOMENTUM_TURNS = fill(
-    r"{0}\,{1} = {2}\,{3}",
-    "{0} {1} = {2} {3}",
-    *(INERTIA_SPACE, SPACE.omega, ROTATION, MOMENTUM_BODY),
-)
+MOMENTUM_TURNS = formula(r"#1\,#2 = #3\,#4", INERTIA_SPACE, SPACE.omega, ROTATION, MOMENTUM_BODY)
 MOMENTUM_OF_PARTICLES = _equal(_crossed_sum(_PARTICLE, _PARTICLE_VELOCITY), MOMENTUM_ROTATION)
 MOMENTUM_SPLITS = _equal(
     _crossed_sum(_POSITION, _VELOCITY), _sum(MOMENTUM_CENTRE, MOMENTUM_ROTATION)

@@ -11,8 +11,10 @@ from dataclasses import dataclass, replace
 from functools import cache
 from types import MappingProxyType
 
-from rigidsym.mechanics.claims import fill, rate_of, spin_of, transpose_of
-from rigidsym.mechanics.derivation import Markup, Quantity
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.claims import rate_of, spin_of, transpose_of
+from rigidsym.mechanics.derivation import Quantity
 from rigidsym.mechanics.quantities.table import read_table
 from rigidsym.models.rotation import Citation
 
@@ -21,28 +23,27 @@ _DIEBEL = Citation(
     "Vectors (2006), section 5"
 )
 
-ROTATION = Markup(r"\mathbf{R}", "R")
-COSINES = Markup(r"\mathbf{A}", "A")
-RATES = Markup(r"\dot{\mathbf{q}}", "q̇")
-ALPHA = Markup(r"\dot{\boldsymbol{\Omega}}", "dΩ/dt")
-ALPHA_BODY = Markup(r"\dot{\boldsymbol{\Omega}}'", "dΩ′/dt")
+ROTATION = formula(r"\mathbf{R}")
+COSINES = formula(r"\mathbf{A}")
+RATES = formula(r"\dot{\mathbf{q}}")
+ALPHA = formula(r"\dot{\boldsymbol{\Omega}}")
+ALPHA_BODY = formula(r"\dot{\boldsymbol{\Omega}}'")
 
 
-def _product(matrix: Markup, vector: Markup) -> Markup:
-    return fill(r"{0}{1}", "{0} {1}", matrix, vector)
+def _product(matrix: Formula, vector: Formula) -> Formula:
+    return formula("#1#2", matrix, vector)
 
 
-def _vector_of(skew: Markup) -> Markup:
-    return fill(r"\mathbf{{C}}^{{-1}}\left({0}\right)", "C⁻¹({0})", skew)
+def _vector_of(skew: Formula) -> Formula:
+    return formula(r"\mathbf{C}^{-1}(#1)", skew)
 
 
-def _operator(sign: str, vector: Markup) -> Markup:
-    latex, text = sign + r"\mathbf{{C}}({0})", sign.replace("-", "−") + "C({0})"
-    return fill(latex, text, vector)
+def _operator(sign: str, vector: Formula) -> Formula:
+    return formula(rf"{sign}\mathbf{{C}}(#1)", vector)
 
 
-def _jacobian(omega: Markup) -> Markup:
-    return fill(r"\frac{{\partial {0}}}{{\partial {1}}}", "∂{0}/∂{1}", omega, RATES)
+def _jacobian(omega: Formula) -> Formula:
+    return formula(r"\frac{\partial #1}{\partial #2}", omega, RATES)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -50,25 +51,25 @@ class Frame:
     """The symbols of the angular velocity and its rate matrix in one frame."""
 
     name: str
-    omega: Markup
-    matrix: Markup
-    inverse: Markup
-    right_inverse: Markup  # if there are more coordinates than dimensions
+    omega: Formula
+    matrix: Formula
+    inverse: Formula
+    right_inverse: Formula  # if there are more coordinates than dimensions
 
 
 SPACE = Frame(
     name="space",
-    omega=Markup(r"\boldsymbol{\Omega}", "Ω"),
-    matrix=Markup(r"\mathbf{W}", "W"),
-    inverse=Markup(r"\mathbf{W}^{-1}", "W⁻¹"),
-    right_inverse=Markup(r"\mathbf{W}^{+}", "W⁺"),
+    omega=formula(r"\boldsymbol{\Omega}"),
+    matrix=formula(r"\mathbf{W}"),
+    inverse=formula(r"\mathbf{W}^{-1}"),
+    right_inverse=formula(r"\mathbf{W}^{+}"),
 )
 BODY = Frame(
     name="body",
-    omega=Markup(r"\boldsymbol{\Omega}'", "Ω′"),
-    matrix=Markup(r"\mathbf{W}'", "W′"),
-    inverse=Markup(r"\mathbf{W}'^{-1}", "W′⁻¹"),
-    right_inverse=Markup(r"\mathbf{W}'^{+}", "W′⁺"),
+    omega=formula(r"\boldsymbol{\Omega}'"),
+    matrix=formula(r"\mathbf{W}'"),
+    inverse=formula(r"\mathbf{W}'^{-1}"),
+    right_inverse=formula(r"\mathbf{W}'^{+}"),
 )
 
 _ACTIVE = read_table(
@@ -145,11 +146,11 @@ _PASSIVE = read_table(
         "spin_matrix": (spin_of(COSINES), _operator("-", BODY.omega)),
         "angular_velocity_space": (
             SPACE.omega,
-            _vector_of(fill(r"{0}\,{1}", "{0}·{1}", rate_of(transpose_of(COSINES)), COSINES)),
+            _vector_of(formula(r"#1\,#2", rate_of(transpose_of(COSINES)), COSINES)),
         ),
         "angular_velocity_body": (
             BODY.omega,
-            fill(r"{0}\,{1}", "{0} {1}", COSINES, SPACE.omega),
+            formula(r"#1\,#2", COSINES, SPACE.omega),
         ),
     },
 )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from rigidsym.mechanics.claims import fill, transpose_of
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula, bracketed
+from rigidsym.mechanics.claims import transpose_of
 from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.mechanics.quantities.table import read_table
 from rigidsym.models.rotation import Citation
@@ -12,41 +13,36 @@ STEINER = Citation(
     text="L. D. Landau and E. M. Lifshitz, Mechanics, 3rd edition (1976), section 32",
     equation="32.12",
 )
-MASS = Markup("M", "M")
-INERTIA = Markup(r"\mathbf{I}'", "I′")
-INERTIA_SPACE = Markup(r"\mathbf{I}", "I")
-CENTRE = Markup(r"\mathbf{c}", "c")
-POINT = Markup(r"\mathbf{p}", "p")
-DIRECTION = Markup(r"\mathbf{n}", "n")
-PLACE = Markup(r"\mathbf{x}'", "x′")
-ORIGIN_TENSOR = Markup(r"\mathbf{I}'_O", "I′_O")
-POINT_TENSOR = Markup(r"\mathbf{I}'_P", "I′_P")
-MOMENT = Markup("I_n", "I_n")
-RADII = Markup(r"\left(k_x, k_y, k_z\right)", "(k_x, k_y, k_z)")
-AXES = Markup(r"\mathbf{E}", "E")
-MOMENTS = Markup(r"\left(I_1, I_2, I_3\right)", "(I₁, I₂, I₃)")
-SEMI_AXES = Markup(r"\left(a_1, a_2, a_3\right)", "(a₁, a₂, a₃)")
-TOTAL_MASS = Markup(r"\int dm", "∫ dm")
-MASS_FIRST = Markup(r"\frac{1}{M}\int \mathbf{x}'\,dm", "∫ x′ dm / M")
-TENSOR_INTEGRAL = Markup(
-    r"\int \left(|\mathbf{x}'-\mathbf{c}|^2\,\mathbf{1} - (\mathbf{x}'-\mathbf{c})"
-    r"(\mathbf{x}'-\mathbf{c})^{\mathsf T}\right) dm",
-    "∫ (|x′ − c|² 1 − (x′ − c)(x′ − c)ᵀ) dm",
+MASS = formula("M")
+INERTIA = formula(r"\mathbf{I}'")
+INERTIA_SPACE = formula(r"\mathbf{I}")
+CENTRE = formula(r"\mathbf{c}")
+POINT = formula(r"\mathbf{p}")
+DIRECTION = formula(r"\mathbf{n}")
+PLACE = formula(r"\mathbf{x}'")
+ORIGIN_TENSOR = formula(r"\mathbf{I}'_O")
+POINT_TENSOR = formula(r"\mathbf{I}'_P")
+MOMENT = formula("I_n")
+RADII = formula(r"\left(k_x, k_y, k_z\right)")
+AXES = formula(r"\mathbf{E}")
+MOMENTS = formula(r"\left(I_1, I_2, I_3\right)")
+SEMI_AXES = formula(r"\left(a_1, a_2, a_3\right)")
+TOTAL_MASS = formula(r"\int dm")
+MASS_FIRST = formula(r"\frac{1}{M}\int \mathbf{x}'\,dm")
+TENSOR_INTEGRAL = formula(
+    r"\int \left(|\mathbf{x}'-\mathbf{c}|^2\,\mathbf{1} "
+    r"- (\mathbf{x}'-\mathbf{c})(\mathbf{x}'-\mathbf{c})^{\mathsf T}\right) dm"
 )
 
 
-def moved(mass: Markup, by: str, text: str) -> Markup:
+def moved(mass: Formula, by: Formula) -> Formula:
     """M (|d|² 1 − d dᵀ)."""
-    latex, plain = (by, text) if " " not in text else (f"({by})", f"({text})")
-    return Markup(
-        rf"{mass.latex}\left(|{by}|^2\,\mathbf{{1}} - {latex}{latex}^{{\mathsf T}}\right)",
-        f"{mass.text} (|{text}|² 1 − {plain}{'' if ' ' in text else ' '}{plain}ᵀ)",
-    )
+    return formula(r"#1\,(|#2|^2\,\mathbf{1} - #3 #3^{\mathsf T})", mass, by, bracketed(by))
 
 
-_STEINER = fill("{0} + {1}", "{0} + {1}", INERTIA, moved(MASS, r"\mathbf{p}-\mathbf{c}", "p − c"))
-_FORM = fill(r"{1}\,{0}\,{2}", "{1} {0} {2}", POINT_TENSOR, transpose_of(DIRECTION), DIRECTION)
-_TURNED = fill(r"{0}\,{1}\,{2}", "{0} {1} {2}", ROTATION, INERTIA, transpose_of(ROTATION))
+_STEINER = formula("#1 + #2", INERTIA, moved(MASS, formula(r"\mathbf{p}-\mathbf{c}")))
+_FORM = formula(r"#2\,#1\,#3", POINT_TENSOR, transpose_of(DIRECTION), DIRECTION)
+_TURNED = formula(r"#1\,#2\,#3", ROTATION, INERTIA, transpose_of(ROTATION))
 
 INERTIA_QUANTITIES = read_table(
     """
@@ -88,47 +84,23 @@ INERTIA_QUANTITIES = read_table(
 
 # Claims.
 
-SYMMETRIC = fill("{0} = {1}", "{0} = {1}", INERTIA, transpose_of(INERTIA))
-CENTRED = Markup(r"\int (\mathbf{x}'-\mathbf{c})\,dm = \mathbf{0}", "∫ (x′ − c) dm = 0")
-ABOUT_ORIGIN = fill(
-    "{0} = {1} + {2}",
-    "{0} = {1} + {2}",
-    ORIGIN_TENSOR,
-    INERTIA,
-    moved(MASS, r"\mathbf{c}", "c"),
+SYMMETRIC = formula("#1 = #2", INERTIA, transpose_of(INERTIA))
+CENTRED = formula(r"\int (\mathbf{x}'-\mathbf{c})\,dm = \mathbf{0}")
+ABOUT_ORIGIN = formula("#1 = #2 + #3", ORIGIN_TENSOR, INERTIA, moved(MASS, formula(r"\mathbf{c}")))
+OF_PARTS = formula(
+    r"\mathbf{I}' = \sum_k \left(\mathbf{R}_k\mathbf{I}'_k\mathbf{R}_k^{\mathsf T} "
+    r"+ m_k(|\mathbf{d}_k|^2\,\mathbf{1} - \mathbf{d}_k\mathbf{d}_k^{\mathsf T})"
+    r"\right)"
 )
-OF_PARTS = Markup(
-    r"\mathbf{I}' = \sum_k \left(\mathbf{R}_k\mathbf{I}'_k\mathbf{R}_k^{\mathsf T} + "
-    r"m_k(|\mathbf{d}_k|^2\,\mathbf{1} - \mathbf{d}_k\mathbf{d}_k^{\mathsf T})\right)",
-    "I′ = Σ (Rₖ I′ₖ Rₖᵀ + mₖ (|dₖ|² 1 − dₖ dₖᵀ))",
+OF_POINT = formula(
+    r"\mathbf{I}'_P = \int \left(|\mathbf{x}'-\mathbf{p}|^2\,\mathbf{1} "
+    r"- (\mathbf{x}'-\mathbf{p})(\mathbf{x}'-\mathbf{p})^{\mathsf T}\right) dm"
 )
-OF_POINT = Markup(
-    r"\mathbf{I}'_P = \int \left(|\mathbf{x}'-\mathbf{p}|^2\,\mathbf{1} - (\mathbf{x}'-\mathbf{p})"
-    r"(\mathbf{x}'-\mathbf{p})^{\mathsf T}\right) dm",
-    "I′_P = ∫ (|x′ − p|² 1 − (x′ − p)(x′ − p)ᵀ) dm",
-)
-OF_LINE = Markup(
-    r"I_n = \int |\mathbf{n}\times(\mathbf{x}'-\mathbf{p})|^2\,dm",
-    "I_n = ∫ |n × (x′ − p)|² dm",
-)
-OF_RADII = Markup(r"M k_j^2 = I'_{jj}", "M kⱼ² = I′ⱼⱼ")
-BACK = fill(
-    r"{0} = {1}\,{2}\,{3}",
-    "{0} = {1} {2} {3}",
-    INERTIA,
-    transpose_of(ROTATION),
-    INERTIA_SPACE,
-    ROTATION,
-)
-TRACE = fill(
-    r"\operatorname{{tr}} {0} = \operatorname{{tr}} {1}", "tr {0} = tr {1}", INERTIA_SPACE, INERTIA
-)
-DIAGONAL = Markup(
-    r"\mathbf{I}'\,\mathbf{E} = \mathbf{E}\,\operatorname{diag}(I_1, I_2, I_3)",
-    "I′ E = E diag(I₁, I₂, I₃)",
-)
-ORTHOGONAL_AXES = Markup(
-    r"\mathbf{E}^{\mathsf T}\mathbf{E} = \mathbf{1},\ \det\mathbf{E} = 1", "Eᵀ E = 1, det E = 1"
-)
-CHARACTERISTIC = Markup(r"\det(\mathbf{I}' - I_k\mathbf{1}) = 0", "det(I′ − Iₖ 1) = 0")
-ELLIPSOID = Markup(r"a_k^2\,I_k = 1", "aₖ² Iₖ = 1")
+OF_LINE = formula(r"I_n = \int |\mathbf{n}\times(\mathbf{x}'-\mathbf{p})|^2\,dm")
+OF_RADII = formula("M k_j^2 = I'_{jj}")
+BACK = formula(r"#1 = #2\,#3\,#4", INERTIA, transpose_of(ROTATION), INERTIA_SPACE, ROTATION)
+TRACE = formula(r"\operatorname{tr} #1 = \operatorname{tr} #2", INERTIA_SPACE, INERTIA)
+DIAGONAL = formula(r"\mathbf{I}'\,\mathbf{E} = \mathbf{E}\,\operatorname{diag}(I_1, I_2, I_3)")
+ORTHOGONAL_AXES = formula(r"\mathbf{E}^{\mathsf T}\mathbf{E} = \mathbf{1},\ \det\mathbf{E} = 1")
+CHARACTERISTIC = formula(r"\det(\mathbf{I}' - I_k\mathbf{1}) = 0")
+ELLIPSOID = formula(r"a_k^2\,I_k = 1")

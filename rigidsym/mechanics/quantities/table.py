@@ -7,10 +7,11 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import cast
 
-from rigidsym.mechanics.derivation import Markup, Quantity, Shape
+from rigidsym.formula.tree import NOTHING, Formula
+from rigidsym.mechanics.derivation import Quantity, Shape
 from rigidsym.models.rotation import Citation, lecture
 
-Formulas = Mapping[str, tuple[Markup, ...]]  # name: symbol and, if there is one, definition
+Formulas = Mapping[str, tuple[Formula, ...]]  # name: symbol and, if there is one, definition
 _COLUMNS = re.compile(r" {2,}")
 
 
@@ -45,7 +46,7 @@ def _read(head: str, about: str, formulas: Formulas, sources: Mapping[str, Citat
         unit=unit,
         inputs=tuple(inputs.split()),
         shape=cast(Shape, shape),
-        definition=definition[0] if definition else Markup("", ""),
+        definition=definition[0] if definition else NOTHING,
         source=(sources.get(source) or _of_lecture(source)) if source else None,
     )
 

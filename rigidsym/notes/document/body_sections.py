@@ -8,7 +8,9 @@ from dataclasses import replace
 import sympy as sp
 
 from rigidsym.data.mass.properties import MassProperties
-from rigidsym.mechanics.derivation import Derivation, Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Big, Differential, Formula, bracketed, row
+from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.mechanics.mass.numbers import in_numbers
 from rigidsym.mechanics.quantities.mass import PLACE
@@ -23,8 +25,8 @@ from rigidsym.models.distribution import (
     Solid,
 )
 from rigidsym.notes.document.document import Block, Equation, Paragraph, Table, Text
-from rigidsym.notes.formula.formula import markup
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.entries import indexed
 from rigidsym.notes.prose.words import listed, unit_in_words, words
 
@@ -32,22 +34,22 @@ _KINDS = ("the length", "the area", "the volume")
 _DIGITS = 6
 
 
-def blocks_of_body(derivation: Derivation, notation: Notation) -> Iterator[Block]:
+def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[Block]:
     """How the mass of the body is spread, with its integrals, and its values in numbers."""
     body = derivation.body
     if body is None:
         return
     match body.distribution:
         case Solid():
-            yield from _solid(body.distribution, notation)
+            yield from _solid(body.distribution, letters)
         case Composite():
             yield Paragraph((f"{body.title}: it is put together from parts.",))
-            yield _parts(body.distribution.parts, notation)
+            yield _parts(body.distribution.parts, letters)
             solids = (part.what for part in body.distribution.parts)
             for solid in dict.fromkeys(what for what in solids if isinstance(what, Solid)):
-                yield from _solid(solid, notation)
+                yield from _solid(solid, letters)
         case Particles():
-            yield _particles(body.distribution, notation)
+            yield _particles(body.distribution, letters)
         case Polyhedron():
             yield Paragraph(
                 (
@@ -55,24 +57,24 @@ def blocks_of_body(derivation: Derivation, notation: Notation) -> Iterator[Block
                     "the origin and its faces, those outside with a minus sign.",
                 )
             )
-    yield from _numbers(body, notation)
+    yield from _numbers(body, letters)
 
 
-def _solid(solid: Solid, notation: Notation) -> Iterator[Block]:
+def _solid(solid: Solid, letters: Letters) -> Iterator[Block]:
     """The map, its bounds, the element and the integrals of a solid."""
     yield Paragraph((f"{solid.title}: its points are",))
     yield Equation(sides=(PLACE,), matrix=solid.place, entries=indexed(PLACE, (3,)))
     bounds = [
-        _between(u, pair, notation) for u, pair in zip(solid.coordinates, solid.bounds, strict=True)
+        _between(u, pair, letters) for u, pair in zip(solid.coordinates, solid.bounds, strict=True)
     ]
     yield Paragraph(("for ", *listed(bounds), "."))
     element = moments_of(solid).element
     assert element is not None
-    yield Paragraph(_element(solid, element, notation))
+    yield Paragraph(_element(solid, element, letters))
     density = sp.S.One if solid.density is None else solid.density
-    integrand = _bracketed(markup(density * element, notation))
-    total = markup(_total(solid), notation)
-    yield Equation(sides=(_integral(solid, integrand, notation), total))
+    integrand = bracketed(formula_of(density * element, letters))
+    total = formula_of(_total(solid), letters)
+    yield Equation(sides=(_integral(solid, integrand, letters), total))
 
 
 def _total(solid: Solid) -> sp.Expr:
@@ -81,66 +83,47 @@ def _total(solid: Solid) -> sp.Expr:
     return moments_of(plain).mass
 
 
-def _element(solid: Solid, element: sp.Expr, notation: Notation) -> Text:
+def _element(solid: Solid, element: sp.Expr, letters: Letters) -> Text:
     """What a unit of the coordinates measures, and what the mass has to do with it."""
     count = len(solid.coordinates)
-    kind, value = _KINDS[count - 1], markup(element, notation)
-    differentials = "".join(f"d{u}" for u in solid.coordinates)
-    spread = Markup(
-        r"\," + r"\,".join(rf"d{markup(u, notation).latex}" for u in solid.coordinates),
-        differentials,
-    )
+    kind, value = _KINDS[count - 1], formula_of(element, letters)
+    spread = row(*_differentials(solid.coordinates, letters))
     how = (
         ", the determinant of this map," if count == 3 else ", whose square is det JᵀJ of this map,"
     )
     head = words(f"To {{}} belongs {kind} {{}} {{}}{how} ", spread, value, spread)
     if solid.mass is not None:
-        mass = markup(solid.mass, notation)
+        mass = formula_of(solid.mass, letters)
         return (*head, *words("and the mass {} is spread evenly over", mass), f" {kind}")
     return (*head, "and the mass is the integral")
 
 
-def _between(u: sp.Symbol, pair: tuple[sp.Expr, sp.Expr], notation: Notation) -> Text:
-    low, high = (markup(bound, notation) for bound in pair)
-    name = markup(u, notation)
-    return (
-        Markup(
-            rf"{low.latex} \le {name.latex} \le {high.latex}",
-            f"{low.text} ≤ {name.text} ≤ {high.text}",
-        ),
-    )
+def _between(u: sp.Symbol, pair: tuple[sp.Expr, sp.Expr], letters: Letters) -> Text:
+    low, high = (formula_of(bound, letters) for bound in pair)
+    return (formula(r"#1 \le #2 \le #3", low, formula_of(u, letters), high),)
 
 
-def _integral(solid: Solid, integrand: Markup, notation: Notation) -> Markup:
+def _integral(solid: Solid, integrand: Formula, letters: Letters) -> Formula:
     """∫∫∫ of an integrand, the outermost first."""
-    signs, texts = "", ""
-    for low, high in solid.bounds:
-        below, above = markup(low, notation), markup(high, notation)
-        signs += rf"\int_{{{below.latex}}}^{{{above.latex}}}"
-        texts += "∫"
-    ends = [markup(u, notation) for u in reversed(solid.coordinates)]
-    return Markup(
-        signs + integrand.latex + "".join(rf"\,d{u.latex}" for u in ends),
-        f"{texts} {integrand.text}" + "".join(f" d{u.text}" for u in ends),
-    )
+    bounds = ((formula_of(low, letters), formula_of(high, letters)) for low, high in solid.bounds)
+    signs = (Big("∫", low, high) for low, high in bounds)
+    return row(*signs, integrand, *_differentials(solid.coordinates[::-1], letters))
 
 
-def _bracketed(formula: Markup) -> Markup:
-    """A sum in brackets; a product without."""
-    if " + " not in formula.text and " − " not in formula.text:
-        return formula
-    return Markup(rf"\left({formula.latex}\right)", f"({formula.text})")
+def _differentials(coordinates: Sequence[sp.Symbol], letters: Letters) -> list[Formula]:
+    """du dv dw."""
+    return [part for u in coordinates for part in (Differential(), formula_of(u, letters))]
 
 
-def _parts(parts: Sequence[Part], notation: Notation) -> Table:
+def _parts(parts: Sequence[Part], letters: Letters) -> Table:
     return Table(
         caption="The parts, each in its own axes, then turned and moved",
         head=(("Part",), ("Mass",), ("Moved by",), ("Turned",)),
         rows=tuple(
             (
                 (_named(part),),
-                (*(("−",) if part.hole else ()), markup(moments_of(part.what).mass, notation)),
-                _triple(part.at, notation),
+                (*(("−",) if part.hole else ()), formula_of(moments_of(part.what).mass, letters)),
+                _triple(part.at, letters),
                 ("no",) if part.turned == UPRIGHT else ("yes",),
             )
             for part in parts
@@ -159,22 +142,22 @@ def _named(part: Part) -> str:
     return part.label or f"{kind}{' (hole)' if part.hole else ''}"
 
 
-def _particles(given: Particles, notation: Notation) -> Table:
+def _particles(given: Particles, letters: Letters) -> Table:
     return Table(
         caption="The particles",
         head=(("Mass",), ("Place",)),
         rows=tuple(
-            ((markup(particle.mass, notation),), _triple(particle.position, notation))
+            ((formula_of(particle.mass, letters),), _triple(particle.position, letters))
             for particle in given.particles
         ),
     )
 
 
-def _triple(column: sp.MatrixBase, notation: Notation) -> Text:
-    return ("(", *listed([(markup(entry, notation),) for entry in column], ", "), ")")
+def _triple(column: sp.MatrixBase, letters: Letters) -> Text:
+    return ("(", *listed([(formula_of(entry, letters),) for entry in column], ", "), ")")
 
 
-def _numbers(body: RigidBody, notation: Notation) -> Iterator[Block]:
+def _numbers(body: RigidBody, letters: Letters) -> Iterator[Block]:
     """The values of the parameters, and what follows from them in numbers."""
     if body.values:
         yield Table(
@@ -182,7 +165,7 @@ def _numbers(body: RigidBody, notation: Notation) -> Iterator[Block]:
             head=(("Parameter",), ("Meaning",), ("Value",), ("Unit",)),
             rows=tuple(
                 (
-                    (markup(p.symbol, notation),),
+                    (formula_of(p.symbol, letters),),
                     (p.about or "—",),
                     (number(p.value),),
                     (unit_in_words(p.unit),),
@@ -222,7 +205,7 @@ def number(value: float) -> str:
     return f"{value + 0.0:.{_DIGITS}g}".replace("-", "−")
 
 
-def lines_of_body(derivation: Derivation, notation: Notation) -> Iterator[str]:
+def lines_of_body(derivation: Derivation, letters: Letters) -> Iterator[str]:
     """For a terminal: the values, and the principal axes in numbers."""
     body = derivation.body
     if body is None:
@@ -231,7 +214,7 @@ def lines_of_body(derivation: Derivation, notation: Notation) -> Iterator[str]:
         if p.value is not None:
             unit = f" {unit_in_words(p.unit)}" if p.unit else ""
             about = f"   {p.about}" if p.about else ""
-            yield f"{markup(p.symbol, notation).text} = {number(p.value)}{unit}{about}"
+            yield f"{formula_of(p.symbol, letters).text} = {number(p.value)}{unit}{about}"
     found = in_numbers(body)
     if found is None:
         return

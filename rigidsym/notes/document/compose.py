@@ -10,6 +10,8 @@ from dataclasses import replace
 
 import sympy as sp
 
+from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.tree import equal, row
 from rigidsym.mechanics.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
@@ -32,19 +34,16 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.document.note_tables import functions, symbols
 from rigidsym.notes.document.summary import summary
-from rigidsym.notes.formula.formula import markup
-from rigidsym.notes.formula.manner import DEFAULT, Manner
-from rigidsym.notes.formula.notation import notation_of
-from rigidsym.notes.formula.rewriting import in_manner
+from rigidsym.notes.formula.letters import letters_of
+from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.entries import entry_names, indexed
 from rigidsym.notes.layout.fitting import Fitter
 from rigidsym.notes.prose.figure_words import figure_of
-from rigidsym.notes.prose.prose import motion, product, turn
+from rigidsym.notes.prose.prose import motion, turn
 from rigidsym.notes.prose.singular_words import failures, meaning, measured
 from rigidsym.notes.prose.words import (
     OPERATOR,
     convention,
-    equal,
     symbols_of,
     with_symbols,
     words,
@@ -71,7 +70,7 @@ def compose(
     *,
     module: str | None = None,
     functions: Sequence[str] = (),
-    manner: Manner = DEFAULT,
+    notation: Notation = DEFAULT,
 ) -> Document:
     """The note of a derivation.
 
@@ -79,16 +78,15 @@ def compose(
     of their equations names its function. Raises ModelError where a name of the model would be
     taken for one of the notation.
     """
-    manner.check(derivation.model)
-    composer = Composer(derivation, module, tuple(functions), manner)
-    document = Document(
+    notation.check(derivation.model)
+    composer = Composer(derivation, module, tuple(functions), notation)
+    return Document(
         name=derivation.name,
         title=derivation.title,
         subtitle=derivation.subject,
-        notation=composer.notation,
+        letters=composer.letters,
         sections=tuple(composer.sections()),
     )
-    return in_manner(document, manner)
 
 
 class Composer:
@@ -99,15 +97,15 @@ class Composer:
         derivation: Derivation,
         module: str | None,
         functions: tuple[str, ...],
-        manner: Manner,
+        notation: Notation,
     ) -> None:
         self.derivation = derivation
         self.model = derivation.model
         self.module = module or ""
         self.functions = functions
-        self.notation = notation_of(derivation.arguments, manner, derivation.model)
+        self.letters = letters_of(derivation.arguments, notation, derivation.model)
         self.symbols = symbols_of(derivation)
-        self.fitter = Fitter(derivation, self.notation)
+        self.fitter = Fitter(derivation, self.letters)
         self.said: set[str] = set()
 
     def sections(self) -> Iterator[Section]:
@@ -122,23 +120,23 @@ class Composer:
             "The kinetic energy": self._steps(ENERGIES),
             "The angular momentum": self._steps(MOMENTA),
             "What was proved": self._proofs(),
-            "Symbols": iter([symbols(self.derivation, self.notation)]),
+            "Symbols": iter([symbols(self.derivation, self.letters)]),
             "Functions": self._functions(),
         }
         filled = ((title, tuple(blocks)) for title, blocks in parts.items())
         sections = [Section(title, blocks) for title, blocks in filled if blocks]
         yield from sections
-        yield summary(self.derivation, sections, self.notation)
+        yield summary(self.derivation, sections, self.letters)
 
     def _body(self) -> Iterator[Block]:
         if self.derivation.body is not None:
             from rigidsym.notes.document.body_sections import blocks_of_body
 
-            yield from blocks_of_body(self.derivation, self.notation)
+            yield from blocks_of_body(self.derivation, self.letters)
             yield from self._steps(tuple(INERTIA_QUANTITIES))
 
     def _convention(self) -> Iterator[Block]:
-        return (Paragraph(text) for text in convention(self.derivation, self.notation.manner))
+        return (Paragraph(text) for text in convention(self.derivation, self.letters.notation))
 
     def _rotation(self) -> Iterator[Block]:
         if self.model.turns:
@@ -148,13 +146,13 @@ class Composer:
         yield from self._steps(("rotation_matrix",))
 
     def _product_of_turns(self) -> Iterator[Block]:
-        turns = [turn(t, self.notation) for t in self.model.turns]
+        turns = [turn(t, self.letters) for t in self.model.turns]
         kind = "a product of turns" if len(turns) > 1 else "one turn"
         yield Paragraph(words(f"The rotation is {kind}\u00a0{{}}:", Cited(self.model.source)))
-        yield Equation(sides=(ROTATION, product(turns)))
+        yield Equation(sides=(ROTATION, row(*turns)))
         yield from self._figure()
         by_axis = list(self._turns_by_axis())
-        angle = markup(self._turn_angle(), self.notation)
+        angle = formula_of(self._turn_angle(), self.letters)
         if len(turns) == 1:
             yield Paragraph(words("The right-handed turn by an angle {} is", angle))
         else:
@@ -170,7 +168,7 @@ class Composer:
         yield from (self._elementary(t) for t in by_axis if t.components)
 
     def _figure(self) -> Iterator[Figure]:
-        figure = figure_of(self.model, self.notation)
+        figure = figure_of(self.model, self.letters)
         if figure is not None:
             yield figure
 
@@ -185,7 +183,7 @@ class Composer:
         return sp.Symbol(next(name for name in _TURN_ANGLES if name not in taken))
 
     def _elementary(self, any_turn: Turn) -> Equation:
-        side = turn(any_turn, self.notation)
+        side = turn(any_turn, self.letters)
         return Equation(
             sides=(side,), matrix=any_turn.matrix, entries=indexed(side, any_turn.matrix.shape)
         )
@@ -212,9 +210,9 @@ class Composer:
         yield Paragraph(
             words(
                 "The rate matrices are defined by {} and {}, so that {}.",
-                equal(SPACE.omega, product([SPACE.matrix, RATES])),
-                equal(BODY.omega, product([BODY.matrix, RATES])),
-                equal(SPACE.matrix, product([ROTATION, BODY.matrix])),
+                equal(SPACE.omega, row(SPACE.matrix, RATES)),
+                equal(BODY.omega, row(BODY.matrix, RATES)),
+                equal(SPACE.matrix, row(ROTATION, BODY.matrix)),
             )
         )
         yield from steps
@@ -227,7 +225,7 @@ class Composer:
             return
         if found.determinant is not None:
             yield Paragraph(meaning(found))
-            value = markup(found.determinant, self.notation)
+            value = formula_of(found.determinant, self.letters)
             yield Equation(sides=(*measured(found), value))
         yield from map(Paragraph, failures(self.derivation, found))
 

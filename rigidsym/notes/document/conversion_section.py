@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import sympy as sp
 
+from rigidsym.formula.reader import formula
 from rigidsym.mechanics.conversions.conversions import SHEPPERD, Conversions, outer_product
-from rigidsym.mechanics.derivation import Derivation, Markup, Step
+from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.notes.document.compose import equation_of
 from rigidsym.notes.document.document import (
     Block,
@@ -21,8 +22,6 @@ from rigidsym.notes.document.document import (
     Section,
     Strong,
 )
-from rigidsym.notes.formula.manner import DEFAULT, Manner
-from rigidsym.notes.formula.rewriting import in_manner
 from rigidsym.notes.layout.entries import indexed
 from rigidsym.notes.prose.conversion_words import HOW, WHICH
 from rigidsym.notes.prose.words import symbols_of, with_symbols, words
@@ -38,15 +37,14 @@ def with_conversions(
     conversions: Conversions,
     *,
     has_functions: bool,
-    manner: Manner = DEFAULT,
 ) -> Document:
     """The note with a section on conversions, before the one that lists the proofs."""
     blocks = tuple(_blocks(derivation, conversions, has_functions=has_functions))
-    own = in_manner(replace(document, sections=(Section(TITLE, blocks),)), manner)
+    own = Section(TITLE, blocks)
     titles = [section.title for section in document.sections]
     place = titles.index(_BEFORE) if _BEFORE in titles else len(titles)
     before, after = document.sections[:place], document.sections[place:]
-    return replace(document, sections=(*before, *own.sections, *after))
+    return replace(document, sections=(*before, own, *after))
 
 
 def _blocks(
@@ -88,7 +86,7 @@ def _matrix(conversions: Conversions) -> Iterator[Block]:
 
 
 def _column(name: str, column: sp.ImmutableMatrix) -> Equation:
-    side = Markup(rf"4\,p_{name}\,\mathbf{{p}}", f"4 p_{name} p")
+    side = formula(rf"4\,p_{name}\,\mathbf{{p}}")
     return Equation(sides=(side,), matrix=column, entries=indexed(side, (4,)))
 
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.tree import Formula
 from rigidsym.models.rotation import Citation
 from rigidsym.notes.figure.drawing import Drawing
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ class Cited:
         return f"eq.\u00a0{equation}" if equation else section.replace(" ", "\u00a0")
 
 
-Span = str | Markup | Code | Strong | EquationReference | Cited
+Span = str | Formula | Code | Strong | EquationReference | Cited
 Text = tuple[Span, ...]
 
 
@@ -64,15 +64,15 @@ class Paragraph:
 class Equation:
     """One display: sides that are equal, the last of them a matrix or a scalar that is given."""
 
-    sides: tuple[Markup, ...]
+    sides: tuple[Formula, ...]
     matrix: sp.ImmutableMatrix | None = None
     scalar: sp.Expr | None = None
-    entries: tuple[Markup, ...] = ()  # a name an entry, row by row, for a listing
+    entries: tuple[Formula, ...] = ()  # a name an entry, row by row, for a listing
     number: int | None = None
     label: str = ""
     function: str = ""  # of the kernel module, as it is called
-    proved: tuple[Markup, ...] = ()
-    unproved: tuple[Markup, ...] = ()
+    proved: tuple[Formula, ...] = ()
+    unproved: tuple[Formula, ...] = ()
     is_result: bool = False  # what a reader looks up stands in a box
 
 
@@ -122,7 +122,7 @@ class Document:
     name: str  # of the derivation: lower case, digits, underscores
     title: str
     subtitle: str
-    notation: Notation
+    letters: Letters
     sections: tuple[Section, ...]
 
     @property

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 
-from rigidsym.mechanics.derivation import Derivation, Markup
+from rigidsym.formula.reader import formula
+from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document.boxed import RESULTS
 from rigidsym.notes.document.document import (
     Equation,
@@ -20,48 +21,46 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.document.note_tables import symbols
 from rigidsym.notes.document.summary import SHEET, row_height, summary
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.prose.words import listed
 
 _LEAD = 2.0  # lines that the words before a row of equations take
-_OF_THE_THEORY: Sequence[tuple[str, str, str, str, str]] = (  # LaTeX, text, meaning, unit, equation
-    ("m_i", "mᵢ", "mass of a particle", "kg", ""),
-    ("M", "M", "mass of the body", "kg", ""),
-    (r"\mathbf{r}_i", "rᵢ", "place of a particle", "m", ""),
-    (r"\mathbf{r}_C", "r_C", "place of the centre of mass", "m", "centre_of_mass"),
-    (r"\mathbf{x}_i", "xᵢ", "place of a particle seen from the centre of mass", "m", ""),
-    (r"\mathbf{x}'_i", "x′ᵢ", "the same, body components", "m", ""),
-    (r"\mathbf{e}_j", "e_j", "vectors of an orthonormal basis", "1", ""),
-    (r"\mathbf{e}'_j", "e′_j", "the same, turned", "1", "components_in_another_basis"),
+_OF_THE_THEORY: Sequence[tuple[str, str, str, str]] = (  # symbol, meaning, unit, equation
+    ("m_i", "mass of a particle", "kg", ""),
+    ("M", "mass of the body", "kg", ""),
+    (r"\mathbf{r}_i", "place of a particle", "m", ""),
+    (r"\mathbf{r}_C", "place of the centre of mass", "m", "centre_of_mass"),
+    (r"\mathbf{x}_i", "place of a particle seen from the centre of mass", "m", ""),
+    (r"\mathbf{x}'_i", "the same, body components", "m", ""),
+    (r"\mathbf{e}_j", "vectors of an orthonormal basis", "1", ""),
+    (r"\mathbf{e}'_j", "the same, turned", "1", "components_in_another_basis"),
     (
         r"\mathbf{I}",
-        "I",
         "inertia tensor about the centre of mass, space components",
         "kg m²",
         "inertia_of_particles",
     ),
-    (r"d^{\perp}_i", "d⊥ᵢ", "distance of a particle from a line", "m", ""),
+    (r"d^{\perp}_i", "distance of a particle from a line", "m", ""),
 )
 _PARTS = "parts_of_the_momentum"
-_BY_THE_BODY: Sequence[tuple[str, str, str, str, str]] = (  # where no body has them as quantities
-    (r"\mathbf{I}'", "I′", "the inertia tensor, body components", "kg m²", "inertia_turns"),
-    ("E_C", "E_C", "kinetic energy of the mass in the centre of mass", "J", "energy_splits"),
-    ("E_R", "E_R", "kinetic energy of the rotation about the centre of mass", "J", "energy_splits"),
-    ("E_K", "E_K", "kinetic energy", "J", "energy_splits"),
+_BY_THE_BODY: Sequence[tuple[str, str, str, str]] = (  # where no body has them as quantities
+    (r"\mathbf{I}'", "the inertia tensor, body components", "kg m²", "inertia_turns"),
+    ("E_C", "kinetic energy of the mass in the centre of mass", "J", "energy_splits"),
+    ("E_R", "kinetic energy of the rotation about the centre of mass", "J", "energy_splits"),
+    ("E_K", "kinetic energy", "J", "energy_splits"),
     (
         r"\mathbf{L}_C",
-        "L_C",
         "angular momentum of the mass in the centre of mass",
         "kg m²/s",
         _PARTS,
     ),
-    (r"\mathbf{L}_R", "L_R", "angular momentum of the rotation", "kg m²/s", _PARTS),
-    (r"\mathbf{L}", "L", "angular momentum about the origin", "kg m²/s", "momentum_splits"),
+    (r"\mathbf{L}_R", "angular momentum of the rotation", "kg m²/s", _PARTS),
+    (r"\mathbf{L}", "angular momentum about the origin", "kg m²/s", "momentum_splits"),
 )
 
 
 def symbols_of_the_lecture(
-    derivation: Derivation, notation: Notation, shown: Mapping[str, str]
+    derivation: Derivation, letters: Letters, shown: Mapping[str, str]
 ) -> Table:
     """Symbols of the theory before those of the rotation and the body.
 
@@ -73,7 +72,7 @@ def symbols_of_the_lecture(
             return EquationReference(shown.get(span.label, span.label))
         return span
 
-    table = symbols(derivation, notation)
+    table = symbols(derivation, letters)
     theory = [*map(_row, _OF_THE_THEORY)]
     known = {str(row[0]) for row in theory}
     others = [row for row in table.rows if str(row[0]) not in known]
@@ -83,19 +82,19 @@ def symbols_of_the_lecture(
     return replace(table, rows=(*theory, *rows))
 
 
-def _row(entry: tuple[str, str, str, str, str]) -> tuple[Text, ...]:
-    latex, text, about, unit, label = entry
+def _row(entry: tuple[str, str, str, str]) -> tuple[Text, ...]:
+    typed, about, unit, label = entry
     reference: Text = (EquationReference(label),) if label else ()
-    return (Markup(latex, text),), (about,), (unit,), reference
+    return (formula(typed),), (about,), (unit,), reference
 
 
 def summary_of_the_lecture(
-    derivation: Derivation, sections: Sequence[Section], notation: Notation
+    derivation: Derivation, sections: Sequence[Section], letters: Letters
 ) -> Section:
     """The results of the theory, and under them the summary of the rotation and its body."""
     groups = dict(_results(derivation))
-    room = SHEET - sum(_LEAD + row_height(equations, notation) for equations in groups.values())
-    rest = summary(derivation, sections, notation, room)
+    room = SHEET - sum(_LEAD + row_height(equations, letters) for equations in groups.values())
+    rest = summary(derivation, sections, letters, room)
     theory = (
         block for lead, row in groups.items() for block in (Paragraph(lead), EquationRow(row))
     )

@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
 
-from rigidsym.mechanics.derivation import Derivation, Markup, Statement, Step
+from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.reader import formula
+from rigidsym.mechanics.derivation import Derivation, Statement, Step
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.notes.document.boxed import RESULTS
 from rigidsym.notes.document.claims_table import claims_in_a_table
@@ -21,9 +23,7 @@ from rigidsym.notes.document.document import (
     Text,
 )
 from rigidsym.notes.document.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
-from rigidsym.notes.formula.manner import DEFAULT, Manner
-from rigidsym.notes.formula.rewriting import in_manner
-from rigidsym.notes.formula.summands import in_brackets, sums
+from rigidsym.notes.formula.summands import sums
 from rigidsym.notes.prose.words import words
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
@@ -50,19 +50,18 @@ def compose_lecture(
     *,
     module: str | None = None,
     functions: Sequence[str] = (),
-    manner: Manner = DEFAULT,
+    notation: Notation = DEFAULT,
 ) -> Document:
     """The note of a derivation with its theory; as `compose` otherwise."""
-    manner.check(derivation.model)
-    composer = _Lecture(derivation, module, tuple(functions), manner)
-    document = Document(
+    notation.check(derivation.model)
+    composer = _Lecture(derivation, module, tuple(functions), notation)
+    return Document(
         name=derivation.name,
         title=derivation.title,
         subtitle=derivation.subject,
-        notation=composer.notation,
+        letters=composer.letters,
         sections=tuple(composer.sections()),
     )
-    return in_manner(document, manner)
 
 
 class _Lecture(Composer):
@@ -88,24 +87,24 @@ class _Lecture(Composer):
         filled = ((title, tuple(blocks)) for title, blocks in parts.items())
         sections = [Section(title, blocks) for title, blocks in filled if blocks]
         yield from sections
-        yield summary_of_the_lecture(self.derivation, sections, self.notation)
+        yield summary_of_the_lecture(self.derivation, sections, self.letters)
 
     def _symbols(self) -> Iterator[Block]:
-        yield symbols_of_the_lecture(self.derivation, self.notation, _WHERE_SHOWN)
+        yield symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
 
     def _method(self) -> Iterator[Block]:
-        masses = Markup(r"\sum_i m_i = M", "Σ mᵢ = M")
-        places = Markup(r"\sum_i m_i\,\mathbf{x}_i = \mathbf{0}", "Σ mᵢ xᵢ = 0")
-        rotation, centre = Markup(r"\mathbf{R}", "R"), Markup(r"\mathbf{r}_C", "r_C")
+        masses = formula(r"\sum_i m_i = M")
+        places = formula(r"\sum_i m_i\,\mathbf{x}_i = \mathbf{0}")
+        rotation, centre = formula(r"\mathbf{R}"), formula(r"\mathbf{r}_C")
         yield Paragraph(words(_SUMS, masses, places))
         yield Paragraph(words(_ROTATIONS, rotation, centre, rotation))
 
     def _statement(self, statement: Statement) -> Iterator[Block]:
         yield Paragraph(_with_source(statement))
         sides = statement.sides
-        rows = sums(statement, self.notation)
-        if rows:
-            sides = (*sides, in_brackets(rows))
+        matrix = sums(statement, self.letters)
+        if matrix is not None:
+            sides = (*sides, matrix)
         yield Equation(
             sides=sides,
             number=statement.number,

@@ -6,7 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from itertools import chain, repeat
 
-from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Step
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import RATES
 from rigidsym.notes.document.document import (
     Block,
@@ -18,7 +20,7 @@ from rigidsym.notes.document.document import (
     Text,
 )
 from rigidsym.notes.formula.lengths import VECTOR
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.prose.singular_words import WITH_CONDITIONS
 from rigidsym.notes.prose.words import (
     BODY_POSITION,
@@ -32,16 +34,16 @@ from rigidsym.notes.prose.words import (
     words,
 )
 
-_U, _CROSS = Markup(r"\mathbf{u}", "u"), Markup(r"\mathbf{u}\times", "u ×")
+_U, _CROSS = formula(r"\mathbf{u}"), formula(r"\mathbf{u}\times")
 _PLACES = ("centre", "point", "direction")
 _MOST_SYMBOLS = 6  # in one cell
 _CODE_WIDTH = 76  # columns of typewriter type on a page
 
 
-def symbols(derivation: Derivation, notation: Notation) -> Table:
+def symbols(derivation: Derivation, letters: Letters) -> Table:
     """Every symbol with what it means and its unit."""
     known: dict[str, Row] = {}
-    named = (_arguments, _constants, _of_the_body, partial(_length, notation), _points)
+    named = (_arguments, _constants, _of_the_body, partial(_length, letters), _points)
     for row in chain.from_iterable(rows(derivation) for rows in named):
         known.setdefault(str(row[0]), row)
     found = derivation.singularities
@@ -109,7 +111,7 @@ def _of_the_body(derivation: Derivation) -> Iterator[Row]:
             )
 
 
-def _rows(named: Iterable[tuple[Markup, str, str]]) -> Iterator[Row]:
+def _rows(named: Iterable[tuple[Formula, str, str]]) -> Iterator[Row]:
     """A row for all names that have the meaning and the unit in common."""
     kinds: dict[tuple[str, str], list[Text]] = {}
     for name, about, unit in named:
@@ -125,16 +127,16 @@ def _in_a_row(symbols: Sequence[Text]) -> Text:
     return listed(symbols, ", ")
 
 
-def _length(notation: Notation, derivation: Derivation) -> Iterator[Row]:
+def _length(letters: Letters, derivation: Derivation) -> Iterator[Row]:
     """The vector of the coordinates and its length, where formulas hold them."""
     parts = derivation.model.vector
     if any(step.vector_form for step in derivation.steps):
         units = dict(zip(derivation.model.coordinates, derivation.argument("q").units, strict=True))
         unit = unit_in_words(units[parts[0]])
-        yield (VECTOR,), ("the vector ", *vector(parts, notation)), (unit,), ()
-    if notation.length is not None:
+        yield (VECTOR,), ("the vector ", *vector(parts, letters)), (unit,), ()
+    if letters.length is not None:
         unit = unit_in_words(derivation.argument("q").units[0])
-        symbol = notation.names[notation.length.symbol]
+        symbol = letters.names[letters.length.symbol]
         yield (symbol,), ("length of the vector",), (unit,), ()
 
 

@@ -15,8 +15,8 @@ from rigidsym.notes.document.document import (
     Section,
     Text,
 )
-from rigidsym.notes.formula.formula import markup
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.layout import PAGE, display, height
 from rigidsym.notes.prose.singular_words import failures, meaning, measured
 from rigidsym.notes.prose.words import convention, listed, vector_in_words
@@ -42,10 +42,10 @@ _GROUPS: Sequence[tuple[str, tuple[str, ...]]] = (
 
 
 def summary(
-    derivation: Derivation, sections: Sequence[Section], notation: Notation, room: float = SHEET
+    derivation: Derivation, sections: Sequence[Section], letters: Letters, room: float = SHEET
 ) -> Section:
     """A section that fits on one sheet: results that are short enough, others by their numbers."""
-    blocks = tuple(_blocks(derivation, _numbered(sections), notation, room))
+    blocks = tuple(_blocks(derivation, _numbered(sections), letters, room))
     return Section(TITLE, blocks, on_own_page=True)
 
 
@@ -55,10 +55,10 @@ def _numbered(sections: Sequence[Section]) -> Mapping[str, Equation]:
 
 
 def _blocks(
-    derivation: Derivation, equations: Mapping[str, Equation], notation: Notation, room: float
+    derivation: Derivation, equations: Mapping[str, Equation], letters: Letters, room: float
 ) -> Iterator[Block]:
-    said = convention(derivation, notation.manner)[:_SENTENCES]
-    on_vectors = tuple(vector_in_words(derivation, notation.manner))
+    said = convention(derivation, letters.notation)[:_SENTENCES]
+    on_vectors = tuple(vector_in_words(derivation, letters.notation))
     yield from map(Paragraph, (*said, *on_vectors))
     room -= _SENTENCE * len(on_vectors)
     for title, labels in _GROUPS:
@@ -66,8 +66,8 @@ def _blocks(
         if not there:
             continue
         results = {e: _result(e, derivation) for e in there if _is_whole(e, derivation)}
-        short = {e: result for e, result in results.items() if _fits(result, notation)}
-        needed = row_height(list(short.values()), notation)
+        short = {e: result for e, result in results.items() if _fits(result, letters)}
+        needed = row_height(list(short.values()), letters)
         if short and needed <= room:
             room -= needed
             others = [equation for equation in there if equation not in short]
@@ -76,13 +76,13 @@ def _blocks(
             yield EquationRow(tuple(short.values()))
         else:
             yield Paragraph((f"{title}: see ", *_numbers(there), "."))
-    yield from _where_it_fails(derivation, notation)
+    yield from _where_it_fails(derivation, letters)
 
 
-def row_height(equations: Sequence[Equation], notation: Notation) -> float:
+def row_height(equations: Sequence[Equation], letters: Letters) -> float:
     """Of a row of equations, which may share a line."""
-    heights = [height(equation, notation) for equation in equations]
-    widths = [display(equation, notation, PAGE).width for equation in equations]
+    heights = [height(equation, letters) for equation in equations]
+    widths = [display(equation, letters, PAGE).width for equation in equations]
     return max(heights, default=0.0) if sum(widths) + 2 * len(widths) <= PAGE else sum(heights)
 
 
@@ -113,19 +113,19 @@ def _is_whole(equation: Equation, derivation: Derivation) -> bool:
     return equation.matrix is None or equation.matrix == value
 
 
-def _fits(equation: Equation, notation: Notation) -> bool:
-    shown = display(equation, notation, PAGE)
+def _fits(equation: Equation, letters: Letters) -> bool:
+    shown = display(equation, letters, PAGE)
     return not shown.done and shown.width <= PAGE
 
 
-def _where_it_fails(derivation: Derivation, notation: Notation) -> Iterator[Block]:
+def _where_it_fails(derivation: Derivation, letters: Letters) -> Iterator[Block]:
     """What vanishes there, and where it does; what is lost there stands in the note."""
     found = derivation.singularities
     if found is None:
         return
     if found.determinant is not None:
-        determinant = Equation(sides=(*measured(found), markup(found.determinant, notation)))
-        if display(determinant, notation, PAGE).lines == 1:
+        determinant = Equation(sides=(*measured(found), formula_of(found.determinant, letters)))
+        if display(determinant, letters, PAGE).lines == 1:
             yield Paragraph(meaning(found))
             yield determinant
     yield Paragraph(next(failures(derivation, found)))

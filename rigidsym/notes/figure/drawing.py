@@ -11,10 +11,11 @@ from functools import lru_cache
 from itertools import pairwise
 from math import atan2, ceil, cos, hypot, pi, radians, sin, tau
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.tree import Formula
+from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.notes.figure.camera import Camera, Point, Vector, dot, is_same, scaled
 from rigidsym.notes.figure.scene import Arc, Kind, Posed, Ray
-from rigidsym.notes.layout.text_width import columns, ems
 
 Segment = tuple[Point, Point]
 
@@ -60,7 +61,7 @@ class Stroke:
 
     kind: Kind
     points: tuple[Point, ...]
-    name: Markup | None = None  # of an axis
+    name: Formula | None = None  # of an axis
     arc: Ellipse | None = None
     is_thin: bool = False
     is_hidden: bool = False  # behind the origin: dashed
@@ -110,7 +111,7 @@ class Label:
     """A symbol, centred on a point."""
 
     kind: Kind
-    symbol: Markup
+    symbol: Formula
     place: Point
 
     @property
@@ -120,8 +121,10 @@ class Label:
 
 
 @lru_cache(maxsize=256)
-def _half_width(symbol: Markup) -> float:
-    return TYPE_SIZE * max(ems(symbol.latex), 0.6 * columns(symbol.text)) / 2
+def _half_width(symbol: Formula) -> float:
+    return (
+        TYPE_SIZE * max(LatexPen().write(symbol).width, 0.6 * UnicodePen().write(symbol).width) / 2
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -252,7 +255,7 @@ def _direction(start: Point, end: Point) -> float:
 
 def placed(
     kind: Kind,
-    symbol: Markup,
+    symbol: Formula,
     places: Sequence[Place],
     strokes: Sequence[Stroke],
     labels: Sequence[Label],
@@ -274,7 +277,7 @@ def placed(
     return best
 
 
-def _shifted(symbol: Markup, start: Point, direction: float, gap: float) -> Point:
+def _shifted(symbol: Formula, start: Point, direction: float, gap: float) -> Point:
     """The centre of a label whose box is `gap` away from a point, in a direction."""
     dx, dy = cos(direction), sin(direction)
     half_width, half_height = _half_width(symbol), TYPE_SIZE * _HEIGHT / 2

@@ -16,8 +16,8 @@ from typing import Literal
 
 import sympy as sp
 
-from rigidsym.mechanics.claims import fill
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula, Number, Symbol
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.figure.camera import (
@@ -34,18 +34,18 @@ from rigidsym.notes.figure.camera import (
     scaled,
     unit,
 )
-from rigidsym.notes.formula.formula import markup
 from rigidsym.notes.formula.lengths import VECTOR, length_of
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.scalars import formula_of
 
 Kind = Literal["space", "body", "node", "vector", "turn", "guide"]
 
 MOST_TURNS = 5  # more would be a tangle
-BODY = tuple(Markup(f"{axis}'", f"{axis}′") for axis in AXES)
-NODE = Markup("N", "N")
+BODY = tuple(Symbol(axis, prime="′") for axis in AXES)
+NODE = formula("N")
 RADII = (0.6, 0.78, 0.46, 0.7, 0.38)  # of the arcs; those of consecutive turns differ
 
-_SPACE = tuple(Markup(axis, axis) for axis in AXES)
+_SPACE = tuple(map(Symbol, AXES))
 _VIEWS = (  # angles of the turns, azimuth and elevation in degrees; the clearest one is taken
     ((50, 40, 40, 40, 65), 28, 22),
     ((60, 45, 60, 65, 40), 73, 18),
@@ -63,7 +63,7 @@ class Ray:
     """A named direction, fixed in the frame after `frame` turns."""
 
     kind: Kind
-    name: Markup
+    name: Formula
     frame: int
     direction: Vector
 
@@ -75,8 +75,8 @@ class Rotary:
     axis: Vector
     start: Vector
     radius: float  # of its arc
-    name: Markup  # of its angle
-    start_name: Markup | str  # of the line that is carried along
+    name: Formula  # of its angle
+    start_name: Formula | str  # of the line that is carried along
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -195,12 +195,12 @@ def _merged(rays: Iterator[Ray]) -> Iterator[Ray]:
         if place is None:
             found.append(ray)
         elif ray.kind == "body":
-            both = fill("{0} = {1}", "{0} = {1}", found[place].name, ray.name)
+            both = formula("#1 = #2", found[place].name, ray.name)
             found[place] = replace(found[place], name=both)
     yield from found
 
 
-def scene_of(model: RotationModel, notation: Notation) -> Scene | None:
+def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
     """The scene of a product of turns, or of the one turn about the axis of a vector.
 
     None for any other model, for more than MOST_TURNS, and for axes that are not numbers.
@@ -212,13 +212,13 @@ def scene_of(model: RotationModel, notation: Notation) -> Scene | None:
     axes = [_components(turn) for turn in turns]
     starts = [_start(axes, k) for k in range(len(axes))]
     return Scene(
-        rays=tuple(_rays(axes, model, notation)),
+        rays=tuple(_rays(axes, model, letters)),
         turns=tuple(
             Rotary(
                 axis=axis,
                 start=start,
                 radius=radius,
-                name=markup(turn.angle, notation),
+                name=formula_of(turn.angle, letters),
                 start_name=_name_of(start),
             )
             for axis, start, radius, turn in zip(axes, starts, RADII, turns, strict=False)
@@ -264,15 +264,15 @@ def _start(axes: Sequence[Vector], k: int) -> Vector:
     return next((c for c in candidates if abs(dot(c, axes[k])) < 0.75), STANDARD[0])
 
 
-def _name_of(axis: Vector) -> Markup | str:
+def _name_of(axis: Vector) -> Formula | str:
     """The letter of a coordinate axis, or the word "axis"."""
     names = (name for name, other in zip(_SPACE, STANDARD, strict=True) if is_same(axis, other))
     return next(names, "axis")
 
 
-def _rays(axes: Sequence[Vector], model: RotationModel, notation: Notation) -> Iterator[Ray]:
+def _rays(axes: Sequence[Vector], model: RotationModel, letters: Letters) -> Iterator[Ray]:
     """The axes of space, those of the body, and the axes of turns that are neither."""
-    named = notation.manner.symbol
+    named = letters.notation.applied
     for name, direction in zip(_SPACE, STANDARD, strict=True):
         yield Ray(kind="space", name=name, frame=0, direction=direction)
     for name, direction in zip(BODY, STANDARD, strict=True):
@@ -282,9 +282,9 @@ def _rays(axes: Sequence[Vector], model: RotationModel, notation: Notation) -> I
         if not model.turns:
             yield Ray(kind="vector", name=named(VECTOR), frame=k, direction=axes[k])
         else:
-            several = Markup(f"N_{number}", f"N{'₀₁₂₃₄₅'[number]}")
-            name = several if len(between) > 1 else NODE
-            yield Ray(kind="node", name=name, frame=k, direction=axes[k])
+            several = Symbol("N", index=Number(str(number)))
+            node = several if len(between) > 1 else NODE
+            yield Ray(kind="node", name=node, frame=k, direction=axes[k])
 
 
 def _is_drawn(axes: Sequence[Vector], k: int) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from math import degrees
 from unicodedata import normalize
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.tree import Formula
 from rigidsym.notes.figure.camera import Point
 from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Ellipse, Stroke
 
@@ -48,7 +48,7 @@ def _coordinates(strokes: Iterable[Stroke]) -> Iterator[str]:
             yield rf"\coordinate {_named(stroke.name)} at {_point(stroke.points[-1])};"
 
 
-def _named(axis: Markup) -> str:
+def _named(axis: Formula) -> str:
     """The end of an axis by the first of its names: (z') for z′ = z″, (N1) for N₁."""
     first = normalize("NFKD", axis.text.split(" = ")[0]).replace("′", "'")
     return "(" + re.sub(r"[^A-Za-z0-9']", "", first) + ")"

@@ -6,12 +6,14 @@ pieces that are made here.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from html import escape as escape_markup
 from itertools import pairwise
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.mathml_pen import MathmlPen, math
+from rigidsym.formula.tree import Formula, Matrix, equal
+from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.notes.document.document import (
     Block,
     Cited,
@@ -30,13 +32,11 @@ from rigidsym.notes.document.document import (
     Text,
 )
 from rigidsym.notes.figure.svg import svg
-from rigidsym.notes.formats.mathml import mathml
 from rigidsym.notes.formats.sanitize import cleaned
-from rigidsym.notes.formula.formula import text
-from rigidsym.notes.layout.layout import Display, display
-from rigidsym.notes.layout.text_width import ems
+from rigidsym.notes.formula.scalars import formula_of, matrix_of
+from rigidsym.notes.layout.layout import Display, display, inline_parts
 from rigidsym.notes.prose.prose import announcement
-from rigidsym.notes.prose.words import equal, plain
+from rigidsym.notes.prose.words import plain
 from rigidsym.system import resources
 
 TEMPLATE = "note.html.jinja"
@@ -44,14 +44,9 @@ _PAGE = 39.5  # ems of a display on a page, some less than there are: browsers d
 _IN_WORDS = 0.75  # of a display's ems: what a formula among words may take
 _PHONE = 19.0  # ems of a display on a screen 360 pixels wide
 _SAFE = 1.08  # fonts differ
+_POINTS = ".,;:)"
 _SMALLER = 1.45  # times as many on a phone in smaller type, which can still be read
-_INLINE = 15.0  # ems of a formula between words on such a screen
-# a formula with the brackets, commas and stops that no line may part from it
-_MATH = r"<math(?:(?!</math>).)*</math>"
-_WITH_POINTS = re.compile(rf"\({_MATH}[.,;:)]*|{_MATH}[.,;:)]+")
-
-_SIGNS = re.compile(r" (?=[=+−-] )")
-_PAIRS = (("{", "}"), ("(", ")"), (r"\left", r"\right"))
+_INLINE = 13.0  # ems of a formula between words on such a screen
 
 
 def print_html(document: Document) -> str:
@@ -90,11 +85,20 @@ def escape(words: str) -> str:
     return escape_markup(cleaned(words))
 
 
+@dataclass(frozen=True, slots=True)
+class _Written:
+    """A formula that is HTML already."""
+
+    html: str
+
+
 class Printer:
     """Blocks and spans of one document in HTML."""
 
     def __init__(self, document: Document) -> None:
         self.document = document
+        self.notation = document.letters.notation
+        self.pen = MathmlPen(self.notation)
 
     def body(self, section: Section) -> str:
         blocks = [self._block(block) for block in section.blocks]
@@ -134,8 +138,8 @@ class Printer:
 
     def forms(self, equation: Equation) -> str:
         """The display, which scrolls sideways on a phone if it is too wide."""
-        shown = display(equation, self.document.notation, _PAGE)
-        formula = mathml(shown.latex, self._spoken(equation), is_display=True)
+        shown = display(equation, self.document.letters, _PAGE, self.pen)
+        formula = math(shown.text, self._spoken(equation), is_display=True)
         return f'<div class="display">{self._lead(equation, shown)}{_fitted(formula, shown)}</div>'
 
     def tools(self, equation: Equation) -> str:  # noqa: ARG002  (a page has some)
@@ -144,23 +148,26 @@ class Printer:
 
     def _lead(self, equation: Equation, shown: Display) -> str:
         """What is said before a display; sides too long for a line of words are set apart."""
-        sides = display(Equation(sides=equation.sides), self.document.notation, _PAGE)
+        sides = display(Equation(sides=equation.sides), self.document.letters, _PAGE, self.pen)
         if shown.done == "listed" and (sides.lines > 1 or sides.width > _IN_WORDS * _PAGE):
-            formula = mathml(sides.latex, equal(*equation.sides).text, is_display=True)
+            formula = math(sides.text, self.spoken(equal(*equation.sides)), is_display=True)
             return f"{_fitted(formula, sides)}<p>Its entries are</p>"
         announced = self._text(announcement(equation, shown.done))
         return f"<p>{announced}</p>" if announced else ""
 
     def _spoken(self, equation: Equation) -> str:
         """The equation on one line of Unicode; a matrix row by row."""
-        sides = equal(*equation.sides).text
-        notation = self.document.notation
+        letters = self.document.letters
+        sides = list(equation.sides)
         if equation.scalar is not None:
-            return f"{sides} = {text(equation.scalar, notation)}"
-        if equation.matrix is None:
-            return sides
-        rows = (", ".join(text(e, notation) for e in row) for row in equation.matrix.tolist())
-        return f"{sides} = ({'; '.join(rows)})"
+            sides.append(formula_of(equation.scalar, letters))
+        if equation.matrix is not None:
+            sides.append(Matrix(tuple(map(tuple, matrix_of(equation.matrix, letters)))))
+        return self.spoken(equal(*sides))
+
+    def spoken(self, formula: Formula) -> str:
+        """A formula for readers that do not know MathML."""
+        return UnicodePen(self.notation).write(formula).text
 
     def _claims(self, equation: Equation) -> str:
         kinds = (("Proved", equation.proved), ("<strong>Unproved</strong>", equation.unproved))
@@ -201,14 +208,49 @@ class Printer:
         return f"<figure>\n{drawing}\n<figcaption>{words}</figcaption>\n</figure>"
 
     def _text(self, text: Text) -> str:
-        return _WITH_POINTS.sub(r'<span class="whole">\g<0></span>', "".join(map(self._span, text)))
+        """Words and formulas; no line may part a formula from the brackets and points beside it."""
+        spans: list[Span | _Written] = list(text)
+        for place, span in enumerate(spans):
+            if isinstance(span, Formula):
+                before, after = (self._words(spans, place + step) for step in (-1, 1))
+                opening = before[-1:] if before.endswith("(") else ""
+                points = after[: len(after) - len(after.lstrip(_POINTS))]
+                spans[place] = _Written(self._inline(span, opening, points))
+                if opening:
+                    spans[place - 1] = before[:-1]
+                if points:
+                    spans[place + 1] = after[len(points) :]
+        return "".join(s.html if isinstance(s, _Written) else self._span(s) for s in spans)
+
+    def _words(self, spans: Sequence[Span | _Written], place: int) -> str:
+        """The words at a place among spans; empty where there are none."""
+        span = spans[place] if 0 <= place < len(spans) else ""
+        return span if isinstance(span, str) else ""
+
+    def formula(self, formula: Formula) -> str:
+        """A formula as an element of its own."""
+        return self.pen.element(formula, self.spoken(formula))
+
+    def _inline(self, formula: Formula, opening: str = "", points: str = "") -> str:
+        """A formula among words; one too wide for a phone in parts that may go on several lines."""
+        piece, spoken = self.pen.write(formula), UnicodePen(self.notation).write(formula)
+        parts, texts = [piece.text], [spoken.text]
+        if piece.width > _INLINE and len(inline_parts(piece)) == len(inline_parts(spoken)):
+            parts, texts = inline_parts(piece), inline_parts(spoken)
+        is_tall = piece.height > 0
+        written = [math(p, t, is_tall=is_tall) for p, t in zip(parts, texts, strict=True)]
+        if opening:
+            written[0] = f'<span class="whole">{opening}{written[0]}</span>'
+        if points:
+            written[-1] = f'<span class="whole">{written[-1]}{points}</span>'
+        return " ".join(written)
 
     def _span(self, span: Span) -> str:
         match span:
             case str():
-                return escape(span)
-            case Markup():
-                return " ".join(mathml(_tall(part.latex), part.text) for part in _parts(span))
+                return escape(self.notation.words(span))
+            case Formula():
+                return self._inline(span)
             case Code():
                 return f"<code>{_breakable(escape(span.text))}</code>"
             case Strong():
@@ -236,32 +278,6 @@ def _fitted(formula: str, shown: Display) -> str:
     return f'<div class="formula"{reach}>{formula}</div>'
 
 
-def _parts(formula: Markup) -> list[Markup]:
-    """A formula too wide for a line on a phone, in parts that may stand on several."""
-    if ems(formula.latex) <= _INLINE:
-        return [formula]
-    latex, text = _terms(formula.latex), _terms(formula.text)
-    whole = len(latex) != len(text)
-    return [formula] if whole else [Markup(*part) for part in zip(latex, text, strict=True)]
-
-
-def _terms(formula: str) -> list[str]:
-    """A formula cut before each sign outside all brackets."""
-    terms: list[str] = []
-    for term in _SIGNS.split(formula):
-        is_open = bool(terms) and any(terms[-1].count(a) != terms[-1].count(b) for a, b in _PAIRS)
-        if is_open:
-            terms[-1] += f" {term}"
-        else:
-            terms.append(term)
-    return terms
-
-
 def _breakable(name: str) -> str:
     """A name in a program, with places where a line may end."""
     return name.replace("_", "_<wbr>").replace("(", "<wbr>(")
-
-
-def _tall(latex: str) -> str:
-    """Fractions in a line of their own height; small type would be hard to read."""
-    return latex.replace(r"\frac", r"\dfrac")

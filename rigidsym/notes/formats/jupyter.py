@@ -8,14 +8,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rigidsym.formula.latex_pen import MarkdownPen
+from rigidsym.formula.notation import Notation
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document.compose import equation_of
-from rigidsym.notes.formats.markdown import formula
 from rigidsym.notes.formats.terminal import show, show_step
-from rigidsym.notes.formula.manner import Manner
-from rigidsym.notes.formula.notation import notation_of
-from rigidsym.notes.formula.rewriting import equation_in_manner
+from rigidsym.notes.formula.letters import letters_of
 from rigidsym.notes.layout.fitting import as_vectors
 from rigidsym.notes.layout.layout import display
 from rigidsym.notes.note import Note
@@ -23,12 +22,12 @@ from rigidsym.notes.note import Note
 _WIDTH = 44.0  # ems
 
 
-def bundle_of(derivation: Derivation, note: Note, manner: Manner) -> dict[str, str]:
+def bundle_of(derivation: Derivation, note: Note, notation: Notation) -> dict[str, str]:
     """The whole derivation: as the note, as one display of its equations, as plain text."""
     return {
         "text/markdown": note.markdown(),
         "text/latex": "\n\n".join(step._repr_latex_() for step in derivation.steps),
-        "text/plain": show(derivation, manner=manner),
+        "text/plain": show(derivation, notation=notation),
     }
 
 
@@ -38,13 +37,12 @@ class EquationPrinter:
 
     arguments: Sequence[Argument]
     model: RotationModel
-    manner: Manner
+    notation: Notation
 
     def latex(self, step: Step) -> str:
-        notation = notation_of(self.arguments, self.manner, self.model)
-        equation = as_vectors(equation_of(step, self.arguments), step, notation)
-        shown = display(equation_in_manner(equation, self.manner), notation, _WIDTH)
-        return formula(shown.latex)
+        letters = letters_of(self.arguments, self.notation, self.model)
+        equation = as_vectors(equation_of(step, self.arguments), step, letters)
+        return display(equation, letters, _WIDTH, MarkdownPen(self.notation)).text
 
     def text(self, step: Step) -> str:
-        return show_step(step, self.arguments, manner=self.manner, model=self.model)
+        return show_step(step, self.arguments, notation=self.notation, model=self.model)

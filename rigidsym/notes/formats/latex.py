@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import (
     Block,
     Cited,
@@ -40,7 +41,6 @@ _DELIMITERS = {
 }
 _LINE = 41.5  # ems: 160 mm at 11 points
 _TALL = 30  # lines of text, of about fifty on a page: more than these may part
-_FREE = {"aligned": "align*", "gathered": "gather*"}  # what a page may end within
 
 
 def print_latex(document: Document) -> str:
@@ -89,6 +89,8 @@ class _Printer:
 
     def __init__(self, document: Document) -> None:
         self.document = document
+        self.notation = document.letters.notation
+        self.pen = LatexPen(self.notation)
 
     def body(self, section: Section) -> str:
         return "\n".join(map(self._block, section.blocks))
@@ -101,7 +103,7 @@ class _Printer:
             case Equation():
                 return self._equation(block)
             case EquationRow():
-                packed = pack(block.equations, self.document.notation, _LINE)
+                packed = pack(block.equations, self.document.letters, _LINE, self.pen)
                 return f"\\[\n{packed}\n\\]"
             case Table():
                 return "\n".join(map(self._table, paged(block)))
@@ -112,13 +114,13 @@ class _Printer:
 
     def _equation(self, equation: Equation) -> str:
         width = PAGE if equation.number else _LINE
-        shown = display(equation, self.document.notation, width)
+        shown = display(equation, self.document.letters, width, self.pen)
         announced = self._text(announcement(equation, shown.done))
         lines = [announced] if announced else []
         if shown.rows and shown.rows.height > _TALL:
             lines += self._over_pages(equation, shown.rows)
         else:
-            lines += self._at_once(equation, shown.latex)
+            lines += self._at_once(equation, shown.text)
         if equation.number:
             lines.append(rf"\remark{{{self._claims(equation)}}}{{{self._function(equation)}}}")
         return "\n".join(lines)
@@ -131,12 +133,16 @@ class _Printer:
 
     def _over_pages(self, equation: Equation, rows: Rows) -> list[str]:
         """Lines between which a page may end, which a box would keep together."""
-        environment = _FREE[rows.environment]
-        label = self._label(equation.label)
+        environment = "align*" if rows.are_aligned else "gather*"
+        pen, label = self.pen, self._label(equation.label)
+        lines = [
+            pen.line(line) if rows.are_aligned else pen.continued(line.body, line.indent)
+            for line in rows.lines
+        ]
         number = [rf"\tag{{{equation.number}}}\label{{{label}}}"] if equation.number else []
         return [
             rf"{{\freely\begin{{{environment}}}",
-            rows.inside,
+            self.pen.joined(lines, is_high=rows.is_high),
             *number,
             rf"\end{{{environment}}}}}",
         ]
@@ -144,7 +150,9 @@ class _Printer:
     def _claims(self, equation: Equation) -> str:
         kinds = (("Proved", equation.proved), (r"\textbf{Unproved}", equation.unproved))
         return " ".join(
-            f"{kind}: {', '.join(map(_display_style, claims))}." for kind, claims in kinds if claims
+            f"{kind}: {', '.join(map(self._display_style, claims))}."
+            for kind, claims in kinds
+            if claims
         )
 
     def _function(self, equation: Equation) -> str:
@@ -173,7 +181,7 @@ class _Printer:
         return f"{drawing}\n\\inthefigure{{{words}}}"
 
     def _cell(self, text: Text) -> str:
-        return "".join(_tall(s) if isinstance(s, Markup) else self._span(s) for s in text)
+        return "".join(self._tall(s) if isinstance(s, Formula) else self._span(s) for s in text)
 
     def _text(self, text: Text) -> str:
         return "".join(map(self._span, text))
@@ -181,9 +189,9 @@ class _Printer:
     def _span(self, span: Span) -> str:
         match span:
             case str():
-                return escape(span)
-            case Markup():
-                return f"${span.latex}$"
+                return escape(self.notation.words(span))
+            case Formula():
+                return f"${self.pen.write(span).text}$"
             case Code():
                 return rf"\texttt{{{_breakable(escape(span.text))}}}"
             case Strong():
@@ -192,6 +200,17 @@ class _Printer:
                 return rf"\eqref{{{self._label(span.label)}}}"
             case Cited():
                 return self._cited(span)
+
+    def _display_style(self, formula: Formula) -> str:
+        """A formula in a line of its own height; fractions in small type would be hard to read."""
+        written = self.pen.write(formula)
+        style = r"\displaystyle " if written.height else ""
+        return f"${style}{written.text}$"
+
+    def _tall(self, formula: Formula) -> str:
+        """The same in a table, where the fractions of neighbouring rows would touch."""
+        written = self._display_style(formula)
+        return rf"\tall{{{written}}}" if self.pen.write(formula).height else written
 
     def _cited(self, cited: Cited) -> str:
         place = f"[{escape(cited.place)}]" if cited.place else ""
@@ -213,15 +232,3 @@ def _breakable(code: str) -> str:
 def _columns(table: Table) -> str:
     """l for a column of one line a cell, T for the one of words."""
     return "".join("T" if place == table.of_words else "l" for place in range(len(table.head)))
-
-
-def _display_style(formula: Markup) -> str:
-    """A formula in a line of its own height; fractions in small type would be hard to read."""
-    style = r"\displaystyle " if r"\frac" in formula.latex else ""
-    return f"${style}{formula.latex}$"
-
-
-def _tall(formula: Markup) -> str:
-    """The same in a table, where the fractions of neighbouring rows would touch."""
-    written = _display_style(formula)
-    return rf"\tall{{{written}}}" if r"\frac" in formula.latex else written

@@ -10,7 +10,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.latex_pen import MarkdownPen
+from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import (
     Cited,
     Code,
@@ -32,7 +33,6 @@ from rigidsym.notes.layout.layout import display, pack
 from rigidsym.notes.prose.prose import announcement
 
 _WIDTH = 40.0  # ems
-_ROW_END = re.compile(r"\\\\(?:\[\d+pt\])?")
 _SPECIAL = re.compile(r"([\\`*_{}\[\]<>#&~|!@])")
 _DOLLARS = re.compile(r"\$+")
 _LINE_START = re.compile(r"^(\s*)(?:([-+=])|(\d+)([.)]))")
@@ -59,12 +59,6 @@ def escape(text: str) -> str:
     return _LINE_START.sub(_unlisted, _inside(text).strip())
 
 
-def formula(latex: str) -> str:
-    """The same mathematics in characters that Markdown leaves alone."""
-    rows = _ROW_END.sub(r"\\cr", latex)
-    return re.sub(r"\s*_", " _", rows.replace(r"\,", r"\thinspace "))
-
-
 def _unlisted(start: re.Match[str]) -> str:
     """The start of a line that would begin a list, a quotation or a heading."""
     blank, mark, number, point = start.groups()
@@ -76,6 +70,8 @@ class _Printer:
 
     def __init__(self, document: Document) -> None:
         self.document = document
+        self.notation = document.letters.notation
+        self.pen = MarkdownPen(self.notation)
 
     def section(self, section: Section) -> Iterator[str | Program]:
         prose = [f"## {escape(section.title)}"]
@@ -100,19 +96,19 @@ class _Printer:
             case Equation():
                 return "\n\n".join(self._equation(block))
             case EquationRow():
-                return _display(pack(block.equations, self.document.notation, _WIDTH))
+                return _display(pack(block.equations, self.document.letters, _WIDTH, self.pen))
             case Figure():
                 return self._text(block.description)
             case Table():
                 return self._table(block)
 
     def _equation(self, equation: Equation) -> Iterator[str]:
-        shown = display(equation, self.document.notation, _WIDTH)
+        shown = display(equation, self.document.letters, _WIDTH, self.pen)
         announced = announcement(equation, shown.done)
         if announced:
             yield self._text(announced)
         tag = f"\n\\tag{{{equation.number}}}" if equation.number else ""
-        yield _display(shown.latex + tag)
+        yield _display(shown.text + tag)
         remarks = [*self._claims(equation), *self._function(equation)]
         if remarks:
             yield " · ".join(remarks)
@@ -140,9 +136,9 @@ class _Printer:
     def _span(self, span: Span) -> str:
         match span:
             case str():
-                return _inside(span)
-            case Markup():
-                return f"${formula(span.latex)}$"
+                return _inside(self.notation.words(span))
+            case Formula():
+                return f"${self.pen.write(span).text}$"
             case Code():
                 return _code(span.text)
             case Strong():
@@ -167,7 +163,7 @@ def _inside(text: str) -> str:
 
 
 def _display(latex: str) -> str:
-    return f"$$\n{formula(latex)}\n$$"
+    return f"$$\n{latex}\n$$"
 
 
 def _code(text: str) -> str:

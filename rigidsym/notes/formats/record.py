@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import (
     Argument,
     Derivation,
-    Markup,
     Place,
     Proof,
     Singularities,
@@ -136,7 +136,7 @@ def _argument(argument: Argument) -> dict[str, Any]:
         "name": argument.name,
         "about": argument.about,
         "components": [
-            {"name": name, "unit": unit, **_markup(notation)} for name, unit, notation in components
+            {"name": name, "unit": unit, **_markup(letters)} for name, unit, letters in components
         ],
     }
 
@@ -221,7 +221,7 @@ def _columns(matrix: sp.ImmutableMatrix) -> list[sp.ImmutableMatrix]:
     return [matrix[:, place] for place in range(matrix.shape[1])]
 
 
-def _markup(markup: Markup) -> dict[str, str]:
+def _markup(markup: Formula) -> dict[str, str]:
     return {"latex": markup.latex, "text": markup.text}
 
 

@@ -9,28 +9,22 @@ from typing import TYPE_CHECKING, Literal
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Argument, Derivation, Markup, Proof, Step
-from rigidsym.mechanics.quantities.kinematics import ROTATION
+from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.pen import break_lines
+from rigidsym.formula.tree import Formula, equal, row
+from rigidsym.formula.unicode_pen import UnicodePen, columns
+from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
+from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import Text
-from rigidsym.notes.formula.formula import text
-from rigidsym.notes.formula.manner import DEFAULT, Manner
-from rigidsym.notes.formula.notation import Notation, notation_of
-from rigidsym.notes.layout.breaking import break_lines
+from rigidsym.notes.document.document import Span, Text
+from rigidsym.notes.formula.letters import Letters, letters_of
+from rigidsym.notes.formula.scalars import formula_of, matrix_of
 from rigidsym.notes.layout.entries import RESIDUAL, entry_names, indexed
 from rigidsym.notes.layout.grid import grid
-from rigidsym.notes.layout.text_width import columns
-from rigidsym.notes.prose.prose import product, turn
+from rigidsym.notes.prose.prose import turn
 from rigidsym.notes.prose.singular_words import failures, measured
 from rigidsym.notes.prose.vector_words import sum_of_vectors
-from rigidsym.notes.prose.words import (
-    convention,
-    equal,
-    plain,
-    symbols_of,
-    unit_in_words,
-    with_symbols,
-)
+from rigidsym.notes.prose.words import convention, plain, symbols_of, unit_in_words, with_symbols
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -40,6 +34,7 @@ Style = Callable[[str, Literal["heading", "dim"]], str]
 _INDENT = "  "
 _DEEPER = "    "
 _NO_BREAK = "\u00a0"
+_OMEGA = {frame.omega.text: frame.omega for frame in (SPACE, BODY)}
 
 
 def unstyled(words: str, _: str) -> str:
@@ -52,7 +47,7 @@ def show(
     *,
     width: int = 88,
     style: Style = unstyled,
-    manner: Manner = DEFAULT,
+    notation: Notation = DEFAULT,
     conversions: Conversions | None = None,
 ) -> str:
     """The derivation as plain text, at most `width` columns wide where formulas allow.
@@ -60,7 +55,7 @@ def show(
     `style` is given each heading and each aside, and returns it with the codes of the terminal;
     `conversions` adds a section on the unit quaternion and the matrix, and its proofs.
     """
-    screen = _Screen(derivation, width, style, manner, conversions)
+    screen = _Screen(derivation, width, style, notation, conversions)
     return "\n".join(screen.lines())
 
 
@@ -69,25 +64,25 @@ def show_step(
     arguments: Sequence[Argument],
     *,
     width: int = 88,
-    manner: Manner = DEFAULT,
+    notation: Notation = DEFAULT,
     model: RotationModel | None = None,
 ) -> str:
     """One step of a derivation as plain text."""
-    notation = notation_of(arguments, manner, model)
-    return "\n".join(_Steps(arguments, width, unstyled, notation).step(step))
+    letters = letters_of(arguments, notation, model)
+    return "\n".join(_Steps(arguments, width, unstyled, letters).step(step))
 
 
 class _Steps:
     """The lines of single steps."""
 
     def __init__(
-        self, arguments: Sequence[Argument], width: int, style: Style, notation: Notation
+        self, arguments: Sequence[Argument], width: int, style: Style, letters: Letters
     ) -> None:
         self.arguments = arguments
         self.width = width
         self.style = style
-        self.notation = notation
-        self.written = notation.manner.text  # formulas that were composed elsewhere
+        self.letters = letters
+        self.pen = UnicodePen(letters.notation)
 
     def step(self, step: Step) -> Iterator[str]:
         yield from self._headline(step)
@@ -98,13 +93,12 @@ class _Steps:
         """Ω = v̇ + ..., where the coordinates hold a vector."""
         form = step.vector_form
         if form is not None:
-            total = equal(step.quantity.symbol, sum_of_vectors(form, self.notation))
+            total = equal(step.quantity.symbol, sum_of_vectors(form, self.letters))
             yield from self._wrapped((total,))
 
     def _wrapped(self, sentence: Text) -> list[str]:
-        whole = (_unbroken(span) if isinstance(span, Markup) else span for span in sentence)
         lines = textwrap.wrap(
-            self.written(plain(tuple(whole))),
+            self._words(sentence),
             self.width,
             initial_indent=_INDENT,
             subsequent_indent=_DEEPER,
@@ -113,10 +107,19 @@ class _Steps:
         )
         return [line.replace(_NO_BREAK, " ") for line in lines]
 
+    def _words(self, sentence: Text) -> str:
+        return "".join(map(self._span, sentence))
+
+    def _span(self, span: Span) -> str:
+        """A span of a sentence; formulas are not broken at their blanks."""
+        if isinstance(span, Formula):
+            return self.pen.write(span).text.replace(" ", _NO_BREAK)
+        return self.pen.notation.words(plain((span,)))
+
     def _headline(self, step: Step) -> Iterator[str]:
         """(5) angular velocity, body components           angular_velocity_body, rad/s"""
         quantity = step.quantity
-        left = f"({step.number}) {self.written(quantity.about)}"
+        left = f"({step.number}) {self._words(with_symbols(quantity.about, _OMEGA))}"
         unit = f", {unit_in_words(quantity.unit)}" if quantity.unit else ""
         right = quantity.name + unit
         room = self.width - columns(left)
@@ -128,18 +131,18 @@ class _Steps:
 
     def _value(self, step: Step) -> Iterator[str]:
         names = entry_names(step, self.arguments)
-        prefixes = [self.written(prefix) for prefix in _prefixes(step)]
+        prefixes = self._prefixes(step)
         if step.quantity.is_scalar:
-            yield from self._scalar(prefixes, text(step.expression[0], self.notation))
+            yield from self._scalar(prefixes, formula_of(step.expression[0], self.letters))
         else:
             yield from self._matrix(prefixes, step.expression, names)
         for proof in step.proofs:
             if not proof.is_exact:
-                yield f"{_INDENT}✗ unproved: {self.written(proof.claim.text)}"
+                yield f"{_INDENT}✗ unproved: {self.pen.write(proof.claim).text}"
 
-    def _scalar(self, prefixes: Sequence[str], value: str) -> Iterator[str]:
+    def _scalar(self, prefixes: Sequence[str], value: Formula) -> Iterator[str]:
         """The value behind its sides, or below them, where a long one is broken."""
-        whole = f"{_INDENT}{prefixes[0]}{value}"
+        whole = f"{_INDENT}{prefixes[0]}{self.pen.write(value).text}"
         if columns(whole) <= self.width:
             yield whole
             return
@@ -147,34 +150,38 @@ class _Steps:
         if len(prefixes) > 1:
             yield f"{_INDENT}{prefixes[0].removesuffix(' = ')}"
             head = " " * columns(head)
-        room = self.width - columns(head) - len("= ")
-        first, *others = break_lines(value, room, columns, len(_INDENT))
-        yield f"{head}= {first.text}"
-        hang = " " * (columns(head) + len("= "))
+        yield from self._hung(f"{head}= ", value)
+
+    def _hung(self, head: str, value: Formula) -> Iterator[str]:
+        """A value behind a head; where it is long, its other lines hang below its start."""
+        room = self.width - columns(head)
+        first, *others = break_lines(self.pen.write(value), room, len(_INDENT), self.pen.blank)
+        yield head + first.text
         for line in others:
-            yield hang + _INDENT * line.depth + line.text
+            yield " " * columns(head) + _INDENT * line.depth + line.text
 
     def _matrix(
-        self, prefixes: Sequence[str], matrix: sp.ImmutableMatrix, names: Sequence[Markup]
+        self, prefixes: Sequence[str], matrix: sp.ImmutableMatrix, names: Sequence[Formula]
     ) -> list[str]:
         """The matrix in brackets, in the first form that fits, or else entry by entry."""
-        rows = [[text(entry, self.notation) for entry in row] for row in matrix.tolist()]
-        for lines in _forms(prefixes, rows):
+        rows = matrix_of(matrix, self.letters)
+        for lines in _forms(prefixes, [[self.pen.write(e).text for e in line] for line in rows]):
             if max(map(columns, lines)) <= self.width:
                 return lines
-        return self._listing(names, [entry for row in rows for entry in row])
+        return list(self._listing(names, [entry for line in rows for entry in line]))
 
-    def _listing(self, names: Iterable[Markup], entries: Iterable[str]) -> list[str]:
-        """A line an entry; long ones are broken, and hang below their equals sign."""
-        lines: list[str] = []
+    def _listing(self, names: Iterable[Formula], entries: Iterable[Formula]) -> Iterator[str]:
+        """A line an entry; long ones are broken."""
         for name, entry in zip(names, entries, strict=True):
-            head = f"{_INDENT}{self.written(name.text)} = "
-            room = self.width - columns(head)
-            first, *others = break_lines(entry, room, columns, len(_INDENT))
-            hang = " " * columns(head)
-            lines.append(head + first.text)
-            lines += [hang + _INDENT * line.depth + line.text for line in others]
-        return lines
+            yield from self._hung(f"{_INDENT}{self.pen.write(name).text} = ", entry)
+
+    def _prefixes(self, step: Step) -> list[str]:
+        """ "Ω′ = Rᵀ Ω = " and, where that is too long, "Ω′ = "."""
+        quantity = step.quantity
+        sides = (self.pen.write(side).text for side in (quantity.symbol, quantity.definition))
+        symbol, *definition = filter(None, dict.fromkeys(sides))
+        short = f"{symbol} = "
+        return [f"{short}{definition[0]} = ", short] if definition else [short]
 
 
 class _Screen(_Steps):
@@ -185,11 +192,11 @@ class _Screen(_Steps):
         derivation: Derivation,
         width: int,
         style: Style,
-        manner: Manner,
+        notation: Notation,
         conversions: Conversions | None,
     ) -> None:
-        notation = notation_of(derivation.arguments, manner, derivation.model)
-        super().__init__(derivation.arguments, width, style, notation)
+        letters = letters_of(derivation.arguments, notation, derivation.model)
+        super().__init__(derivation.arguments, width, style, letters)
         self.derivation = derivation
         self.conversions = conversions
         self.steps = derivation.steps
@@ -223,18 +230,21 @@ class _Screen(_Steps):
                 yield self.style(section, "heading")
             yield from self._wrapped(statement.because)
             number = f"({statement.number})" if statement.number else ""
-            head = f"{_DEEPER}{number:<6}{self.written(equal(*statement.sides).text)}"
-            rows = [[entry.text for entry in row] for row in sums(statement, self.notation)]
+            head = f"{_DEEPER}{number:<6}{self.pen.write(equal(*statement.sides)).text}"
+            matrix = sums(statement, self.letters)
+            rows = (
+                [[self.pen.write(e).text for e in line] for line in matrix.rows] if matrix else []
+            )
             yield from grid(f"{head} = ", rows) if rows else [head]
             yield ""
 
     def _convention(self) -> Iterator[str]:
-        for sentence in convention(self.derivation, self.notation.manner):
+        for sentence in convention(self.derivation, self.letters.notation):
             yield from self._wrapped(sentence)
         turns = self.derivation.model.turns
         if turns:
-            factors = [turn(t, self.notation) for t in turns]
-            yield _INDENT + equal(ROTATION, product(factors)).text
+            factors = [turn(t, self.letters) for t in turns]
+            yield _INDENT + self.pen.write(equal(ROTATION, row(*factors))).text
 
     def _numbers(self) -> Iterator[str]:
         """The parameters of the body that have values, and its principal axes."""
@@ -242,7 +252,7 @@ class _Screen(_Steps):
             return
         from rigidsym.notes.document.body_sections import lines_of_body
 
-        lines = list(lines_of_body(self.derivation, self.notation))
+        lines = list(lines_of_body(self.derivation, self.letters))
         if lines:
             yield ""
             yield self.style("In numbers", "heading")
@@ -256,7 +266,7 @@ class _Screen(_Steps):
         yield self.style("Where the rates fail", "heading")
         if found.determinant is not None:
             yield from self._listing(
-                [equal(*measured(found))], [text(found.determinant, self.notation)]
+                [equal(*measured(found))], [formula_of(found.determinant, self.letters)]
             )
         for sentence in failures(self.derivation, found):
             yield from self._wrapped(sentence)
@@ -290,15 +300,11 @@ class _Screen(_Steps):
 
     def _proof(self, label: str, proof: Proof) -> Iterator[str]:
         mark, status = ("✓", "exact") if proof.is_exact else ("✗", "unproved")
-        yield f"{_INDENT}{mark} {label:<5}{status:<10}{self.written(proof.claim.text)}"
+        yield f"{_INDENT}{mark} {label:<5}{status:<10}{self.pen.write(proof.claim).text}"
         if proof.residual is not None:
             yield f"{_DEEPER}left over:"
             names = indexed(RESIDUAL, proof.residual.shape)
             yield from self._matrix([f"{RESIDUAL.text} = "], proof.residual, names)
-
-
-def _unbroken(formula: Markup) -> str:
-    return formula.text.replace(" ", _NO_BREAK)
 
 
 def _forms(prefixes: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[list[str]]:
@@ -309,11 +315,3 @@ def _forms(prefixes: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[l
     below = [_INDENT + prefixes[0].rstrip()]
     yield [*below, *grid(_DEEPER, rows)]
     yield [*below, *grid(_DEEPER, rows, tight=True)]
-
-
-def _prefixes(step: Step) -> list[str]:
-    """ "Ω′ = Rᵀ Ω = " and, where that is too long, "Ω′ = "."""
-    symbol, definition = step.quantity.symbol.text, step.quantity.definition.text
-    if definition in ("", symbol):
-        return [f"{symbol} = "]
-    return [f"{symbol} = {definition} = ", f"{symbol} = "]

@@ -12,12 +12,13 @@ from functools import lru_cache
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula, Symbol
 from rigidsym.mechanics.kinematics.vector_forms import LENGTH
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
 
-VECTOR = Markup(r"\mathbf{v}", "v")
+VECTOR = formula(r"\mathbf{v}")
 _LETTERS = ("n", "l", "r")  # one that nothing in the model is called by is taken
 
 
@@ -31,11 +32,11 @@ class Length:
     letter: str  # how both are written
 
     @property
-    def names(self) -> Mapping[sp.Expr, Markup]:
+    def names(self) -> Mapping[sp.Expr, Formula]:
         letter = self.letter
         return {
-            self.symbol: Markup(letter, letter),
-            self.rate: Markup(rf"\dot{{{letter}}}", f"{letter}\u0307"),
+            self.symbol: Symbol(letter),
+            self.rate: Symbol(letter, dots=1),
         }
 
     def shortened(self, expression: sp.Expr) -> sp.Expr:

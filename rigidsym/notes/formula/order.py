@@ -19,7 +19,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.models.so3 import TIME
-from rigidsym.notes.formula.notation import Notation, Place
+from rigidsym.notes.formula.letters import Letters, Place
 
 Key = tuple[object, ...]
 
@@ -45,13 +45,13 @@ def is_application(node: sp.Expr) -> bool:
     return bool(node.is_Function and node.args != (TIME,))
 
 
-def ordered_factors(factors: Iterable[sp.Expr], notation: Notation) -> list[sp.Expr]:
-    return sorted(factors, key=lambda factor: _factor_key(factor, notation))
+def ordered_factors(factors: Iterable[sp.Expr], letters: Letters) -> list[sp.Expr]:
+    return sorted(factors, key=lambda factor: _factor_key(factor, letters))
 
 
-def ordered_terms(terms: Iterable[sp.Expr], notation: Notation) -> list[sp.Expr]:
+def ordered_terms(terms: Iterable[sp.Expr], letters: Letters) -> list[sp.Expr]:
     """The terms of a sum; the first one without a minus sign is brought to the front."""
-    ordered = sorted(terms, key=lambda term: _term_key(term, notation))
+    ordered = sorted(terms, key=lambda term: _term_key(term, letters))
     first = next((k for k, term in enumerate(ordered) if not is_negative(term)), 0)
     return [ordered[first], *ordered[:first], *ordered[first + 1 :]]
 
@@ -66,7 +66,7 @@ def is_negative(term: sp.Expr) -> bool:
     return bool(term.as_coeff_Mul()[0].is_negative)
 
 
-def _factor_key(factor: sp.Expr, notation: Notation) -> Key:
+def _factor_key(factor: sp.Expr, letters: Letters) -> Key:
     base, exponent = power_of(factor)
     if base.is_Add:
         return (Rank.SUM, len(base.args), base.sort_key())
@@ -74,51 +74,51 @@ def _factor_key(factor: sp.Expr, notation: Notation) -> Key:
         return (Rank.NUMBER, 1, base.sort_key())
     if not exponent.is_Integer:
         return (Rank.ROOT, 0, base.sort_key())
-    return (*_base_key(base, notation), exponent)
+    return (*_base_key(base, letters), exponent)
 
 
-def _base_key(base: sp.Expr, notation: Notation) -> Key:
+def _base_key(base: sp.Expr, letters: Letters) -> Key:
     if base.is_Number:
         return (Rank.NUMBER, 0, base.sort_key())
     if base.is_NumberSymbol:
         return (Rank.UNIVERSAL, 0, base.sort_key())
     if base.func in FUNCTIONS:
-        return (Rank.FUNCTION, _angle_key(base.args[0], notation), _FUNCTION_ORDER[base.func])
+        return (Rank.FUNCTION, _angle_key(base.args[0], letters), _FUNCTION_ORDER[base.func])
     if is_application(base):
-        return (Rank.FUNCTION, _angle_key(base.args[0], notation), len(FUNCTIONS))
-    place = notation.places.get(base)
+        return (Rank.FUNCTION, _angle_key(base.args[0], letters), len(FUNCTIONS))
+    place = letters.places.get(base)
     if place is None:
         return (Rank.CONSTANT, 0, base.sort_key())
     order, index = place
     return (Rank.RATE if order else Rank.COORDINATE, (-order, index), 0)
 
 
-def _angle_key(angle: sp.Expr, notation: Notation) -> Key:
+def _angle_key(angle: sp.Expr, letters: Letters) -> Key:
     """Angles in the order of the coordinates they hold; an angle alone before its multiples."""
     symbols = angle.atoms(sp.Symbol, AppliedUndef)
-    held = sorted(notation.places[symbol] for symbol in symbols if symbol in notation.places)
+    held = sorted(letters.places[symbol] for symbol in symbols if symbol in letters.places)
     return (held, angle.sort_key())
 
 
 @lru_cache(maxsize=1 << 15)  # a sum asks for the keys of what its own terms hold, at every depth
-def _term_key(term: sp.Expr, notation: Notation) -> Key:
+def _term_key(term: sp.Expr, letters: Letters) -> Key:
     factors = [factor for factor in sp.Mul.make_args(term) if not factor.is_Number]
     has_bracket = any(_is_sum(factor) for factor in factors)
-    rates = _rates(term, notation)
-    keys = [_factor_key(factor, notation) for factor in ordered_factors(factors, notation)]
+    rates = _rates(term, letters)
+    keys = [_factor_key(factor, letters) for factor in ordered_factors(factors, letters)]
     return (has_bracket, rates, len(factors), keys)
 
 
-def _rates(term: sp.Expr, notation: Notation) -> list[Place]:
+def _rates(term: sp.Expr, letters: Letters) -> list[Place]:
     """The rates in a term, highest derivative first; of a bracket, those of its first term."""
     found: list[Place] = []
     for factor in sp.Mul.make_args(term):
         base, exponent = power_of(factor)
-        order, index = notation.places.get(base, (0, 0))
+        order, index = letters.places.get(base, (0, 0))
         if order:
             found += [(-order, index)] * int(abs(exponent))
         elif base.is_Add:
-            inside = _rates(ordered_terms(base.args, notation)[0], notation)
+            inside = _rates(ordered_terms(base.args, letters)[0], letters)
             found += inside * (int(exponent) if exponent.is_Integer and exponent > 0 else 1)
     return sorted(found)
 

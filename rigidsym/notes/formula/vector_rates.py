@@ -6,37 +6,39 @@ from collections.abc import Iterator, Mapping
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Markup, VectorForm, VectorTerm
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import VectorForm, VectorTerm
 from rigidsym.mechanics.kinematics.vector_forms import ALONG, CROSS, TWICE, V_DOT, V
 from rigidsym.models.so3 import TIME
 
-_V_DDOT = Markup(r"\ddot{\mathbf{v}}", "v̈")
-_RATES: Mapping[Markup, tuple[Markup, ...]] = {  # of each vector, as a sum
+_V_DDOT = formula(r"\ddot{\mathbf{v}}")
+_RATES: Mapping[Formula, tuple[Formula, ...]] = {  # of each vector, as a sum
     V: (V_DOT,),
     V_DOT: (_V_DDOT,),
-    CROSS: (Markup(r"\mathbf{v}\times\ddot{\mathbf{v}}", "v × v̈"),),
+    CROSS: (formula(r"\mathbf{v}\times\ddot{\mathbf{v}}"),),
     TWICE: (
-        Markup(r"\mathbf{v}\times(\mathbf{v}\times\ddot{\mathbf{v}})", "v × (v × v̈)"),
-        Markup(r"\dot{\mathbf{v}}\times(\mathbf{v}\times\dot{\mathbf{v}})", "v̇ × (v × v̇)"),
+        formula(r"\mathbf{v}\times(\mathbf{v}\times\ddot{\mathbf{v}})"),
+        formula(r"\dot{\mathbf{v}}\times(\mathbf{v}\times\dot{\mathbf{v}})"),
     ),
     ALONG: (
-        Markup(r"(\mathbf{v}\cdot\ddot{\mathbf{v}})\,\mathbf{v}", "(v·v̈) v"),
-        Markup(r"(\dot{\mathbf{v}}\cdot\dot{\mathbf{v}})\,\mathbf{v}", "(v̇·v̇) v"),
-        Markup(r"(\mathbf{v}\cdot\dot{\mathbf{v}})\,\dot{\mathbf{v}}", "(v·v̇) v̇"),
+        formula(r"(\mathbf{v}\cdot\ddot{\mathbf{v}})\,\mathbf{v}"),
+        formula(r"(\dot{\mathbf{v}}\cdot\dot{\mathbf{v}})\,\mathbf{v}"),
+        formula(r"(\mathbf{v}\cdot\dot{\mathbf{v}})\,\dot{\mathbf{v}}"),
     ),
 }
 
 
 def rate_of_form(form: VectorForm, rate_of_length: sp.Symbol) -> VectorForm:
     """The derivative of f v̇ + g v × v̇ + ..., with the symbol for ṅ in its coefficients."""
-    found: dict[Markup, sp.Expr] = {}
+    found: dict[Formula, sp.Expr] = {}
     for coefficient, vector in _terms(form, rate_of_length):
         found[vector] = found.get(vector, 0) + coefficient
     terms = tuple(VectorTerm(sp.together(c), vector) for vector, c in found.items() if c != 0)
     return VectorForm(terms=terms, components=form.components, length=form.length, proof=form.proof)
 
 
-def _terms(form: VectorForm, rate_of_length: sp.Symbol) -> Iterator[tuple[sp.Expr, Markup]]:
+def _terms(form: VectorForm, rate_of_length: sp.Symbol) -> Iterator[tuple[sp.Expr, Formula]]:
     """First those with second derivatives."""
     for term in form.terms:
         yield from ((term.coefficient, vector) for vector in _RATES[term.vector])

@@ -14,10 +14,10 @@ from itertools import chain, islice
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.notes.formula.formula import latex
-from rigidsym.notes.formula.notation import Notation
-from rigidsym.notes.layout.layout import broken_ems
-from rigidsym.notes.layout.text_width import ems
+from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.scalars import formula_of
+from rigidsym.notes.layout.layout import broken, widest
 
 _LETTERS = "khmb"  # of the names; one that nothing in the notation is called by is taken
 _OVERHEAD = 3.0  # ems that a definition takes beside its formula
@@ -38,16 +38,17 @@ class Named:
 class Namer:
     """Names parts of matrices; what has a name already keeps it in all that follow."""
 
-    def __init__(self, notation: Notation) -> None:
-        self.notation = notation
-        self._letter = _free_letter(notation)
+    def __init__(self, letters: Letters) -> None:
+        self.letters = letters
+        self.pen = LatexPen(letters.notation)
+        self._letter = _free_letter(letters)
         self._known: dict[sp.Expr, sp.Symbol] = {}
         self._known_before = 0
 
     def named(self, matrix: sp.ImmutableMatrix, room: float) -> Named:
         """The matrix with parts of it named, so that every line is at most `room` ems wide."""
         self._known_before = len(self._known)
-        entries = [self.notation.shortened(entry) for entry in matrix]
+        entries = [self.letters.shortened(entry) for entry in matrix]
         moving = sp.Tuple(*entries).atoms(AppliedUndef, sp.Derivative)
         as_symbols = {part: sp.Symbol(f"at_{k}") for k, part in enumerate(sorted(moving, key=str))}
         still = [entry.xreplace(as_symbols) for entry in entries]  # a rate is not taken apart
@@ -108,14 +109,14 @@ class Namer:
     def _split(self, value: sp.Expr, room: float) -> list[Part]:
         """Parts of an expression that need names so that it fits, and last what is left of it."""
         names: list[Part] = []
-        while broken_ems(latex(value, self.notation), room) > room:
-            widest = max(_unbreakable(value), key=self._width, default=None)
-            if widest is None or self._width(widest) < room / 4:
+        while widest(broken(formula_of(value, self.letters), room, self.pen)) > room:
+            part = max(_unbreakable(value), key=self._width, default=None)
+            if part is None or self._width(part) < room / 4:
                 break
-            *inner, (_, whole) = self._split(widest, room)
+            *inner, (_, whole) = self._split(part, room)
             name = self._name_of(whole)
             names += [*inner, (name, whole)]
-            value = value.xreplace({widest: name})
+            value = value.xreplace({part: name})
         return [*names, (sp.Symbol("left"), value)]
 
     def _name_of(self, value: sp.Expr) -> sp.Symbol:
@@ -126,11 +127,11 @@ class Namer:
         return known
 
     def _width(self, part: sp.Expr) -> float:
-        return ems(latex(part, self.notation))
+        return self.pen.write(formula_of(part, self.letters)).width
 
 
-def _free_letter(notation: Notation) -> str:
-    taken = {_label(symbol)[0] for symbol in notation.names}
+def _free_letter(letters: Letters) -> str:
+    taken = {_label(symbol)[0] for symbol in letters.names}
     return next(letter for letter in _LETTERS if letter not in taken)
 
 

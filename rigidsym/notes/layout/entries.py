@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
-from rigidsym.mechanics.derivation import Argument, Markup, Step
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import (
+    COMMA,
+    Bracket,
+    Formula,
+    Indexed,
+    Number,
+    Rate,
+    Row,
+    Sign,
+    Symbol,
+    row,
+)
+from rigidsym.mechanics.derivation import Argument, Step
 
-_BOLD = re.compile(r"\\(?:mathbf|boldsymbol)\{([^{}]*)\}")
-_RATE = re.compile(r"\\frac\{d(\w|\\[A-Za-z]+)\}\{dt\}")
-_RATE_TEXT = re.compile(r"d(\w)(′?)/dt")
-_INDEX = re.compile(r"(.*[^}])_(\w)")  # an index that the symbol has already
-_LIST = re.compile(r"\((\w+(?:, \w+)+)\)")
-_LIST_LATEX = re.compile(r"\\left\((.*)\\right\)")
-_LETTER = re.compile(r"(?:\w|\\[A-Za-z]+|\\dot\{(?:\w|\\[A-Za-z]+)\})'?")
-_LETTER_TEXT = re.compile(r"\w\u0307?′?")
-RESIDUAL = Markup(r"\boldsymbol{\Delta}", "Δ")  # what is left over of a claim
-_DIGITS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+RESIDUAL = formula(r"\boldsymbol{\Delta}")  # what is left over of a claim
 
 
-def entry_names(step: Step, arguments: Iterable[Argument]) -> tuple[Markup, ...]:
+def entry_names(step: Step, arguments: Iterable[Argument]) -> tuple[Formula, ...]:
     """A name for each entry, row by row.
 
     Vectors that are arguments of other quantities, such as the rates, have the names of those.
@@ -38,19 +42,11 @@ def _argument_name(quantity: str) -> str:
     return quantity.replace("angular_velocity_", "omega_")
 
 
-def indexed(symbol: Markup, shape: tuple[int, ...]) -> tuple[Markup, ...]:
+def indexed(symbol: Formula, shape: tuple[int, ...]) -> tuple[Formula, ...]:
     """The symbol with the index of each entry, in light face; (a₁, a₂, a₃) lists its own."""
-    if listed := _LIST.fullmatch(symbol.text):
-        names = _LIST_LATEX.sub(r"\1", symbol.latex).split(", ")
-        return tuple(map(Markup, names, listed[1].split(", ")))
-    stem, own = _plain_letter(symbol), Markup("", "")
-    indexed_already = _INDEX.fullmatch(symbol.text)
-    if indexed_already:
-        own = Markup(f"{indexed_already[2]},", f"{indexed_already[2]},")
-        stem = _plain_letter(
-            Markup(symbol.latex.removesuffix(f"_{indexed_already[2]}"), indexed_already[1])
-        )
-    return tuple(_indexed(stem, own, index) for index in _indices(shape))
+    if isinstance(symbol, Bracket) and isinstance(symbol.inside, Row):
+        return tuple(part for part in symbol.inside.parts if not isinstance(part, Sign))
+    return tuple(_indexed(symbol, index) for index in _indices(shape))
 
 
 def _indices(shape: tuple[int, ...]) -> Iterator[str]:
@@ -60,17 +56,26 @@ def _indices(shape: tuple[int, ...]) -> Iterator[str]:
     return (f"{row + 1}{column + 1}" for row in range(rows) for column in range(columns))
 
 
-def _plain_letter(symbol: Markup) -> Markup:
-    """The symbol without bold face, a derivative as a dot, brackets around anything compound."""
-    latex = _RATE.sub(r"\\dot{\1}", _BOLD.sub(r"\1", symbol.latex))
-    text = _RATE_TEXT.sub("\\1\u0307\\2", symbol.text)
-    return Markup(
-        latex if _LETTER.fullmatch(latex) else rf"\bigl({latex}\bigr)",
-        text if _LETTER_TEXT.fullmatch(text) else f"({text})",
-    )
+def _indexed(symbol: Formula, index: str) -> Formula:
+    """R₂₃, or L_R,1 where the symbol has an index of its own; brackets around what is compound."""
+    number = Number(index)
+    if isinstance(symbol, Rate) and isinstance(symbol.of, Symbol):
+        symbol = replace(symbol.of, dots=symbol.order)
+    if not isinstance(symbol, Symbol):
+        return Indexed(Bracket(_light(symbol)), number)
+    own = symbol.index
+    return replace(symbol, face="italic", index=number if own is None else row(own, COMMA, number))
 
 
-def _indexed(stem: Markup, own: Markup, index: str) -> Markup:
-    """R₂₃, or L_R,1 where the symbol has an index of its own."""
-    digits = f"_{own.text}{index}" if own.text else index.translate(_DIGITS)
-    return Markup(f"{stem.latex}_{{{own.latex}{index}}}", stem.text + digits)
+def _light(symbol: Formula) -> Formula:
+    """The symbol without bold face."""
+    if isinstance(symbol, Symbol):
+        return replace(symbol, face="italic")
+    if isinstance(symbol, Row):
+        return Row(tuple(map(_light, symbol.parts)))
+    changed = {
+        name: _light(part)
+        for name in ("base", "of", "inside")
+        if isinstance(part := getattr(symbol, name, None), Formula)
+    }
+    return replace(symbol, **changed) if changed else symbol

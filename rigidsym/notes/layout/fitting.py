@@ -16,12 +16,13 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Derivation, Markup, Step
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.notes.document.document import Block, Equation, EquationReference, Paragraph, Text
-from rigidsym.notes.formula.formula import markup
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.abbreviations import Namer, Part
 from rigidsym.notes.layout.layout import PAGE, display
 from rigidsym.notes.prose.short import in_short
@@ -45,16 +46,16 @@ class _Form:
 class Fitter:
     """The equations of one note, each as short as can be."""
 
-    def __init__(self, derivation: Derivation, notation: Notation) -> None:
+    def __init__(self, derivation: Derivation, letters: Letters) -> None:
         self.derivation = derivation
-        self.notation = notation
-        self._namer = Namer(notation)
+        self.letters = letters
+        self._namer = Namer(letters)
         self._explained_at: dict[sp.Symbol, str] = {}  # name of a part: label of its equation
 
     def fitted(self, equation: Equation, step: Step) -> Iterator[Block]:
         """An equation; where it would be long, in short, or its parts with their names first."""
-        equation = as_vectors(equation, step, self.notation)
-        short = in_short(step, self.derivation, self.notation) if self._breaks(equation) else None
+        equation = as_vectors(equation, step, self.letters)
+        short = in_short(step, self.derivation, self.letters) if self._breaks(equation) else None
         if short is not None and self.derivation.model.vector and _is_of_motion(step):
             yield _without_entries(equation, short)
             return
@@ -74,7 +75,7 @@ class Fitter:
         """With names for its parts, where that is better than without."""
         plain = _Form(equation)
         breaks = self._breaks(equation)
-        if not breaks and not display(equation, self.notation, PAGE).done:
+        if not breaks and not display(equation, self.letters, PAGE).done:
             return plain
         named = self._named(equation)
         is_better = self._is_shorter if breaks else self._is_more_of_a_matrix
@@ -87,7 +88,7 @@ class Fitter:
         """Whether a value, or an entry, fits on no line."""
         if equation.matrix is None and equation.scalar is None:
             return False
-        shown = display(equation, self.notation, PAGE)
+        shown = display(equation, self.letters, PAGE)
         lines = min(len(equation.sides), 2) if equation.matrix is None else len(equation.entries)
         return shown.lines > lines or shown.width > PAGE
 
@@ -101,8 +102,8 @@ class Fitter:
 
     def _is_shorter(self, named: _Form, plain: _Form) -> bool:
         """Whether names save lines; two more are worth it where nothing is broken then."""
-        shown = display(named.equation, self.notation, PAGE)
-        if display(plain.equation, self.notation, PAGE).width > PAGE:
+        shown = display(named.equation, self.letters, PAGE)
+        if display(plain.equation, self.letters, PAGE).width > PAGE:
             return True
         lines = sum(map(self._lines, self._blocks(named)))
         before = self._lines(plain.equation)
@@ -112,8 +113,8 @@ class Fitter:
 
     def _is_more_of_a_matrix(self, named: _Form, plain: _Form) -> bool:
         """Whether a matrix that is too wide for one fits with names for its parts."""
-        was_listed = display(plain.equation, self.notation, PAGE).done == "listed"
-        fits = not display(named.equation, self.notation, PAGE).done
+        was_listed = display(plain.equation, self.letters, PAGE).done == "listed"
+        fits = not display(named.equation, self.letters, PAGE).done
         return fits and (was_listed or all(value.is_Add for _, value in named.parts))
 
     def _blocks(self, form: _Form) -> Iterator[Block]:
@@ -122,19 +123,21 @@ class Fitter:
         old: dict[str, list[Text]] = {}
         for name, _ in form.parts:
             if name in self._explained_at:
-                old.setdefault(self._explained_at[name], []).append((markup(name, self.notation),))
+                old.setdefault(self._explained_at[name], []).append(
+                    (formula_of(name, self.letters),)
+                )
         if old:
             yield Paragraph((*_again(old), "; let" if new else "."))
         elif new:
             yield Paragraph(("Let",))
         if new:
-            yield definitions(new, self.notation)
+            yield definitions(new, self.letters)
         yield form.equation
 
     def _lines(self, block: Block) -> int:
         if not isinstance(block, Equation):
             return 1
-        shown = display(block, self.notation, PAGE)
+        shown = display(block, self.letters, PAGE)
         if block.matrix is None or not block.sides or shown.done == "listed":
             return shown.lines
         return int(block.matrix.shape[0])
@@ -157,34 +160,34 @@ def _is_of_motion(step: Step) -> bool:
     return step.quantity.name not in {*INERTIA_QUANTITIES, *ENERGY_QUANTITIES}
 
 
-def _said(equation: Equation, short: Sequence[Markup], lines: int) -> Iterator[Block]:
+def _said(equation: Equation, short: Sequence[Formula], lines: int) -> Iterator[Block]:
     """What it is, and how long it would be; the function evaluates it all the same."""
     what = "It" if equation.matrix is None else "Its entries"
     yield _without_entries(equation, short)
     yield Paragraph((f"{what}, written out, would fill {lines} lines.",))
 
 
-def as_vectors(equation: Equation, step: Step, notation: Notation) -> Equation:
+def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:
     """With its vector form; where there is one, the entries are shown only if they fit."""
     if step.vector_form is None:
         return equation
-    sides = (*equation.sides, sum_of_vectors(step.vector_form, notation))
+    sides = (*equation.sides, sum_of_vectors(step.vector_form, letters))
     whole = replace(equation, sides=sides)
-    fits = not display(whole, notation, PAGE).done
+    fits = not display(whole, letters, PAGE).done
     return whole if fits else _without_entries(equation, sides[-1:])
 
 
-def definitions(parts: Sequence[Part], notation: Notation) -> Equation:
+def definitions(parts: Sequence[Part], letters: Letters) -> Equation:
     """k₁ = ..., k₂ = ...: what the names of parts stand for."""
     names, values = zip(*parts, strict=True)
     return Equation(
         sides=(),
         matrix=sp.ImmutableMatrix(values),
-        entries=tuple(markup(name, notation) for name in names),
+        entries=tuple(formula_of(name, letters) for name in names),
     )
 
 
-def _without_entries(equation: Equation, sides: Sequence[Markup]) -> Equation:
+def _without_entries(equation: Equation, sides: Sequence[Formula]) -> Equation:
     """Ended by these sides in place of its entries; where nothing is left, it is a definition."""
     return replace(
         equation,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rigidsym.notes.layout.text_width import columns
+from rigidsym.formula.unicode_pen import columns
 
 
 def grid(prefix: str, rows: Sequence[Sequence[str]], *, tight: bool = False) -> list[str]:

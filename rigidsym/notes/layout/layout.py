@@ -1,62 +1,57 @@
 """How an equation is set so that it fits: on one line, on two, in shorthand, or entry by entry.
 
-The choice is by estimated width, in this order. A reader who has to know of it is told.
+The choice is by estimated width, in this order. A reader who has to know of it is told. Any pen
+that typesets can write the result.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Literal
 
-import sympy as sp
-
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.pen import Line, Piece, break_lines
+from rigidsym.formula.sheet_pen import Aligned, SheetPen
+from rigidsym.formula.tree import Formula, Matrix, equal
+from rigidsym.formula.widths import EQUAL, QUAD
 from rigidsym.notes.document.document import Equation
-from rigidsym.notes.formula.formula import latex
-from rigidsym.notes.formula.notation import Notation
-from rigidsym.notes.layout.breaking import Line, break_lines
-from rigidsym.notes.layout.text_width import ems, matrix_ems
+from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.scalars import formula_of, matrix_of
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
 BOX = 0.65  # ems that the box around a result takes
 
-Entries = Sequence[Sequence[str]]
 Done = Literal["", "abbreviated", "listed"]
 
-_EQUAL = ems("=")
-_QUAD = ems(r"\quad")
 _MOST_INDENTS = 5
-_ROW = r" \\[2pt]" + "\n"  # dots above the letters want some air
-_HIGH_ROW = r" \\[7pt]" + "\n"  # so do fractions
-_BELOW_FRACTIONS = r" \\[10pt]" + "\n"  # in a matrix, where a row's depth is part of this
-_BELOW_ROOTS = r" \\[13pt]" + "\n"  # roots in fractions are deeper
 
 
 @dataclass(frozen=True, slots=True)
 class Rows:
     """Lines below one another, between which a page may end where they are many."""
 
-    environment: Literal["aligned", "gathered"]
-    joint: str
-    lines: tuple[str, ...]
-
-    @property
-    def inside(self) -> str:
-        return self.joint.join(self.lines)
+    lines: tuple[Aligned, ...]
+    is_high: bool = False
+    are_aligned: bool = True
 
     @property
     def height(self) -> float:
         """In lines of text."""
-        return sum(2.4 if r"\frac" in line else 1.3 for line in self.lines)
+        return sum(2.4 if line.height else 1.3 for line in self.lines)
+
+    def written(self, pen: SheetPen) -> str:
+        if self.are_aligned:
+            return pen.aligned(self.lines, is_high=self.is_high)
+        bodies = [pen.continued(line.body, line.indent) for line in self.lines]
+        return pen.gathered(bodies, is_high=self.is_high)
 
 
 @dataclass(frozen=True, slots=True)
 class Display:
     """The inside of a display, how wide it is, and what was done that the reader must know."""
 
-    latex: str
+    text: str
     width: float  # ems; it may be more than was asked for, where there is no place to break
     done: Done = ""
     rows: Rows | None = None
@@ -67,211 +62,183 @@ class Display:
         return len(self.rows.lines) if self.rows else 1
 
 
-def display(equation: Equation, notation: Notation, width: float) -> Display:
+def display(
+    equation: Equation, letters: Letters, width: float, pen: SheetPen | None = None
+) -> Display:
     """The equation in the first form that fits into `width` ems; a listing where none does.
 
-    A result is in a box, which is part of its width.
+    A result is in a box, which is part of its width. `pen` is that of LaTeX by default.
     """
+    setter = _Setter(letters, pen or LatexPen(letters.notation))
     if not equation.is_result:
-        return _display(equation, notation, width)
-    inside = _display(equation, notation, width - BOX)
-    return replace(inside, latex=rf"\boxed{{{inside.latex}}}", width=inside.width + BOX)
+        return setter.display(equation, width)
+    inside = setter.display(equation, width - BOX)
+    return replace(inside, text=setter.pen.boxed(inside.text), width=inside.width + BOX)
 
 
-def _display(equation: Equation, notation: Notation, width: float) -> Display:
-    if equation.scalar is not None:
-        return _scalar(equation, latex(equation.scalar, notation), width)
-    if equation.matrix is None:
-        return _chain(equation, width)
-    full = _rows(equation.matrix, notation, shorthand=False)
-    if not equation.sides:
-        return _definitions(equation, full, width)
-    for form, needed in _forms(equation, full):
-        if needed <= width:
-            return Display(form, needed)
-    if equation.matrix.shape[1] > 1:
-        for form, needed in _forms(equation, _rows(equation.matrix, notation, shorthand=True)):
-            if needed <= width:
-                return Display(form, needed, "abbreviated")
-    lines, widest = _listing(equation, full, width)
-    return _below(Rows("aligned", _ROW, tuple(lines)), widest, "listed")
-
-
-def _below(rows: Rows, width: float, done: Done = "") -> Display:
-    return Display(_environment(rows.environment, rows.inside), width, done, rows)
-
-
-def height(equation: Equation, notation: Notation) -> float:
+def height(equation: Equation, letters: Letters) -> float:
     """About how many lines of text an equation takes, with the air around it."""
+    pen = LatexPen(letters.notation)
     if equation.matrix is None:
-        line = 2.4 if any(r"\frac" in side.latex for side in equation.sides) else 1.3
-        return 0.7 + line * display(equation, notation, PAGE).lines
-    rows = _rows(equation.matrix, notation, shorthand=False)
-    return 1.2 + sum(2.4 if any(r"\frac" in entry for entry in row) else 1.2 for row in rows)
+        line = 2.4 if any(pen.write(side).height for side in equation.sides) else 1.3
+        return 0.7 + line * display(equation, letters, PAGE).lines
+    rows = [list(map(pen.write, line)) for line in matrix_of(equation.matrix, letters)]
+    return 1.2 + sum(2.4 if any(entry.height for entry in line) else 1.2 for line in rows)
 
 
-def pack(equations: Sequence[Equation], notation: Notation, width: float) -> str:
+def pack(equations: Sequence[Equation], letters: Letters, width: float, pen: SheetPen) -> str:
     """Short equations, as many on a line as fit into `width` ems."""
     lines: list[str] = []
     room = 0.0
     for equation in equations:
-        shown = display(equation, notation, width)
-        form, needed = shown.latex, shown.width
-        if lines and needed + 2 * _QUAD <= room:
-            lines[-1] += rf" \qquad {form}"
-            room -= needed + 2 * _QUAD
+        shown = display(equation, letters, width, pen)
+        if lines and shown.width + 2 * QUAD <= room:
+            lines[-1] += f" {pen.wide_gap}{shown.text}"
+            room -= shown.width + 2 * QUAD
         else:
-            lines.append(form)
-            room = width - needed
-    return lines[0] if len(lines) == 1 else _environment("gathered", _HIGH_ROW.join(lines))
+            lines.append(shown.text)
+            room = width - shown.width
+    return lines[0] if len(lines) == 1 else pen.gathered(lines, is_high=True)
 
 
-@lru_cache(maxsize=256)
-def _rows(matrix: sp.ImmutableMatrix, notation: Notation, *, shorthand: bool) -> Entries:
-    return [[latex(e, notation, shorthand=shorthand) for e in row] for row in matrix.tolist()]
-
-
-def _forms(equation: Equation, rows: Entries) -> Iterator[tuple[str, float]]:
-    """The equation on one line, and broken before its last equals sign; with their widths."""
-    yield _one_line(equation, rows)
-    if len(equation.sides) > 1:
-        first, *others = (side.latex for side in equation.sides)
-        above = " = ".join(others)
-        lines = f"{first} &= {above}{_HIGH_ROW}&= {_matrix(rows)}"
-        widest = max(ems(above), matrix_ems(rows))
-        yield _environment("aligned", lines), ems(first) + _EQUAL + widest
-
-
-def _one_line(equation: Equation, rows: Entries) -> tuple[str, float]:
-    sides = [side.latex for side in equation.sides]
-    needed = sum(map(ems, sides)) + _EQUAL * len(sides) + matrix_ems(rows)
-    return " = ".join([*sides, _matrix(rows)]), needed
-
-
-def _matrix(rows: Entries) -> str:
-    first, *others = (" & ".join(map(_tall, row)) for row in rows)
-    text, above = first, first
-    for line in others:
-        text += _between(above, line) + line
-        above = line
-    return _environment("pmatrix", text)
-
-
-def _between(above: str, below: str) -> str:
-    """The end of the upper of two rows: what is high wants air."""
-    if r"\frac" in above:
-        return _BELOW_ROOTS if r"\sqrt" in above + below else _BELOW_FRACTIONS
-    return _HIGH_ROW if r"\frac" in below else _ROW
-
-
-def _tall(entry: str) -> str:
-    """The entry with its fractions in their full height, but for those within others."""
-    return rf"\displaystyle {entry}" if r"\frac" in entry else entry
-
-
-def _definitions(equation: Equation, rows: Entries, width: float) -> Display:
-    """Short ones side by side, as many as fit on a line; long ones broken, below one another."""
-    lines: list[str] = []
-    room = widest = 0.0
-    for name, (value,) in zip(equation.entries, rows, strict=True):
-        needed = ems(name.latex) + _EQUAL + ems(value)
-        if needed + 2 * _QUAD <= room:
-            lines[-1] += rf" \qquad {name.latex} = {value}"
-            room -= needed + 2 * _QUAD
-            continue
-        broken, own = _listing(_one(name), [[value]], width)
-        lines += [line.replace("&=", "=", 1).replace("&", "", 1) for line in broken]
-        room = width - own if len(broken) == 1 else 0.0
-        widest = max(widest, own)
-    return _below(Rows("gathered", _ROW, tuple(lines)), widest)
-
-
-def _one(name: Markup) -> Equation:
-    return Equation(sides=(), entries=(name,))
-
-
-def broken(formula: str, width: float) -> list[Line]:
-    """The lines of a formula in LaTeX; no line can end between \\left and \\right."""
-    lines = break_lines(formula, width, ems, _QUAD)
-    if _widest(lines) <= width:
+def broken(formula: Formula, width: float, pen: SheetPen) -> list[Line]:
+    """The lines of a formula; within high brackets it is broken only if nothing else will do."""
+    lines = break_lines(pen.write(formula), width, QUAD)
+    if widest(lines) <= width:
         return lines
-    loose = formula.replace(r"\left(", r"\Bigl(").replace(r"\right)", r"\Bigr)")
-    return min(lines, break_lines(loose, width, ems, _QUAD), key=_widest)
+    loose = break_lines(pen.but(loose=True).write(formula), width, QUAD)
+    return min(lines, loose, key=widest)
 
 
-def broken_ems(formula: str, width: float) -> float:
-    """The width of the widest line of a formula that is broken to fit into `width` ems."""
-    return _widest(broken(formula, width))
-
-
-def _widest(lines: Sequence[Line]) -> float:
+def widest(lines: Sequence[Line]) -> float:
     """The width of the widest line; those after the first are indented."""
     first, *others = lines
-    return max(ems(first.text), *(_QUAD * (1 + o.depth) + ems(o.text) for o in others), 0.0)
+    return max(first.width, *(QUAD * (1 + line.depth) + line.width for line in others), 0.0)
 
 
-def _hung(formula: str, room: float) -> list[Line]:
-    """The lines of a formula that fit with their indents, as far as they can be broken."""
-    for indents in range(1, _MOST_INDENTS):
-        lines = broken(formula, room - indents * _QUAD)
-        if _widest(lines) <= room:
-            break
-    return lines
+class _Setter:
+    """Sets equations with one pen."""
+
+    def __init__(self, letters: Letters, pen: SheetPen) -> None:
+        self.letters = letters
+        self.pen = pen
+
+    def display(self, equation: Equation, width: float) -> Display:
+        # in another notation a rate may be its own definition
+        sides = tuple(dict.fromkeys(map(self.letters.notation.applied, equation.sides)))
+        if equation.scalar is not None:
+            # a value stands on one line with its sides, or below them
+            given = [sides[0], *([equal(*sides[1:])] if sides[1:] else [])]
+            return self._lines([*given, formula_of(equation.scalar, self.letters)], width)
+        if equation.matrix is None:
+            return self._lines(sides, width)
+        rows = matrix_of(equation.matrix, self.letters)
+        if not sides:
+            return self._definitions(equation.entries, [value for (value,) in rows], width)
+        full = Matrix(tuple(map(tuple, rows)))
+        for form in self._forms(sides, full, self.pen):
+            if form.width <= width:
+                return form
+        if equation.matrix.shape[1] > 1:
+            for form in self._forms(sides, full, self.pen.but(short=True)):
+                if form.width <= width:
+                    return replace(form, done="abbreviated")
+        lines, needed = self._listing(equation.entries, [e for row in rows for e in row], width)
+        return self._below(Rows(tuple(lines)), needed, "listed")
+
+    def _below(self, rows: Rows, width: float, done: Done = "") -> Display:
+        return Display(rows.written(self.pen), width, done, rows)
+
+    def _forms(self, sides: Sequence[Formula], matrix: Matrix, pen: SheetPen) -> Iterator[Display]:
+        """The equation on one line, and broken before its last equals sign."""
+        whole = pen.write(equal(*sides, matrix))
+        yield Display(whole.text, whole.width)
+        if len(sides) > 1:
+            first, above, last = map(pen.write, (sides[0], equal(*sides[1:]), matrix))
+            lines = (Aligned(first.text, above.text, "="), Aligned("", last.text, "="))
+            needed = first.width + EQUAL + max(above.width, last.width)
+            yield Display(pen.aligned(lines, is_high=True), needed)
+
+    def _definitions(
+        self, names: Sequence[Formula], values: Sequence[Formula], width: float
+    ) -> Display:
+        """Short ones side by side, as many as fit on a line; long ones broken."""
+        lines: list[Aligned] = []
+        room = needed = 0.0
+        for name, value in zip(names, values, strict=True):
+            whole = self.pen.write(equal(name, value))
+            if whole.width + 2 * QUAD <= room:
+                body = f"{lines[-1].body} {self.pen.wide_gap}{whole.text}"
+                lines[-1] = replace(
+                    lines[-1], body=body, height=max(lines[-1].height, whole.height)
+                )
+                room -= whole.width + 2 * QUAD
+                continue
+            cut, own = self._listing([name], [value], width)
+            first = replace(cut[0], head="", sign="", body=self._headed(name, cut[0].body))
+            lines += [first, *cut[1:]]
+            room = width - own if len(cut) == 1 else 0.0
+            needed = max(needed, own)
+        return self._below(Rows(tuple(lines), are_aligned=False), needed)
+
+    def _headed(self, name: Formula, body: str) -> str:
+        """The first line of a definition, without a place to align it."""
+        head = self.pen.write(name).text
+        return f"{head} {self.pen.sign('=', is_binary=True).text.strip()} {body}"
+
+    def _listing(
+        self, names: Sequence[Formula], entries: Sequence[Formula], width: float
+    ) -> tuple[list[Aligned], float]:
+        """One entry after the other, long ones broken at + and −; with its width."""
+        heads = [self.pen.write(name) for name in names]
+        head = max(piece.width for piece in heads) + EQUAL
+        needed = 0.0
+        lines: list[Aligned] = []
+        for name, entry in zip(heads, entries, strict=True):
+            (first, *others), own = self._hanging([entry], width - head)
+            lines += [replace(first, head=name.text), *others]
+            needed = max(needed, own)
+        return lines, head + needed
+
+    def _lines(self, sides: Sequence[Formula], width: float) -> Display:
+        """Sides that are equal: on one line, or each on its own and broken at + and −."""
+        whole = self.pen.write(equal(*sides))
+        if whole.width <= width or len(sides) == 1:
+            return Display(whole.text, whole.width)
+        first, *others = sides
+        head = self.pen.write(first)
+        room = head.width + EQUAL
+        lines, needed = self._hanging(others, width - room)
+        lines[0] = replace(lines[0], head=head.text)
+        return self._below(Rows(tuple(lines), is_high=True), room + needed)
+
+    def _hanging(self, formulas: Sequence[Formula], room: float) -> tuple[list[Aligned], float]:
+        """Each formula behind its sign, long ones broken at + and −; with the greatest width."""
+        lines: list[Aligned] = []
+        needed = 0.0
+        for formula in formulas:
+            first, *others = hung = self._hung(formula, room)
+            tall = self.pen.write(formula).height
+            lines.append(Aligned("", first.text, "=", height=tall))
+            lines += [Aligned("", line.text, indent=1 + line.depth, height=tall) for line in others]
+            needed = max(needed, widest(hung))
+        return lines, needed
+
+    def _hung(self, formula: Formula, room: float) -> list[Line]:
+        """The lines of a formula that fit with their indents, as far as they can be broken."""
+        for indents in range(1, _MOST_INDENTS):
+            lines = broken(formula, room - indents * QUAD, self.pen)
+            if widest(lines) <= room:
+                break
+        return lines
 
 
-def _listing(equation: Equation, rows: Entries, width: float) -> tuple[list[str], float]:
-    """One entry after the other, long ones broken at + and −; with its width."""
-    entries = [entry for row in rows for entry in row]
-    head = max(ems(name.latex) for name in equation.entries) + _EQUAL
-    widest = 0.0
-    lines: list[str] = []
-    for name, entry in zip(equation.entries, entries, strict=True):
-        (first, *others), own = _hanging("=", [entry], width - head)
-        lines += [name.latex + first, *others]
-        widest = max(widest, own)
-    return lines, head + widest
-
-
-def _scalar(equation: Equation, value: str, width: float) -> Display:
-    """A value on one line with its sides, or below them and broken at + and −."""
-    *sides, last = (side.latex for side in equation.sides)
-    whole = " = ".join([*sides, last, value])
-    if ems(whole) <= width:
-        return Display(whole, ems(whole))
-    first = sides[0] if sides else last
-    above = [" = ".join([*sides[1:], last])] if sides else []
-    head = ems(first) + _EQUAL
-    lines, widest = _hanging("=", [*above, value], width - head)
-    lines[0] = first + lines[0]
-    return _below(Rows("aligned", _HIGH_ROW, tuple(lines)), head + widest)
-
-
-def _chain(equation: Equation, width: float) -> Display:
-    """Sides that are equal: on one line, or each on its own."""
-    sides = [side.latex for side in equation.sides]
-    whole = " = ".join(sides)
-    if ems(whole) <= width:
-        return Display(whole, ems(whole))
-    first, *others = sides
-    if not others:
-        return Display(whole, ems(whole))
-    head = ems(first) + _EQUAL
-    lines, widest = _hanging("=", others, width - head)
-    lines[0] = first + lines[0]
-    return _below(Rows("aligned", _HIGH_ROW, tuple(lines)), head + widest)
-
-
-def _hanging(sign: str, formulas: Sequence[str], room: float) -> tuple[list[str], float]:
-    """Each formula behind a sign, long ones broken at + and −; with the width of the widest."""
-    lines: list[str] = []
-    widest = 0.0
-    for formula in formulas:
-        first, *others = hung = _hung(formula, room)
-        lines.append(f" &{sign} {first.text}")
-        lines += ["&" + r"\quad" * (1 + line.depth) + f" {{}}{line.text}" for line in others]
-        widest = max(widest, _widest(hung))
-    return lines, widest
-
-
-def _environment(name: str, inside: str) -> str:
-    return f"\\begin{{{name}}}\n{inside}\n\\end{{{name}}}"
+def inline_parts(piece: Piece) -> list[str]:
+    """A formula among words, cut before each sign outside all brackets."""
+    parts: list[str] = []
+    for chunk in piece.chunks:
+        if parts and chunk.level:
+            parts[-1] += f" {chunk.text}"
+        else:
+            parts.append(chunk.text)
+    return parts

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import ceil
 
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import Table, Text
 from rigidsym.notes.prose.words import plain
 
@@ -33,7 +34,7 @@ def paged(table: Table) -> Iterator[Table]:
 
 def _lines(cell: Text) -> int:
     """How high a cell stands: a fraction is as high as two lines."""
-    if any(isinstance(span, Markup) and r"\frac" in span.latex for span in cell):
+    if any(isinstance(span, Formula) and LatexPen().write(span).height for span in cell):
         return 2
     words = any(isinstance(span, str) and " " in span for span in cell)
     return ceil(len(plain(cell)) / _WORDS) or 1 if words else 1

@@ -10,13 +10,13 @@ from rigidsym.notes.document.document import Figure, Text
 from rigidsym.notes.figure.camera import Vector
 from rigidsym.notes.figure.drawing import drawn
 from rigidsym.notes.figure.scene import Arc, Kind, Posed, scene_of
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.prose.words import listed, words
 
 
-def figure_of(model: RotationModel, notation: Notation) -> Figure | None:
+def figure_of(model: RotationModel, letters: Letters) -> Figure | None:
     """The figure of a product of turns, or of one turn about a vector; None for any other model."""
-    scene = scene_of(model, notation)
+    scene = scene_of(model, letters)
     if scene is None:
         return None
     view = scene.view

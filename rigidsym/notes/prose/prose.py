@@ -2,52 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-from rigidsym.mechanics.claims import fill, rate_of, spin_of
-from rigidsym.mechanics.derivation import Markup
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Symbol, equal, joined, row
+from rigidsym.mechanics.claims import rate_of, spin_of
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, ROTATION, SPACE
 from rigidsym.models.rotation import Turn, lecture
 from rigidsym.notes.document.document import Block, Cited, Equation, Paragraph, Text
-from rigidsym.notes.formula.formula import markup
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.layout import Done
-from rigidsym.notes.prose.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION, equal, words
+from rigidsym.notes.prose.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION, words
 
 _TURNING = lecture("3", "section 1.2")
 _MOTION = lecture("15", "section 3.2")
-_VELOCITY = Markup(r"\dot{\mathbf{x}}", "ẋ")
-_BODY_VELOCITY = Markup(r"\dot{\mathbf{x}}'", "ẋ′")
+_VELOCITY = formula(r"\dot{\mathbf{x}}")
+_BODY_VELOCITY = formula(r"\dot{\mathbf{x}}'")
 _SHORTHAND = (
-    Markup(r"s_\alpha", "s_α"),
-    Markup(r"\sin\alpha", "sin α"),
-    Markup(r"c_\alpha", "c_α"),
-    Markup(r"\cos\alpha", "cos α"),
+    formula(r"s_\alpha"),
+    formula(r"\sin\alpha"),
+    formula(r"c_\alpha"),
+    formula(r"\cos\alpha"),
 )
-_VECTOR = Markup(r"\mathbf{u}", "u")
+_VECTOR = formula(r"\mathbf{u}")
 
 
-def product(factors: Sequence[Markup]) -> Markup:
-    return Markup(
-        r"\,".join(factor.latex for factor in factors), " ".join(factor.text for factor in factors)
-    )
-
-
-def turn(turn: Turn, notation: Notation) -> Markup:
+def turn(turn: Turn, letters: Letters) -> Formula:
     """R_z(φ), or R_[0, 3/5, 4/5](φ)."""
-    angle = markup(turn.angle, notation)
-    axis = axis_of(turn, notation)
-    latex = rf"{{{axis.latex}}}" if turn.components else axis.latex
-    return fill(r"\mathbf{{R}}_{0}({1})", "R_{0}({1})", Markup(latex, axis.text), angle)
+    return Apply(Symbol("R", "bold", index=axis_of(turn, letters)), formula_of(turn.angle, letters))
 
 
-def axis_of(turn: Turn, notation: Notation) -> Markup:
+def axis_of(turn: Turn, letters: Letters) -> Formula:
     """The axis of a turn: its letter, or its components."""
     if not turn.components:
-        return Markup(turn.axis, turn.axis)
-    parts = [markup(part, notation) for part in turn.components]
-    latex, text = (", ".join(getattr(part, kind) for part in parts) for kind in ("latex", "text"))
-    return Markup(f"[{latex}]", f"[{text}]")
+        return Symbol(turn.axis)
+    return Bracket(joined([formula_of(c, letters) for c in turn.components], COMMA), "[]")
 
 
 def motion(*, passive: bool) -> Iterator[Block]:
@@ -62,8 +52,8 @@ def _active_motion() -> Iterator[Block]:
     yield Equation(
         sides=(
             _VELOCITY,
-            product([rate_of(ROTATION), BODY_POSITION]),
-            product([spinning, POSITION]),
+            row(rate_of(ROTATION), BODY_POSITION),
+            row(spinning, POSITION),
         )
     )
     yield Paragraph(
@@ -87,8 +77,8 @@ def _passive_motion() -> Iterator[Block]:
     yield Equation(
         sides=(
             _BODY_VELOCITY,
-            product([rate_of(COSINES), POSITION]),
-            product([spinning, BODY_POSITION]),
+            row(rate_of(COSINES), POSITION),
+            row(spinning, BODY_POSITION),
         )
     )
     yield Paragraph(
@@ -103,16 +93,16 @@ def _passive_motion() -> Iterator[Block]:
     )
 
 
-def _cross(left: Markup, right: Markup) -> Markup:
-    return fill(r"{0}\times{1}", "{0} × {1}", left, right)
+def _cross(left: Formula, right: Formula) -> Formula:
+    return formula(r"#1\times#2", left, right)
 
 
-def _operator(vector: Markup) -> Markup:
-    return fill(r"{0}\times", "{0} ×", vector)
+def _operator(vector: Formula) -> Formula:
+    return formula(r"#1\times", vector)
 
 
-def _minus(symbol: Markup) -> Markup:
-    return fill("-{0}", "−{0}", symbol)
+def _minus(symbol: Formula) -> Formula:
+    return formula("-#1", symbol)
 
 
 def announcement(equation: Equation, done: Done) -> Text:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from rigidsym.mechanics.claims import fill, transpose_of
-from rigidsym.mechanics.derivation import Derivation, Markup, Step
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula, row
+from rigidsym.mechanics.claims import rate_of, transpose_of
+from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE, Frame
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.formula.vector_rates import rate_of_form
-from rigidsym.notes.prose.prose import product, turn
+from rigidsym.notes.prose.prose import turn
 from rigidsym.notes.prose.vector_words import sum_of_vectors
 
 _DEFINED = frozenset(  # by other quantities, and so are rates from an angular velocity
@@ -22,15 +24,15 @@ _DEFINED = frozenset(  # by other quantities, and so are rates from an angular v
         "angular_momentum",
     }
 )
-_ACCELERATIONS = Markup(r"\ddot{\mathbf{q}}", "q\u0308")
+_ACCELERATIONS = formula(r"\ddot{\mathbf{q}}")
 _FRAMES = {frame.name: frame for frame in (SPACE, BODY)}
 
 
-def in_short(step: Step, derivation: Derivation, notation: Notation) -> tuple[Markup, ...] | None:
+def in_short(step: Step, derivation: Derivation, letters: Letters) -> tuple[Formula, ...] | None:
     """What a quantity is equal to, by other quantities; None where it is known by itself alone."""
     kind, _, frame = step.quantity.name.rpartition("_")
     if step.quantity.name == "rotation_matrix" and derivation.model.turns:
-        return (_turns(derivation.model, notation),)
+        return (_turns(derivation.model, letters),)
     if step.quantity.name == "rotation_rate":
         return (_poisson(passive=derivation.model.passive),)
     if step.quantity.name in _DEFINED or kind == "rates_from_angular_velocity":
@@ -38,23 +40,23 @@ def in_short(step: Step, derivation: Derivation, notation: Notation) -> tuple[Ma
     if kind == "inverse_rate_matrix" and _is_least(derivation):
         return (_least(_FRAMES[frame]),)
     if kind == "angular_acceleration":
-        return (_acceleration(derivation, _FRAMES[frame], notation),)
+        return (_acceleration(derivation, _FRAMES[frame], letters),)
     return None
 
 
-def _turns(model: RotationModel, notation: Notation) -> Markup:
+def _turns(model: RotationModel, letters: Letters) -> Formula:
     """R_z(φ) R_x(θ) R_z(ψ), and its transpose for A."""
-    whole = product([turn(each, notation) for each in model.turns])
+    whole = row(*(turn(each, letters) for each in model.turns))
     if not model.passive:
         return whole
-    return fill(r"\left({0}\right)^{{\mathsf T}}", "({0})ᵀ", whole)
+    return formula(r"\left(#1\right)^{\mathsf T}", whole)
 
 
-def _poisson(*, passive: bool) -> Markup:
+def _poisson(*, passive: bool) -> Formula:
     """dR/dt = C(Ω) R, and dA/dt = −C(Ω′) A."""
     if passive:
-        return fill(r"-\mathbf{{C}}({0})\,{1}", "−C({0}) {1}", BODY.omega, COSINES)
-    return fill(r"\mathbf{{C}}({0})\,{1}", "C({0}) {1}", SPACE.omega, ROTATION)
+        return formula(r"-\mathbf{C}(#1)\,#2", BODY.omega, COSINES)
+    return formula(r"\mathbf{C}(#1)\,#2", SPACE.omega, ROTATION)
 
 
 def _is_least(derivation: Derivation) -> bool:
@@ -62,18 +64,16 @@ def _is_least(derivation: Derivation) -> bool:
     return len(derivation.model.coordinates) > 3 and not derivation.model.constraints
 
 
-def _least(frame: Frame) -> Markup:
+def _least(frame: Frame) -> Formula:
     """Wᵀ (W Wᵀ)⁻¹."""
-    latex, text = r"{1}\left({0}{1}\right)^{{-1}}", "{1} ({0} {1})⁻¹"
-    return fill(latex, text, frame.matrix, transpose_of(frame.matrix))
+    return formula(r"#2\,(#1#2)^{-1}", frame.matrix, transpose_of(frame.matrix))
 
 
-def _acceleration(derivation: Derivation, frame: Frame, notation: Notation) -> Markup:
+def _acceleration(derivation: Derivation, frame: Frame, letters: Letters) -> Formula:
     """The derivative of the vector form of Ω, or Ẇ q̇ + W q̈."""
     names = [step.quantity.name for step in derivation.steps]
     velocity = f"angular_velocity_{frame.name}"
     form = derivation.step(velocity).vector_form if velocity in names else None
-    if form is not None and notation.length is not None:
-        return sum_of_vectors(rate_of_form(form, notation.length.rate), notation)
-    latex, text = r"{0}\,{1} + \frac{{d{0}}}{{dt}}\,{2}", "{0} {1} + d{0}/dt {2}"
-    return fill(latex, text, frame.matrix, _ACCELERATIONS, RATES)
+    if form is not None and letters.length is not None:
+        return sum_of_vectors(rate_of_form(form, letters.length.rate), letters)
+    return formula(r"#1\,#2 + #4\,#3", frame.matrix, _ACCELERATIONS, RATES, rate_of(frame.matrix))

@@ -8,10 +8,11 @@ from math import prod
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.mechanics.claims import fill, transpose_of
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula, Number, Symbol, equal
+from rigidsym.mechanics.claims import transpose_of
 from rigidsym.mechanics.derivation import (
     Derivation,
-    Markup,
     Measure,
     Place,
     Singularities,
@@ -19,32 +20,28 @@ from rigidsym.mechanics.derivation import (
 )
 from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
 from rigidsym.notes.document.document import Text
-from rigidsym.notes.formula.formula import markup
-from rigidsym.notes.formula.notation import Notation, notation_of
-from rigidsym.notes.prose.words import equal, listed, vector, words
+from rigidsym.notes.formula.letters import Letters, letters_of
+from rigidsym.notes.formula.scalars import formula_of
+from rigidsym.notes.prose.words import listed, vector, words
 
 _MOST_POINTS = 8  # that are told of one by one
 _FRAMES = (SPACE.matrix, BODY.matrix)
-WITH_CONDITIONS = Markup(r"\mathbf{J}", "J")
+WITH_CONDITIONS = formula(r"\mathbf{J}")
 _WHOLE_TURN = 2 * sp.pi
-_COUNTED = Markup(r"k = 1, 2, \ldots", "k = 1, 2, …")
+_COUNTED = formula(r"k = 1, 2, \ldots")
 
 
-def measured(found: Singularities) -> tuple[Markup, ...]:
+def measured(found: Singularities) -> tuple[Formula, ...]:
     """What is worked out in both frames: det W and det W′, det (W Wᵀ), ..."""
-    match found.measure:
-        case "det W":
-            return tuple(fill(r"\det {0}", "det {0}", matrix) for matrix in _FRAMES)
-        case "det [W, J]":
-            stacked = r"\det\begin{{pmatrix}}{0}\\{1}\end{{pmatrix}}"
-            return tuple(fill(stacked, "det [{0}; {1}]", m, WITH_CONDITIONS) for m in _FRAMES)
-        case "det W Wᵀ":
-            product = (r"\det\left({0}{1}\right)", "det({0} {1})")
-            return tuple(fill(*product, matrix, transpose_of(matrix)) for matrix in _FRAMES)
-        case "det Wᵀ W":
-            product = (r"\det\left({1}{0}\right)", "det({1} {0})")
-            return tuple(fill(*product, matrix, transpose_of(matrix)) for matrix in _FRAMES)
-    return (Markup(rf"\Sigma_{{{found.rank}}}", f"Σ{found.rank}"),)
+    typed = {
+        "det W": r"\det #1",
+        "det [W, J]": r"\det\begin{pmatrix}#1\\#2\end{pmatrix}",
+        "det W Wᵀ": r"\det(#1#3)",
+        "det Wᵀ W": r"\det(#3#1)",
+    }.get(found.measure)
+    if typed is None:
+        return (Symbol("Σ", index=Number(str(found.rank))),)
+    return tuple(formula(typed, m, WITH_CONDITIONS, transpose_of(m)) for m in _FRAMES)
 
 
 def meaning(found: Singularities) -> Text:
@@ -74,24 +71,24 @@ def meaning(found: Singularities) -> Text:
 
 def failures(derivation: Derivation, found: Singularities) -> Iterator[Text]:
     """All that is said of them: where, and then what is lost at each point."""
-    notation = notation_of(derivation.arguments, model=derivation.model)
-    yield _zeros(found, notation)
+    letters = letters_of(derivation.arguments, model=derivation.model)
+    yield _zeros(found, letters)
     yield from (singular(point, derivation) for point in found.points[:_MOST_POINTS])
     more = len(found.points) - _MOST_POINTS
     if more > 0:
         yield (f"At the other {more} points the like is lost; the record lists them.",)
 
 
-def _zeros(found: Singularities, notation: Notation) -> Text:
+def _zeros(found: Singularities, letters: Letters) -> Text:
     """Where the determinant vanishes, as far as that was decided."""
     if found.determinant is None:
         return ("The rates follow without any divisor, so that they fail nowhere.",)
     points = [point for point in found.points if point.places]
     if points:
-        where, period = _where(points, notation), _period(points, notation)
+        where, period = _where(points, letters), _period(points, letters)
         unknown = "; where else it vanishes was not decided"
         only = ", and nowhere else" if found.is_solved else unknown
-        return (*where, *period, only, *_not_at_zero(points, notation), ".")
+        return (*where, *period, only, *_not_at_zero(points, letters), ".")
     if not found.rank:
         return ("The rates of the coordinates turn nothing.",)
     if not found.is_solved:
@@ -113,42 +110,42 @@ def _has_constants(determinant: sp.Expr) -> bool:
     )
 
 
-def _where(points: Sequence[Singularity], notation: Notation) -> Text:
+def _where(points: Sequence[Singularity], letters: Letters) -> Text:
     """It vanishes at θ = 0 and θ = π; or, of several coordinates, where they have these values."""
     values: dict[sp.Expr, dict[sp.Expr, None]] = {}
     for place in (place for point in points for place in point.places):
         values.setdefault(place.coordinate, {})[place.value] = None
     is_grid = len(points) == prod(map(len, values.values()))
     if len(values) == 1 or not is_grid:
-        return ("It vanishes at ", *listed([_at(point, notation) for point in points]))
+        return ("It vanishes at ", *listed([_at(point, letters) for point in points]))
     choices: list[Text] = [
-        (markup(coordinate, notation), " is ", *listed(_markups(several, notation), " or "))
+        (formula_of(coordinate, letters), " is ", *listed(_markups(several, letters), " or "))
         for coordinate, several in values.items()
     ]
     return ("It vanishes where ", *listed(choices))
 
 
-def _markups(values: Iterable[sp.Expr], notation: Notation) -> list[Text]:
-    return [(markup(value, notation),) for value in values]
+def _markups(values: Iterable[sp.Expr], letters: Letters) -> list[Text]:
+    return [(formula_of(value, letters),) for value in values]
 
 
-def _at(point: Singularity, notation: Notation) -> Text:
+def _at(point: Singularity, letters: Letters) -> Text:
     """θ = 0 and ψ = π/2."""
-    return listed([_place(place, notation) for place in point.places])
+    return listed([_place(place, letters) for place in point.places])
 
 
-def _place(place: Place, notation: Notation) -> Text:
-    coordinate = markup(place.coordinate, notation)
+def _place(place: Place, letters: Letters) -> Text:
+    coordinate = formula_of(place.coordinate, letters)
     if not place.is_length:
-        return (equal(coordinate, markup(place.value, notation)),)
-    step = markup(place.period, notation)
+        return (equal(coordinate, formula_of(place.value, letters)),)
+    step = formula_of(place.period, letters)
     if place.value == place.period:
-        return (equal(coordinate, fill("{0} k", "{0} k", step)), " with ", _COUNTED)
-    first = markup(place.value - place.period, notation)
-    return (equal(coordinate, fill("{0} + {1} k", "{0} + {1} k", first, step)), " with ", _COUNTED)
+        return (equal(coordinate, formula("#1 k", step)), " with ", _COUNTED)
+    first = formula_of(place.value - place.period, letters)
+    return (equal(coordinate, formula("#1 + #2 k", first, step)), " with ", _COUNTED)
 
 
-def _period(points: Sequence[Singularity], notation: Notation) -> Text:
+def _period(points: Sequence[Singularity], letters: Letters) -> Text:
     """Up to whole turns, or up to how many of them."""
     periods = {p.coordinate: p.period for point in points for p in point.places if not p.is_length}
     if not periods:
@@ -157,42 +154,42 @@ def _period(points: Sequence[Singularity], notation: Notation) -> Text:
     if not longer:
         return (", up to whole turns",)
     multiples: list[Text] = [
-        words("multiples of {} for {}", markup(period, notation), markup(q, notation))
+        words("multiples of {} for {}", formula_of(period, letters), formula_of(q, letters))
         for q, period in longer.items()
     ]
     others: list[Text] = [("whole turns",)] if len(longer) < len(periods) else []
     return (", up to ", *listed([*others, *multiples]))
 
 
-def _not_at_zero(points: Sequence[Singularity], notation: Notation) -> Text:
+def _not_at_zero(points: Sequence[Singularity], letters: Letters) -> Text:
     """Of a length, which could be taken to be such a place where it is nothing."""
     lengths = {p.coordinate for point in points for p in point.places if p.is_length}
-    zero = [equal(markup(length, notation), Markup("0", "0")) for length in lengths]
+    zero = [equal(formula_of(length, letters), formula("0")) for length in lengths]
     return words("; at {} it does not", *zero) if zero else ()
 
 
 def singular(point: Singularity, derivation: Derivation) -> Text:
     """What is lost at a singular point, and what remains determined."""
-    notation = notation_of(derivation.arguments, model=derivation.model)
-    head = ("At ", *_at(point, notation), " ") if point.places else ("Everywhere ",)
+    letters = letters_of(derivation.arguments, model=derivation.model)
+    head = ("At ", *_at(point, letters), " ") if point.places else ("Everywhere ",)
     if not point.rank:
         return (*head, "no rates turn the body.")
-    return (*head, *_determined(point, derivation, notation), *_lost(point, notation), ".")
+    return (*head, *_determined(point, derivation, letters), *_lost(point, letters), ".")
 
 
-def _determined(point: Singularity, derivation: Derivation, notation: Notation) -> Text:
+def _determined(point: Singularity, derivation: Derivation, letters: Letters) -> Text:
     idle = point.undetermined
     coordinates = derivation.argument("q").symbols
     if not all(entry.is_number for entry in idle):
         moved = [q for q, row in zip(coordinates, idle.tolist(), strict=True) if any(row)]
-        names = listed([(markup(q, notation),) for q in moved])
+        names = listed([(formula_of(q, letters),) for q in moved])
         if len(moved) < len(coordinates):
             return ("the rates of ", *names, f" are not determined: the rank is {point.rank}")
         return (f"the rate matrix has rank {point.rank}",)
     kept = determined(point, coordinates, derivation.argument("q_dot").symbols)
-    turning_nothing = listed([vector(column, notation) for column in idle.T.tolist()])
+    turning_nothing = listed([vector(column, letters) for column in idle.T.tolist()])
     verb = "is" if len(kept) == 1 else "are"
-    names = listed([(markup(combination, notation),) for combination in kept])
+    names = listed([(formula_of(combination, letters),) for combination in kept])
     only: Text = ("only ", *names, f" {verb} determined; ") if kept else ()
     return (*only, "rates in proportion to ", *turning_nothing, " turn nothing")
 
@@ -226,15 +223,15 @@ def _whole(row: sp.MatrixBase) -> list[sp.Expr]:
     return [-common * entry if sign else common * entry for entry in row]
 
 
-def _lost(point: Singularity, notation: Notation) -> Text:
+def _lost(point: Singularity, letters: Letters) -> Text:
     if point.reached is not None:
-        return (", and rates turn the body about ", *vector(point.reached, notation), " alone")
+        return (", and rates turn the body about ", *vector(point.reached, letters), " alone")
     if point.lost_space is None or point.lost_body is None:
         return ()
     return (
         ", and no rates turn the body about ",
-        *vector(point.lost_space, notation),
+        *vector(point.lost_space, letters),
         " in space, that is ",
-        *vector(point.lost_body, notation),
+        *vector(point.lost_body, letters),
         " in the body",
     )

@@ -4,41 +4,35 @@ from __future__ import annotations
 
 import sympy as sp
 
-from rigidsym.mechanics.derivation import Markup, VectorForm
-from rigidsym.notes.formula.formula import markup
-from rigidsym.notes.formula.notation import Notation
+from rigidsym.formula.tree import MINUS, PLUS, Formula, bracketed, row
+from rigidsym.mechanics.derivation import VectorForm
+from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.formula.order import is_negative
+from rigidsym.notes.formula.scalars import formula_of
 
 
-def sum_of_vectors(form: VectorForm, notation: Notation) -> Markup:
+def sum_of_vectors(form: VectorForm, letters: Letters) -> Formula:
     """The terms with their coefficients: v̇ + (1 − cos n)/n² v × v̇ + ..."""
-    latex, text = "", ""
+    parts: list[Formula] = []
     for term in form.terms:
-        coefficient = _in_notation(term.coefficient, form, notation)
+        coefficient = _in_notation(term.coefficient, form, letters)
         minus = is_negative(coefficient)
-        factor = _factor(-coefficient if minus else coefficient, notation)
-        between = (" - ", " − ") if minus else (" + ", " + ")
-        if not latex:
-            between = ("-", "−") if minus else ("", "")
-        latex += between[0] + factor.latex + term.vector.latex
-        text += between[1] + factor.text + term.vector.text
-    return Markup(latex, text)
+        if minus or parts:
+            parts.append(MINUS if minus else PLUS)
+        parts += _factor(-coefficient if minus else coefficient, letters)
+        parts.append(term.vector)
+    return row(*parts)
 
 
-def _in_notation(coefficient: sp.Expr, form: VectorForm, notation: Notation) -> sp.Expr:
+def _in_notation(coefficient: sp.Expr, form: VectorForm, letters: Letters) -> sp.Expr:
     """A coefficient in the length that the notation has; |v|² is n² − w² where n is |q|."""
-    length = notation.length
+    length = letters.length
     if length is None or length.components == form.components:
         return coefficient
     others = [part**2 for part in length.components if part not in form.components]
     return coefficient.subs(form.length, sp.sqrt(length.symbol**2 - sp.Add(*others)))
 
 
-def _factor(coefficient: sp.Expr, notation: Notation) -> Markup:
-    """A coefficient before a vector; 1 is not written, and a sum stands in brackets."""
-    if coefficient == 1:
-        return Markup("", "")
-    written = markup(coefficient, notation)
-    if coefficient.is_Add:
-        return Markup(rf"\left({written.latex}\right)\,", f"({written.text}) ")
-    return Markup(rf"{written.latex}\,", f"{written.text} ")
+def _factor(coefficient: sp.Expr, letters: Letters) -> list[Formula]:
+    """A coefficient before a vector; 1 is not written, and a sum is in brackets."""
+    return [] if coefficient == 1 else [bracketed(formula_of(coefficient, letters))]

@@ -8,31 +8,32 @@ from itertools import chain, zip_longest
 
 import sympy as sp
 
-from rigidsym.mechanics.claims import fill
-from rigidsym.mechanics.derivation import Argument, Derivation, Markup
+from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula, Symbol, equal
+from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.mechanics.quantities.energy import CENTRE
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, POINT
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.document.document import Cited, Code, EquationReference, Span, Strong, Text
-from rigidsym.notes.formula.formula import markup
 from rigidsym.notes.formula.lengths import VECTOR, length_of
-from rigidsym.notes.formula.manner import DEFAULT, Manner
-from rigidsym.notes.formula.notation import Notation, notation_of
+from rigidsym.notes.formula.letters import Letters, letters_of
+from rigidsym.notes.formula.scalars import formula_of
 
-POSITION = Markup(r"\mathbf{x}", "x")
-BODY_POSITION = Markup(r"\mathbf{x}'", "x′")
-COORDINATES = Markup(r"\mathbf{q}", "q")
-OPERATOR = Markup(r"\mathbf{C}(\mathbf{u})", "C(u)")  # of u ×
-VECTOR_OF = Markup(r"\mathbf{C}^{-1}", "C⁻¹")
-ACTIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", POSITION, ROTATION, BODY_POSITION)
-PASSIVE = fill(r"{0} = {1}\,{2}", "{0} = {1} {2}", BODY_POSITION, COSINES, POSITION)
-TRANSPOSED = fill(r"{0} = {1}^{{\mathsf T}}", "{0} = {1}ᵀ", COSINES, ROTATION)
+POSITION = formula(r"\mathbf{x}")
+BODY_POSITION = formula(r"\mathbf{x}'")
+COORDINATES = formula(r"\mathbf{q}")
+OPERATOR = formula(r"\mathbf{C}(\mathbf{u})")  # of u ×
+VECTOR_OF = formula(r"\mathbf{C}^{-1}")
+ACTIVE = formula(r"#1 = #2\,#3", POSITION, ROTATION, BODY_POSITION)
+PASSIVE = formula(r"#1 = #2\,#3", BODY_POSITION, COSINES, POSITION)
+TRANSPOSED = formula(r"#1 = #2^{\mathsf T}", COSINES, ROTATION)
 
 _OF_BODIES = (
     BODY_POSITION,
-    fill(r"{0}\times({1}-{2})", "{0} × ({1} − {2})", DIRECTION, BODY_POSITION, POINT),
-    fill(r"{0}^{{\mathsf T}}\mathbf{{I}}'\,{0} = 1", "{0}ᵀ I′ {0} = 1", BODY_POSITION),
+    formula(r"#1\times(#2-#3)", DIRECTION, BODY_POSITION, POINT),
+    formula(r"#1^{\mathsf T}\mathbf{I}'\,#1 = 1", BODY_POSITION),
     POINT,
     DIRECTION,
 )
@@ -64,7 +65,7 @@ def _plain(span: Span) -> str:
     match span:
         case str():
             return span
-        case Markup() | Code() | Strong():
+        case Formula() | Code() | Strong():
             return span.text
         case Cited():
             return str(span.citation)
@@ -72,10 +73,10 @@ def _plain(span: Span) -> str:
             return span.label
 
 
-def symbols_of(derivation: Derivation) -> dict[str, Markup]:
+def symbols_of(derivation: Derivation) -> dict[str, Formula]:
     """The symbols that may occur in a sentence about a derivation, by their plain text."""
     named = chain(
-        (ROTATION, *(Markup(axis, axis) for axis in AXES)),
+        (ROTATION, *map(Symbol, AXES)),
         chain.from_iterable(argument.notation for argument in derivation.arguments),
         (step.quantity.symbol for step in derivation.steps),
         (SPACE.omega, BODY.omega, RATES, VECTOR_OF),
@@ -88,7 +89,7 @@ def symbols_of(derivation: Derivation) -> dict[str, Markup]:
     return {symbol.text: symbol for symbol in named if symbol.text not in _ALSO_WORDS}
 
 
-def with_symbols(sentence: str, symbols: Mapping[str, Markup]) -> Text:
+def with_symbols(sentence: str, symbols: Mapping[str, Formula]) -> Text:
     """A plain sentence, with the symbols in it made into formulas."""
     longest_first = sorted(symbols, key=len, reverse=True)
     pattern = r"(?<!\w)(" + "|".join(map(re.escape, longest_first)) + r")(?!\w)"
@@ -96,7 +97,7 @@ def with_symbols(sentence: str, symbols: Mapping[str, Markup]) -> Text:
     return tuple(symbols.get(part, part) for part in parts if part)
 
 
-def convention(derivation: Derivation, manner: Manner = DEFAULT) -> tuple[Text, ...]:
+def convention(derivation: Derivation, notation: Notation = DEFAULT) -> tuple[Text, ...]:
     """The convention, a sentence or two an entry: turns, direction of the rotation, frames."""
     symbols = symbols_of(derivation)
     return (
@@ -108,65 +109,60 @@ def convention(derivation: Derivation, manner: Manner = DEFAULT) -> tuple[Text, 
             SPACE.omega,
             BODY.omega,
         ),
-        _coordinates(derivation.argument("q"), has_dots=manner.rates == "dot"),
-        *vector_in_words(derivation, manner),
-        *_body(derivation, manner),
-        *_conditions(derivation, manner),
+        _coordinates(derivation.argument("q"), has_dots=notation.rates == "dot"),
+        *vector_in_words(derivation, notation),
+        *_body(derivation, notation),
+        *_conditions(derivation, notation),
     )
 
 
-def vector_in_words(derivation: Derivation, manner: Manner) -> Iterator[Text]:
+def vector_in_words(derivation: Derivation, notation: Notation) -> Iterator[Text]:
     """The vector, and the letter for its length, where they stand in the formulas."""
-    notation = notation_of(derivation.arguments, manner, derivation.model)
-    length, parts = notation.length, derivation.model.vector
+    letters = letters_of(derivation.arguments, notation, derivation.model)
+    length, parts = letters.length, derivation.model.vector
     if any(step.vector_form for step in derivation.steps):
-        yield ("The vector is ", VECTOR, " = ", *vector(parts, notation), ".")
+        yield ("The vector is ", VECTOR, " = ", *vector(parts, letters), ".")
     if length is None:
         return
     n, rate = length.names.values()
     v = VECTOR if length.components == parts else COORDINATES
-    whole = fill("|{0}|", "|{0}|", v)
+    whole = formula("|#1|", v)
     yield (
         *words("The length {} is written {}, so that {}", whole, n, _square(n, v)),
         *words(
             " and {}.",
-            fill(r"{0}\,{1} = {2}\cdot\dot{{{2}}}", "{0} {1} = {2}·{2}\u0307", n, rate, v),
+            formula(r"#1\,#2 = #3\cdot\dot{#3}", n, rate, v),
         ),
     )
 
 
-def _square(length: Markup, of: Markup) -> Markup:
-    return fill(r"{0}^{{2}} = {1}\cdot{1}", "{0}² = {1}·{1}", length, of)
+def _square(length: Formula, of: Formula) -> Formula:
+    return formula(r"#1^{2} = #2\cdot#2", length, of)
 
 
-def _body(derivation: Derivation, manner: Manner) -> Iterator[Text]:
+def _body(derivation: Derivation, notation: Notation) -> Iterator[Text]:
     """The mass of the body, its axes, and where its centre of mass is."""
     body = derivation.body
     if body is None:
         return
-    notation = notation_of(derivation.arguments, manner)
+    letters = letters_of(derivation.arguments, notation)
     centre = listed([(name,) for name in derivation.argument("centre").notation], ", ")
     head = words(
         "The body has the mass {}, and its inertia tensor is about the centre of mass, along the "
         "axes of the body; the centre of mass is at {} = (",
-        markup(body.mass, notation),
+        formula_of(body.mass, letters),
         CENTRE,
     )
     yield (*head, *centre, ") in space.")
 
 
-def _conditions(derivation: Derivation, manner: Manner) -> Iterator[Text]:
+def _conditions(derivation: Derivation, notation: Notation) -> Iterator[Text]:
     """What the coordinates and constants are bound by, which the proofs make use of."""
-    notation = notation_of(derivation.arguments, manner, derivation.model)
+    letters = letters_of(derivation.arguments, notation, derivation.model)
     for constraint in derivation.model.constraints:
         number, rest = constraint.as_coeff_Add()
-        sides = (markup(rest, notation), markup(-number, notation))
+        sides = (formula_of(rest, letters), formula_of(-number, letters))
         yield words("All that is proved is proved under the condition {}.", equal(*sides))
-
-
-def equal(*sides: Markup) -> Markup:
-    """The sides of an equation, with signs of equality between them."""
-    return Markup(" = ".join(s.latex for s in sides), " = ".join(s.text for s in sides))
 
 
 def _direction(*, passive: bool) -> Text:
@@ -200,6 +196,6 @@ def unit_in_words(unit: str) -> str:
     return re.sub(r"\^(-?\d+)", lambda m: m[1].translate(_SUPERSCRIPTS), unit) or "1"
 
 
-def vector(entries: Iterable[sp.Expr], notation: Notation) -> Text:
+def vector(entries: Iterable[sp.Expr], letters: Letters) -> Text:
     """The components in a row, with a place to break the line after each comma."""
-    return ("(", *listed([(markup(entry, notation),) for entry in entries], ", "), ")")
+    return ("(", *listed([(formula_of(entry, letters),) for entry in entries], ", "), ")")

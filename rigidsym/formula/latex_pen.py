@@ -1,0 +1,176 @@
+"""Formulas in LaTeX, for a document, and for readers of Markdown."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import ClassVar
+
+from rigidsym.formula.pen import Height, Piece
+from rigidsym.formula.sheet_pen import Aligned, SheetPen, Size
+from rigidsym.formula.tree import Big, Call, Formula, Number, Rate, Root, Row, Symbol
+
+_SIGNS = {
+    "−": "-",
+    "×": r"\times ",
+    "·": r"\cdot ",
+    "±": r"\pm ",
+    "≤": r"\le ",
+    "∈": r"\in ",
+    "⇔": r"\Leftrightarrow ",
+}
+_LETTERS = {"⊥": r"\perp", "…": r"\ldots", "+": "+"}
+_DOTS = ("", r"\dot", r"\ddot")
+_MACROS = ("sin", "cos", "tan", "cot", "det", "exp", "arctan")
+_LEFT = {"flat": ("", ""), "large": (r"\Bigl", r"\Bigr"), "stretched": (r"\left", r"\right")}
+_BIG = {"∑": r"\sum", "∫": r"\int"}
+
+
+class LatexPen(SheetPen):
+    """Macros that MathJax knows too."""
+
+    wide_gap = r"\qquad "
+    thin: ClassVar[str] = r"\,"
+    row_end: ClassVar[str] = r" \\[{}pt]" + "\n"
+    script: ClassVar[str] = ""  # what stands before an index
+
+    def spelt_symbol(self, symbol: Symbol, index: str | None) -> str:
+        text = symbol.macro or _letters(symbol.letter)
+        if symbol.face == "bold":
+            bold = r"\boldsymbol" if text.startswith("\\") else r"\mathbf"
+            text = rf"{bold}{{{text}}}"
+        elif symbol.face == "arrow":
+            text = rf"\vec{{{text}}}"
+        elif symbol.face == "upright":
+            text = rf"\mathrm{{{text}}}"
+        elif symbol.face == "sans":
+            text = rf"\mathsf {text}"
+        elif len(symbol.letter) > 1 and not symbol.macro:
+            text = rf"\mathit{{{text}}}"
+        if symbol.dots:
+            text = rf"{_DOTS[symbol.dots]}{{{text}}}"
+        text += {"": "", "′": "'", "ᴮ": r"^{\mathrm{B}}"}[symbol.prime]
+        return text if index is None else self.spelt_index(text, index)
+
+    def spelt_index(self, base: str, index: str) -> str:
+        return f"{base}{self.script}_{_braced(index)}"
+
+    def spelt_number(self, digits: str) -> str:
+        return digits
+
+    def spelt_sign(self, character: str, is_binary: bool) -> str:
+        text = _SIGNS.get(character, character)
+        if not is_binary or character in "/·×":
+            return f" {text}" if text.startswith("\\") and is_binary else text
+        if character in ",;":
+            return f"{text} "
+        is_start = character in "+−±=≤⇔"  # a line may start with it
+        return f"{text.rstrip()} " if is_start else f" {text.rstrip()} "
+
+    def spelt_gap(self, before: Formula, after: Formula, is_thin: bool) -> str:
+        if is_thin:
+            return self.thin if not isinstance(before, Big) else " "
+        return " " if isinstance(before, Number | Big) or isinstance(after, Call) else ""
+
+    def spelt_function(self, function: str, exponent: int, argument: Piece) -> str:
+        known = function in _MACROS
+        head = f"\\{function}" if known else rf"\operatorname{{{function.replace('_', '')}}}"
+        if exponent != 1:
+            head += f"^{_braced(str(exponent))}"
+        return f"{head} " if argument.text[0].isalnum() else head
+
+    def spelt_power(self, base: Formula, inside: str, exponent: str) -> str:
+        # a prime is a superscript, and TeX takes one superscript only
+        is_raised = isinstance(base, Symbol) and (
+            base.prime == "ᴮ" or (base.prime and base.index is not None)
+        )
+        is_whole = is_raised or isinstance(base, Rate | Root | Row)
+        return f"{{{inside}}}^{_braced(exponent)}" if is_whole else f"{inside}^{_braced(exponent)}"
+
+    def spelt_fraction(self, above: str, below: str) -> str:
+        return rf"\frac{{{above}}}{{{below}}}"
+
+    def spelt_bracket(self, bracket: str, size: Size, *, is_open: bool) -> str:
+        return _LEFT[size][not is_open] + bracket
+
+    def spelt_root(self, inside: str) -> str:
+        return rf"\sqrt{{{inside}}}"
+
+    def spelt_matrix(self, rows: Sequence[Sequence[Piece]]) -> str:
+        lines = [" & ".join(map(_tall, row)) for row in rows]
+        text = lines[0]
+        for (above, below), line in zip(pairwise(rows), lines[1:], strict=True):
+            text += self.row_end.format(_distance(above, below)) + line
+        return _environment("pmatrix", text)
+
+    def spelt_big(self, sign: str, below: str, above: str) -> str:
+        lower = f"{self.script}_{_braced(below)}" if below else ""
+        return _BIG[sign] + lower + (f"^{_braced(above)}" if above else "")
+
+    def spelt_words(self, words: str) -> str:
+        return rf"\text{{{words}}}"
+
+    def spelt_differential(self, letter: str) -> str:
+        return r"\partial " if letter == "∂" else letter
+
+    def boxed(self, inside: str) -> str:
+        return rf"\boxed{{{inside}}}"
+
+    def continued(self, text: str, indent: int) -> str:
+        return r"\quad" * indent + f" {{}}{text}" if indent else text
+
+    def aligned(self, lines: Sequence[Aligned], *, is_high: bool) -> str:
+        return _environment("aligned", self.joined(map(self.line, lines), is_high=is_high))
+
+    def line(self, line: Aligned) -> str:
+        """Head, sign and body; a line that goes on is indented."""
+        sign = f"{line.sign} " if line.sign else ""
+        return f"{line.head} &{sign}{self.continued(line.body, line.indent)}".strip()
+
+    def gathered(self, lines: Sequence[str], *, is_high: bool) -> str:
+        return _environment("gathered", self.joined(lines, is_high=is_high))
+
+    def joined(self, lines: Sequence[str] | map[str], *, is_high: bool) -> str:
+        return self.row_end.format(7 if is_high else 2).join(lines)
+
+
+class MarkdownPen(LatexPen):
+    """LaTeX without what Markdown would change: no backslash before punctuation, and no low line
+    that could end an emphasis."""
+
+    thin: ClassVar[str] = r"\thinspace "
+    row_end: ClassVar[str] = " \\cr\n"
+    script: ClassVar[str] = " "
+
+
+def _braced(script: str) -> str:
+    return script if len(script) == 1 else f"{{{script}}}"
+
+
+def _letters(letters: str) -> str:
+    if letters in _LETTERS:
+        return _LETTERS[letters]
+    names = (unicodedata.name(letter, "").partition(" LETTER ") for letter in letters)
+    kind, _, name = next(names)
+    macro = name.lower().replace("lamda", "lambda")
+    if kind == "GREEK CAPITAL":
+        macro = macro.title()
+    return f"\\{macro}" if kind.startswith("GREEK") and len(letters) == 1 else letters
+
+
+def _tall(entry: Piece) -> str:
+    """The entry with its fractions in their full height, but for those within others."""
+    return rf"\displaystyle {entry.text}" if entry.height else entry.text
+
+
+def _distance(above: Sequence[Piece], below: Sequence[Piece]) -> int:
+    """Points between two rows: dots want some air, fractions more, and roots in them most."""
+    upper, lower = (max(entry.height for entry in line) for line in (above, below))
+    if upper:
+        return 13 if Height.ROOTED in (upper, lower) else 10
+    return 7 if lower else 2
+
+
+def _environment(name: str, inside: str) -> str:
+    return f"\\begin{{{name}}}\n{inside}\n\\end{{{name}}}"

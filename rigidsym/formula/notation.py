@@ -1,0 +1,183 @@
+"""The user's choices of notation, which act on the tree of a formula when it is printed.
+
+Formulas are composed in one notation: a dot for a rate, bold vectors, a prime for the body, Ω.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache, partial
+from types import MappingProxyType
+from typing import Any, Protocol
+
+from rigidsym.errors import ModelError
+from rigidsym.formula.tree import (
+    Bracket,
+    Differential,
+    Formula,
+    Fraction,
+    Power,
+    Rate,
+    Row,
+    Sign,
+    Symbol,
+)
+
+CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "rates": ("dot", "fraction"),
+        "vectors": ("bold", "arrow"),
+        "body": ("prime", "superscript"),
+        "angular_velocity": ("Omega", "omega"),
+    }
+)
+
+FRAMES = ("space", "body")
+
+_A_FRAME_NAME = re.compile(r"\w(?:[\w .-]{0,28}\w)?")
+# the body's own, and not its frame's
+_NOT_A_FRAME = "".join(
+    f"(?<!{noun} )"
+    for noun in (
+        "momentum",
+        "energy",
+        "tensor",
+        "principal axes",
+        "point",
+        "constant",
+        "else",
+        "mass",
+    )
+)
+# the name before what it qualifies, or after a preposition, where it becomes "the ... frame"
+_FRAME_WORDS = (
+    re.compile(
+        r"\b(?:(?P<before>of|in|from) space(?! components)|space(?P<after> components| to\b))"
+    ),
+    re.compile(
+        _NOT_A_FRAME + r"\b(?:(?P<before>of|in|from) the body|body(?P<after> components| to\b))"
+    ),
+)
+_VECTORS = frozenset("uvwxyrpmngscdLeΩω")  # bold matrices and columns of coordinates stay so
+
+
+class Named(Protocol):
+    """Something with symbols of its own."""
+
+    @property
+    def names(self) -> set[str]: ...
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Notation:
+    """One choice each, the first of `CHOICES` by default; and the names of the frames in words."""
+
+    rates: str = "dot"
+    vectors: str = "bold"
+    body: str = "prime"
+    angular_velocity: str = "Omega"
+    frames: tuple[str, str] = FRAMES
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "frames", _checked(self.frames))
+        for name, known in CHOICES.items():
+            chosen = getattr(self, name)
+            if chosen not in known:
+                raise ModelError(f"notation: {name} is {' or '.join(known)}, and not {chosen!r}")
+
+    def words(self, text: str) -> str:
+        """A sentence in which the frames have the user's names; twice is the same as once."""
+        if self.frames == FRAMES:
+            return text
+        for pattern, own in zip(_FRAME_WORDS, self.frames, strict=True):
+            text = pattern.sub(partial(_named, own), text)
+        return text
+
+    def applied(self, formula: Formula) -> Formula:
+        """The formula in this notation; twice is the same as once."""
+        return formula if self.is_default else _applied(formula, self)
+
+    @property
+    def is_default(self) -> bool:
+        """Whether formulas stay as they were composed."""
+        return all(getattr(self, name) == known[0] for name, known in CHOICES.items())
+
+    def check(self, model: Named) -> None:
+        """Raises ModelError for a name in a model that looks like the angular velocity."""
+        alike = sorted(name for name in model.names if name.split("_")[0].lower() == "omega")
+        if alike and self.angular_velocity == "omega":
+            raise ModelError(
+                f"notation: the angular velocity cannot be called omega beside {alike[0]}; leave "
+                "it Omega"
+            )
+
+
+@lru_cache(maxsize=4096)
+def _applied(node: Formula, notation: Notation) -> Formula:
+    match node:
+        case Symbol():
+            return _symbol(node, notation)
+        case Power(Symbol(prime="′"), exponent) if notation.body == "superscript":
+            return Power(Bracket(_applied(node.base, notation)), exponent)
+        case Power(Symbol(dots=dots), exponent) if dots and notation.rates == "fraction":
+            return Power(Bracket(_applied(node.base, notation)), exponent)
+        case Fraction(above, Row((Differential("∂"), by))):
+            below = Row((Differential("∂"), _on_a_line(_applied(by, notation))))
+            return Fraction(_applied(above, notation), below)
+    changed = {field.name: _within(getattr(node, field.name), notation) for field in fields(node)}
+    return replace(node, **changed)
+
+
+def _within(value: Any, notation: Notation) -> Any:
+    """The same of the children of a node, which are formulas or tuples of them."""
+    if isinstance(value, Formula):
+        return _applied(value, notation)
+    if isinstance(value, tuple):
+        return tuple(_within(item, notation) for item in value)
+    return value
+
+
+def _symbol(symbol: Symbol, notation: Notation) -> Formula:
+    index = symbol.index and _applied(symbol.index, notation)
+    symbol = replace(symbol, index=index)
+    if notation.angular_velocity == "omega" and symbol.letter == "Ω":
+        symbol = replace(symbol, letter="ω")
+    if notation.body == "superscript" and symbol.prime:
+        symbol = replace(symbol, prime="ᴮ")
+    if notation.vectors == "arrow" and symbol.face == "bold" and symbol.letter in _VECTORS:
+        symbol = replace(symbol, face="arrow")
+    if notation.rates == "fraction" and symbol.dots:
+        return Rate(replace(symbol, dots=0), symbol.dots)
+    return symbol
+
+
+def _on_a_line(below: Formula) -> Formula:
+    """A rate below ∂, as (dq/dt): a fraction within a fraction would be hard to read."""
+    if not isinstance(below, Rate):
+        return below
+    return Bracket(Row((Differential(), below.of, Sign("/"), Differential(), Symbol("t"))))
+
+
+def _checked(frames: Sequence[str]) -> tuple[str, str]:
+    """Two different names of letters, digits, blanks, points and hyphens."""
+    names = [frames] if isinstance(frames, str) else list(frames)
+    if len(names) != 2 or names[0] == names[1]:
+        raise ModelError(f"notation: frames are two different names, got {', '.join(names)}")
+    for name in names:
+        if not _A_FRAME_NAME.fullmatch(name):
+            raise ModelError(
+                f"notation: {name!r} cannot name a frame: expected at most 30 letters, digits, "
+                "blanks, points and hyphens"
+            )
+    return names[0], names[1]
+
+
+def _named(own: str, found: re.Match[str]) -> str:
+    if found["before"]:
+        return f"{found['before']} the {own} frame"
+    return own + found["after"]
+
+
+DEFAULT = Notation()  # in which formulas are composed

@@ -1,0 +1,195 @@
+"""A formula as a small tree: what is written and in which order, before any pen writes it.
+
+Nodes are immutable and hashable. Products are rows of factors, sums are rows with signs between
+the terms; the pens (LaTeX, Markdown, MathML, Unicode) choose spaces and the sizes of brackets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+Face = Literal["italic", "bold", "arrow", "upright", "sans"]
+Prime = Literal["", "′", "ᴮ"]
+
+
+@dataclass(frozen=True, slots=True)
+class Formula:
+    """Any node of the tree."""
+
+    @property
+    def latex(self) -> str:
+        """In LaTeX, in the notation it was composed in."""
+        return WRITERS["latex"](self)
+
+    @property
+    def text(self) -> str:
+        """On one line of Unicode, in the notation it was composed in."""
+        return WRITERS["text"](self)
+
+    def __bool__(self) -> bool:
+        return self != NOTHING
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol(Formula):
+    """A letter or a word, with dots above it, a prime and an index: Ω̇′₁, yaw₂."""
+
+    letter: str  # in Unicode; several letters are one word
+    face: Face = "italic"
+    dots: int = 0
+    prime: Prime = ""
+    index: Formula | None = None
+    macro: str = ""  # LaTeX of the letter, where it is not the usual one
+
+
+@dataclass(frozen=True, slots=True)
+class Number(Formula):
+    digits: str
+
+
+@dataclass(frozen=True, slots=True)
+class Sign(Formula):
+    """An operation or a relation between two parts of a row, or a comma: + − = × · / , ≤."""
+
+    character: str
+
+
+@dataclass(frozen=True, slots=True)
+class Gap(Formula):
+    """Wide space between two equations on a line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Words(Formula):
+    """Text within a formula, with its blanks."""
+
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Differential(Formula):
+    """The d or ∂ before what is differentiated, or integrated over."""
+
+    letter: Literal["d", "∂"] = "d"
+
+
+@dataclass(frozen=True, slots=True)
+class Row(Formula):
+    """Parts side by side: factors of a product, or terms and sides with signs between them."""
+
+    parts: tuple[Formula, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Fraction(Formula):
+    above: Formula
+    below: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Rate(Formula):
+    """The derivative with respect to time as a quotient of differentials: dR/dt."""
+
+    of: Formula
+    order: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Power(Formula):
+    """A base with an exponent: a number, Symbol("T") for the transpose, Sign("+")."""
+
+    base: Formula
+    exponent: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Indexed(Formula):
+    """An entry of something compound: (W⁻¹)₁₂."""
+
+    base: Formula
+    index: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Root(Formula):
+    inside: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Bracket(Formula):
+    inside: Formula
+    kind: Literal["()", "[]", "||"] = "()"
+
+
+@dataclass(frozen=True, slots=True)
+class Call(Formula):
+    """A named function of an argument, which has its own brackets where it needs any: sin² θ."""
+
+    function: str
+    argument: Formula
+    exponent: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Apply(Formula):
+    """A symbol with an argument: C(u), R(q)."""
+
+    head: Formula
+    inside: Formula
+
+
+@dataclass(frozen=True, slots=True)
+class Big(Formula):
+    """The sign of a sum or an integral, with what stands below and above it."""
+
+    sign: Literal["∑", "∫"]
+    below: Formula | None = None
+    above: Formula | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Matrix(Formula):
+    rows: tuple[tuple[Formula, ...], ...]
+
+
+WRITERS: dict[str, Callable[[Formula], str]] = {}  # the package enters its pens here
+NOTHING = Row(())
+EQUALS, PLUS, MINUS, COMMA = Sign("="), Sign("+"), Sign("−"), Sign(",")
+TRANSPOSE = Symbol("T", "sans")
+
+
+def row(*parts: Formula) -> Formula:
+    """The parts side by side; rows within are taken apart."""
+    flat: list[Formula] = []
+    for part in parts:
+        flat += part.parts if isinstance(part, Row) else [part]
+    return flat[0] if len(flat) == 1 else Row(tuple(flat))
+
+
+def joined(parts: tuple[Formula, ...] | list[Formula], sign: Formula) -> Formula:
+    """The parts with a sign between each two."""
+    mixed = [item for part in parts for item in (sign, part)]
+    return row(*mixed[1:])
+
+
+def equal(*sides: Formula) -> Formula:
+    """The sides of an equation, with signs of equality between them."""
+    return joined(sides, EQUALS)
+
+
+def bracketed(formula: Formula) -> Formula:
+    """A sum in brackets; anything else without."""
+    return Bracket(formula) if is_sum(formula) else formula
+
+
+def is_sum(formula: Formula) -> bool:
+    """Whether terms are added or subtracted outside all brackets."""
+    return isinstance(formula, Row) and any(p in (PLUS, MINUS) for p in formula.parts)
+
+
+def is_differential(formula: Formula) -> bool:
+    """Whether a letter follows that is differentiated: d, ∂, d²."""
+    base = formula.base if isinstance(formula, Power) else formula
+    return isinstance(base, Differential)

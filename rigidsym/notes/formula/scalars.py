@@ -1,0 +1,231 @@
+"""SymPy scalars as people write them: what is written and in which order is settled here.
+
+A sum never starts with a minus sign if it has a positive term, and no rate ever follows a sine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import IntEnum
+from functools import lru_cache
+
+import sympy as sp
+
+from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.tree import (
+    MINUS,
+    PLUS,
+    Bracket,
+    Call,
+    Formula,
+    Fraction,
+    Number,
+    Power,
+    Rate,
+    Root,
+    Row,
+    Sign,
+    Symbol,
+    joined,
+    row,
+)
+from rigidsym.formula.unicode_pen import UnicodePen
+from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.order import (
+    FUNCTIONS,
+    is_application,
+    is_negative,
+    ordered_factors,
+    ordered_terms,
+)
+
+
+class Bound(IntEnum):
+    """How tightly the outermost operation of a formula holds it together."""
+
+    SUM = 0
+    PRODUCT = 1
+    CALL = 2
+    NUMBER = 3
+    FRACTION = 4  # whole as a factor, not as a base
+    NAME = 5
+
+
+_BOUND = {
+    Call: Bound.CALL,
+    Number: Bound.NUMBER,
+    Fraction: Bound.FRACTION,
+    Rate: Bound.FRACTION,
+    Power: Bound.PRODUCT,
+}
+
+
+def latex(expression: sp.Expr, letters: Letters, *, short: bool = False) -> str:
+    """The expression in LaTeX; with `short`, s_θ and c_θ for sine and cosine.
+
+    Raises AlgebraError, naming its type, for a node that has no printed form.
+    """
+    return (
+        LatexPen(letters.notation, short=short)
+        .write(formula_of(sp.sympify(expression), letters))
+        .text
+    )
+
+
+def text(expression: sp.Expr, letters: Letters) -> str:
+    """The expression in one line of Unicode; raises AlgebraError as `latex` does."""
+    return UnicodePen(letters.notation).write(formula_of(sp.sympify(expression), letters)).text
+
+
+@lru_cache(maxsize=8192)
+def formula_of(expression: sp.Expr, letters: Letters) -> Formula:
+    """The expression as a tree; raises AlgebraError as `latex` does."""
+    return _Walk(letters).expression(letters.shortened(expression))
+
+
+def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> list[list[Formula]]:
+    """The entries of a matrix, row by row."""
+    return [[formula_of(entry, letters) for entry in line] for line in matrix.tolist()]
+
+
+class _Walk:
+    """One walk over an expression."""
+
+    def __init__(self, letters: Letters) -> None:
+        self.letters = letters
+
+    def expression(self, node: sp.Expr) -> Formula:
+        if node.is_Rational:
+            return _rational(node)
+        if node.is_Add:
+            return self._sum(node)
+        if node.is_Mul or _is_reciprocal(node):
+            return self._product(node)
+        if node.is_Pow:
+            return self._power(node)
+        if node.func in FUNCTIONS:
+            return self._call(node, 1)
+        if is_application(node):
+            arguments = [self.expression(argument) for argument in node.args]
+            return Call(node.func.__name__, Bracket(joined(arguments, Sign(","))))
+        return self.letters.name(node)
+
+    def _sum(self, node: sp.Add) -> Formula:
+        first, *others = ordered_terms(node.args, self.letters)
+        parts = [self.expression(first)]
+        for term in others:
+            minus = is_negative(term)
+            parts += [MINUS if minus else PLUS, self._term(-term if minus else term)]
+        return row(*parts)
+
+    def _term(self, term: sp.Expr) -> Formula:
+        """Within a sum; one that is a sum itself is bracketed."""
+        return _at_least(Bound.PRODUCT, self.expression(term))
+
+    def _product(self, node: sp.Expr) -> Formula:
+        if is_negative(node):
+            return row(MINUS, self._term(-node))
+        coefficient, rest = node.as_coeff_Mul()
+        factors = ordered_factors(sp.Mul.make_args(rest), self.letters)
+        below = [_inverted(factor) for factor in factors if _is_reciprocal(factor)]
+        above = [factor for factor in factors if not _is_reciprocal(factor)]
+        if below or (len(above) == 1 and self._goes_above(above[0])):
+            return self._quotient(_scaled(coefficient.p, above), _scaled(coefficient.q, below))
+        roots = [factor for factor in above if _is_root(factor)]
+        others = [factor for factor in above if not _is_root(factor)]
+        return self._many(_scaled(sp.Mul(coefficient, *roots), others))  # √2/2 is one number
+
+    def _goes_above(self, factor: sp.Expr) -> bool:
+        """Whether θ/2 and √2/2 are written so; ½ dθ/dt and ½ sin θ are not."""
+        is_name = _is_name(factor) and isinstance(self.expression(factor), Symbol)
+        is_dotted = self.letters.notation.rates == "fraction" and bool(
+            self.letters.places.get(factor, (0, 0))[0]
+        )
+        return (is_name and not is_dotted) or _is_root(factor)
+
+    def _quotient(self, above: Sequence[sp.Expr], below: Sequence[sp.Expr]) -> Formula:
+        numerator = self._many(above)
+        return Fraction(numerator, self._many(below)) if below else numerator
+
+    def _many(self, factors: Sequence[sp.Expr]) -> Formula:
+        """The product of factors in order; a single factor is not bracketed."""
+        if len(factors) < 2:
+            return self.expression(factors[0] if factors else sp.S.One)
+        return row(*(self._factor(factor) for factor in factors))
+
+    def _factor(self, node: sp.Expr) -> Formula:
+        if node.is_Rational and not node.is_Integer:
+            return Fraction(Number(str(node.p)), Number(str(node.q)))
+        return _at_least(Bound.PRODUCT, self.expression(node))
+
+    def _power(self, node: sp.Pow) -> Formula:
+        base, exponent = node.base, node.exp
+        if exponent == sp.Rational(1, 2):
+            return Root(self.expression(base))
+        if not exponent.is_Rational:
+            self.letters.name(node)  # raises: a general power has no name
+        if base.func in FUNCTIONS and exponent.is_Integer:
+            return self._call(base, int(exponent))
+        whole = _at_least(Bound.NAME, self.expression(base))
+        raised = Number(str(exponent.p)) if exponent.is_Integer else _on_a_line(exponent)
+        return Power(whole, raised)
+
+    def _call(self, node: sp.Function, exponent: int) -> Formula:
+        angle = node.args[0]
+        argument = self.expression(angle)
+        if not _is_multiple(angle):
+            argument = _at_least(Bound.NUMBER, argument)
+        return Call(FUNCTIONS[node.func], argument, exponent)
+
+
+def _rational(number: sp.Rational) -> Formula:
+    if number.is_negative:
+        return row(MINUS, _rational(-number))
+    if number.is_Integer:
+        return Number(str(number))
+    return Fraction(Number(str(number.p)), Number(str(number.q)))
+
+
+def _on_a_line(exponent: sp.Rational) -> Formula:
+    sign = (MINUS,) if exponent.is_negative else ()
+    return Row((*sign, Number(str(abs(exponent.p))), Sign("/"), Number(str(exponent.q))))
+
+
+def _bound(formula: Formula) -> Bound:
+    if isinstance(formula, Row):
+        signed = any(isinstance(part, Sign) for part in formula.parts)
+        return Bound.SUM if signed else Bound.PRODUCT
+    return _BOUND.get(type(formula), Bound.NAME)
+
+
+def _at_least(bound: Bound, formula: Formula) -> Formula:
+    """The formula, in brackets where it is held together less tightly."""
+    return formula if _bound(formula) >= bound else Bracket(formula)
+
+
+def _scaled(number: sp.Expr, factors: Sequence[sp.Expr]) -> list[sp.Expr]:
+    """The factors behind a number; 1 is not written."""
+    return list(factors) if number == 1 else [sp.sympify(number), *factors]
+
+
+def _is_reciprocal(node: sp.Expr) -> bool:
+    return bool(node.is_Pow and node.exp.is_Rational and node.exp.is_negative)
+
+
+def _inverted(node: sp.Pow) -> sp.Expr:
+    return sp.Pow(node.base, -node.exp)
+
+
+def _is_name(node: sp.Expr) -> bool:
+    return not (node.is_Add or node.is_Mul or node.is_Pow or is_application(node))
+
+
+def _is_root(node: sp.Expr) -> bool:
+    """Whether a node is the root of a number, which goes above the line: √2/2."""
+    return bool(node.is_Pow and node.base.is_Number and node.exp == sp.Rational(1, 2))
+
+
+def _is_multiple(angle: sp.Expr) -> bool:
+    """Whether an angle is written as a number and a name: 2θ."""
+    number, rest = angle.as_coeff_Mul()
+    return bool(number.is_Integer and number.is_positive and _is_name(rest))
