@@ -133,6 +133,8 @@ def vocabulary() -> Vocabulary:
 
 def motion_of(spec: DerivationSpec) -> Motion:
     """The derivation of a specification with one rotation."""
+    if len(spec.models) != 1:
+        raise ModelError(f"{spec.name} has {len(spec.models)} rotations; expected one")
     (model,) = spec.models
     body = integrated(spec).body
     motion = derive(model, only=spec.quantities, body=body, theory=spec.theory)

@@ -15,7 +15,7 @@ from rigidsym.errors import BodyError
 from rigidsym.models.distribution import Distribution
 from rigidsym.models.plausibility import check_inertia, check_mass
 from rigidsym.models.rotation import Citation, lecture
-from rigidsym.models.so3 import TIME
+from rigidsym.models.so3 import TIME, symbolic
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _AXES = ("x", "y", "z")
@@ -173,8 +173,8 @@ def principal_moments(
     The moments (kg m²) are about the centre of mass; the mass is the symbol M where none is given.
     `parameters` describes symbols beyond what their places say. Raises BodyError.
     """
-    moments = [sp.sympify(moment, strict=True) for moment in (A, B, C)]
-    total = sp.Symbol("M") if mass is None else sp.sympify(mass, strict=True)
+    moments = [symbolic(moment, "a principal moment") for moment in (A, B, C)]
+    total = sp.Symbol("M") if mass is None else symbolic(mass, "the mass")
     kinds = {1: "Spherical body", 2: "Symmetric body", 3: "Body in its principal axes"}
     return RigidBody(
         name=name,
@@ -190,7 +190,7 @@ def principal_moments(
 
 def general_inertia(*, mass: sp.Expr | None = None, name: str = "body") -> RigidBody:
     """A body with any inertia tensor: the six symbols I_11, I_12, I_13, I_22, I_23, I_33."""
-    total = sp.Symbol("M") if mass is None else sp.sympify(mass, strict=True)
+    total = sp.Symbol("M") if mass is None else symbolic(mass, "the mass")
     entries = sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"I_{min(i, j) + 1}{max(i, j) + 1}"))
     return given_inertia(entries, mass=total, name=name)
 

@@ -16,7 +16,7 @@ _SOURCE = Citation(text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (
 
 
 def chain(
-    turns: Sequence[Turn],
+    turns: Sequence[Turn] | str,
     *,
     name: str = "",
     title: str = "",
@@ -31,6 +31,11 @@ def chain(
 
     Raises ModelError where there is no turn, or none with a coordinate.
     """
+    if isinstance(turns, str):
+        raise ModelError(f"expected a list of rs.Turn; for a text use rs.rotation_from({turns!r})")
+    for turn in turns:
+        if not isinstance(turn, Turn):
+            raise ModelError(f"expected a list of rs.Turn, got {turn!r} in it")
     if not turns:
         raise ModelError("a chain needs at least one turn, such as z(phi)")
     coordinates = _coordinates(turns)

@@ -22,6 +22,10 @@ class Particle:
     mass: sp.Expr
     position: sp.ImmutableMatrix
 
+    def __post_init__(self) -> None:
+        if len(self.position) != 3:
+            raise BodyError(f"a position has three components, got {len(self.position)}")
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Particles:
@@ -32,6 +36,9 @@ class Particles:
     def __post_init__(self) -> None:
         if not self.particles:
             raise BodyError("expected at least one particle")
+        for particle in self.particles:
+            if not isinstance(particle, Particle):
+                raise BodyError(f"expected an rs.Particle, got {particle!r}")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -68,6 +68,8 @@ def EulerAngles(
 
 def euler_sequence(text: str) -> str:
     """The sequence in letters: `313` becomes `ZXZ`. Raises ModelError for any other text."""
+    if not isinstance(text, str):
+        raise ModelError(f"expected a sequence such as 'ZXZ', got {text!r}")
     letters = text.translate(_DIGITS)
     if letters not in EULER_SEQUENCES:
         raise ModelError(f"{text!r} is not an Euler sequence: {_what_is_wrong(text)}")
@@ -85,12 +87,14 @@ def _what_is_wrong(text: str) -> str:
 
 
 def _three_names(angles: Sequence[str]) -> Sequence[str]:
+    if not isinstance(angles, Sequence):
+        raise ModelError(f"Euler angles need three different names, got {angles!r}")
     try:
         plain = [check_name(angle) for angle in angles]
     except ExpressionError as error:
         raise ModelError(str(error)) from error
     if len(plain) != 3 or len(set(plain)) != 3:
-        raise ModelError(f"Euler angles need three different names, got {', '.join(angles)}")
+        raise ModelError(f"Euler angles need three different names, got {', '.join(plain)}")
     return plain
 
 

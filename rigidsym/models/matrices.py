@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.errors import ModelError
 from rigidsym.models.quaternions import UnitQuaternion
 from rigidsym.models.rotation import Citation, Pullback, RotationModel, lecture
-from rigidsym.models.so3 import time_function
+from rigidsym.models.so3 import symbolic, time_function
 from rigidsym.models.vectors import distinct_names
 
 _NAMES = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
@@ -51,6 +52,11 @@ def given(
     Without `coordinates` they are the functions of time in the matrix, in alphabetical order.
     Raises ModelError for a matrix that is not 3x3 or has no coordinate.
     """
+    try:
+        entries = [symbolic(entry, f"{name}: an entry") for entry in sp.flatten(matrix)]
+        matrix = sp.Matrix(*(matrix.shape if hasattr(matrix, "shape") else (3, 3)), entries)
+    except (TypeError, ValueError):
+        raise ModelError(f"{name}: expected a 3x3 matrix, got {matrix!r}") from None
     found = tuple(sp.ordered(sp.Matrix(matrix).atoms(AppliedUndef)))
     used = tuple(coordinates) or found
     return RotationModel(

@@ -13,7 +13,7 @@ from sympy.core.function import AppliedUndef
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.errors import ModelError
-from rigidsym.models.so3 import AXES, TIME, elementary, rodrigues
+from rigidsym.models.so3 import AXES, TIME, elementary, rodrigues, symbolic
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _NUMBERS = (sp.NumberSymbol, type(sp.I))
@@ -52,6 +52,7 @@ class Turn:
     components: tuple[sp.Expr, ...] = ()  # of the axis, where it is not a coordinate axis
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "angle", symbolic(self.angle, "the angle of a turn"))
         if not self.components and self.axis not in AXES:
             raise ModelError(f"{self.axis!r} is not an axis: expected x, y, z or components")
         if self.components and len(self.components) != 3:

@@ -48,6 +48,8 @@ def rotation_from(
     the components of an axis are constants. Raises ModelError or ExpressionError, which say what
     was expected.
     """
+    if not isinstance(text, str):
+        raise ModelError(f"expected {_A_ROTATION}, got {text!r}")
     if len(text) > LONGEST:
         raise ModelError(f"expected {_A_ROTATION}, got {len(text)} characters")
     asked: dict[str, Any] = {"sequence": text, "angles": names and list(names)}

@@ -8,8 +8,9 @@ from functools import lru_cache
 import sympy as sp
 
 from rigidsym.algebra.adjoin import TIME
+from rigidsym.errors import ModelError
 
-__all__ = ["AXES", "TIME", "elementary", "hat", "rodrigues", "time_function"]
+__all__ = ["AXES", "TIME", "elementary", "hat", "rodrigues", "symbolic", "time_function"]
 
 AXES = ("x", "y", "z")
 
@@ -17,6 +18,14 @@ AXES = ("x", "y", "z")
 def time_function(name: str) -> sp.Expr:
     """The function of time `name`(t), the same object that dynamicsymbols(name) gives."""
     return sp.Function(name)(TIME)
+
+
+def symbolic(value: object, what: str) -> sp.Expr:
+    """A SymPy expression or a number from a caller. Raises ModelError for anything else."""
+    try:
+        return sp.sympify(value, strict=True)
+    except sp.SympifyError:
+        raise ModelError(f"{what}: expected a SymPy expression, got {value!r}") from None
 
 
 def hat(vector: sp.MatrixBase) -> sp.ImmutableMatrix:

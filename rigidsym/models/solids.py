@@ -15,6 +15,7 @@ from sympy import Rational, cos, pi, sin
 
 from rigidsym.errors import BodyError
 from rigidsym.models.distribution import Bounds, Solid
+from rigidsym.models.so3 import symbolic
 from rigidsym.text.names import offer
 
 _HALF = Rational(1, 2)
@@ -248,8 +249,8 @@ SHAPES: Mapping[str, Shape] = MappingProxyType(
 
 def shape_of(name: str) -> Shape:
     """A shipped shape; raises BodyError for another name."""
-    if name not in SHAPES:
-        raise BodyError(f"no shape {name!r}; {offer(name, SHAPES)}")
+    if not isinstance(name, str) or name not in SHAPES:
+        raise BodyError(f"no shape {name!r}; {offer(str(name), SHAPES)}")
     return SHAPES[name]
 
 
@@ -264,7 +265,7 @@ def shaped(
     shape = shape_of(name)
     if len(lengths) != len(shape.names):
         raise BodyError(f"{name}: expected {', '.join(shape.names)}, got {len(lengths)} lengths")
-    lengths = [sp.sympify(length, strict=True) for length in lengths]
+    lengths = [symbolic(length, f"{name}: a length") for length in lengths]
     check_lengths(name, [float(e) if e.is_number else None for e in lengths])
     coordinates = free_coordinates(("u", "v", "w"), [*lengths, mass, density])
     chosen, place, bounds, element = shape.form(*coordinates, *lengths)

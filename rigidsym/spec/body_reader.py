@@ -140,14 +140,14 @@ class BodyReader:
         self,
         table: Table,
         declared: Declared,
-        folder: Path,
+        folder: Path | None,
         suffix: str = "",
         *,
         exact: bool = False,
     ) -> None:
         self.table = table
         self.declared = declared
-        self.folder = folder  # that the paths in the file start from
+        self.folder = folder  # paths in the file start here; None in a record, which has none
         self.suffix = suffix  # of the names that numbers bring: "_2" in the second part
         self._exact_only = exact  # whether a number with a point stays a number
 

@@ -26,10 +26,10 @@ _MOMENTS = ("A", "B", "C")
 _KINDS = ("principal_moments", "inertia", *(kind for kind in DISTRIBUTIONS if kind != "inertia"))
 
 
-def read_body(body: Table, parameters: Table | None, name: str, folder: Path) -> Body | None:
+def read_body(body: Table, parameters: Table | None, name: str, folder: Path | None) -> Body | None:
     """The body of a file, called `name`; None if a fault is noted.
 
-    Paths in it start from `folder`. A distribution of mass is not integrated here.
+    Paths in it start from `folder`; a record names no files. Distributions are not integrated.
     """
     declared = Declared()
     declared.take_names(body.data)

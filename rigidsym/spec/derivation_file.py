@@ -83,7 +83,7 @@ def from_data(data: object, words: Vocabulary, *, source: str = "request") -> De
         table.fault("missing; expected the name of the derivation", "name")
     rotations = table.tables("rotations", "a list of objects with sequence and angles")
     models = [model for rotation in rotations for model in reader.rotation(rotation, name)]
-    return reader.spec(table, table, faults, name=name, models=models, folder=Path())
+    return reader.spec(table, table, faults, name=name, models=models, folder=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +110,7 @@ class _Reader:
         *,
         name: str,
         models: Sequence[RotationModel],
-        folder: Path,
+        folder: Path | None,
     ) -> DerivationSpec:
         """All but the rotations, and all faults raised together."""
         choices = {
@@ -193,7 +193,7 @@ def _read_theory(table: Table, models: Sequence[RotationModel]) -> bool:
     return is_wanted
 
 
-def _read_body(table: Table, name: str, folder: Path) -> Body | None:
+def _read_body(table: Table, name: str, folder: Path | None) -> Body | None:
     """The body of [body] in the symbols of [parameters]."""
     body, parameters = table.table("body"), table.table("parameters")
     if body is not None:

@@ -5,11 +5,14 @@ The derivation stays exact: measured numbers become parameters that have a value
 
 from __future__ import annotations
 
+import stat
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from rigidsym.errors import MissingExtra, RigidsymError
 from rigidsym.models.distribution import Known
 from rigidsym.spec.body_reader import BodyReader, Declared
 
@@ -31,34 +34,68 @@ def read_cloud(reader: BodyReader) -> Known | None:
     from rigidsym.data.mass.inertia import inertia_of
 
     table = reader.table
-    path = _path(reader, "particles")
     columns = table.texts("columns", "names of the columns")
-    if path is None or (columns is not None and None in columns):
+    if columns is not None and None in columns:
         return None
     names = None if columns is None else [name for name in columns if name is not None]
-    return _known(reader, inertia_of(path, columns=names, allow=bool(table.flag("allow"))))
+    allow = bool(table.flag("allow"))
+    return _in_file(reader, "particles", lambda path: inertia_of(path, columns=names, allow=allow))
 
 
 def read_mesh(reader: BodyReader) -> Known | None:
-    """mesh = "part.stl", with mass or density, and the metres that are one in the file."""
+    """mesh = "part.stl", with its mass or density, and its length unit in metres as `scale`."""
     from rigidsym.data.mass.mesh import mesh_inertia, read_mesh_file
 
     table = reader.table
-    path = _path(reader, "mesh")
     mass, density, scale = (table.number(key) for key in ("mass", "density", "scale"))
-    if path is None or any(
+    if any(
         table.value(key) is not None and value is None
         for key, value in (("mass", mass), ("density", density), ("scale", scale))
     ):
         return None
-    mesh = read_mesh_file(path, scale=1.0 if scale is None else scale)
     allow = bool(table.flag("allow"))
-    return _known(reader, mesh_inertia(mesh, mass=mass, density=density, allow=allow))
+
+    def measured(path: Path) -> MassProperties:
+        mesh = read_mesh_file(path, scale=1.0 if scale is None else scale)
+        return mesh_inertia(mesh, mass=mass, density=density, allow=allow)
+
+    return _in_file(reader, "mesh", measured)
 
 
-def _path(reader: BodyReader, key: str) -> Path | None:
+def _in_file(
+    reader: BodyReader, key: str, measure: Callable[[Path], MassProperties]
+) -> Known | None:
+    """The body in the file that a key names.
+
+    A file outside the folder of the derivation file is never quoted in a message.
+    """
     text = reader.table.text(key)
-    return None if text is None else reader.folder / text
+    if text is None:
+        return None
+    if reader.folder is None:
+        reader.table.fault("expected numbers: a record names no files", key)
+        return None
+    path = reader.folder / text
+    try:
+        return _known(reader, measure(path))
+    except MissingExtra:
+        raise
+    except RigidsymError:
+        if path.resolve().is_relative_to(reader.folder.resolve()):
+            raise
+        reader.table.fault(f"expected a file with a body, got {_kind(path)}", key)
+        return None
+
+
+def _kind(path: Path) -> str:
+    """A file by its kind and size."""
+    try:
+        status = path.stat()
+    except OSError as error:
+        return f"{error.strerror}"
+    if not stat.S_ISREG(status.st_mode):
+        return "a folder" if stat.S_ISDIR(status.st_mode) else "a device"
+    return f"a file of {status.st_size} bytes"
 
 
 def read_known(reader: BodyReader) -> Known | None:

@@ -7,6 +7,8 @@ import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+import sympy as sp
+
 from rigidsym.errors import ExpressionError
 from rigidsym.text.limits import FUNCTIONS
 
@@ -76,11 +78,15 @@ def spelled(text: str) -> str:
     return text.translate(_SPELLING)
 
 
-def check_name(text: str) -> str:
-    """The plain name that a text gives a coordinate or a constant: `phi` for `phi` and for `φ`.
+def check_name(text: str | sp.Symbol) -> str:
+    """The plain name of a coordinate or a constant: `phi` for `phi`, for `φ` and for a symbol.
 
     Raises ExpressionError for what cannot name one.
     """
+    if isinstance(text, sp.Symbol):
+        text = text.name
+    if not isinstance(text, str):
+        raise ExpressionError(f"expected a name in quotes, got {text!r}")
     name = spelled(text)
     if not 0 < len(name) <= _LONGEST:
         raise ExpressionError(f"expected a name of 1 to {_LONGEST} letters, got {len(name)}")

@@ -14,6 +14,7 @@ from rigidsym.mechanics.mass.moments import Moments, moments_of
 from rigidsym.mechanics.mass.numbers import in_parameters, is_measured
 from rigidsym.models.body import BodyDescription, Parameter, RigidBody, described
 from rigidsym.models.distribution import KEYS, Distribution, Solid
+from rigidsym.models.so3 import symbolic
 from rigidsym.models.solids import shape_of, shaped
 
 Rows = list[list[Quotient]]
@@ -53,6 +54,10 @@ def body_of(
     `parameters` describes the symbols. Raises BodyError if the mass is zero, and for unphysical
     numbers unless `allow` is set.
     """
+    if not isinstance(distribution, Distribution):
+        raise BodyError(
+            f"expected a distribution of mass, got {distribution!r}"
+        )
     try:
         return _integrated(distribution, name, title, parameters, allow)
     except BodyError as error:
@@ -142,9 +147,9 @@ def solid(
     for length in chosen.lengths:
         given = lengths.get(length.key, [sp.Symbol(letter) for letter in length.names])
         values += [
-            sp.sympify(e, strict=True) for e in (given if isinstance(given, Sequence) else [given])
+            symbolic(e, length.key) for e in (given if isinstance(given, Sequence) else [given])
         ]
     total = sp.Symbol("M") if mass is None and density is None else mass
-    exact = [None if e is None else sp.sympify(e, strict=True) for e in (total, density)]
+    exact = [None if e is None else symbolic(e, "mass or density") for e in (total, density)]
     made = shaped(shape, values, mass=exact[0], density=exact[1])
     return body_of(made, name=name or shape, allow=allow)
