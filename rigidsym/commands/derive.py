@@ -131,10 +131,14 @@ def _show(output: Output, written: list[Path], *, full: bool) -> None:
     left = 0 if full else max(0, len(lines) - MOST_LINES)
     click.echo("\n".join(lines[: len(lines) - left]))
     if left:
-        click.echo(f"\n... and {left} more lines: use --full, or read the note")
+        click.echo(f"\n... and {left} more lines: use --full, or read the note; {_proved(output)}")
     click.echo("\nWritten: " + "\n         ".join(str(path) for path in written))
 
 
 def _summary(output: Output, written: list[Path]) -> str:
+    return f"{output.name:<28} {_proved(output)}  {written[0].parent}"
+
+
+def _proved(output: Output) -> str:
     exact = sum(proof.is_exact for proof in output.proofs)
-    return f"{output.name:<28} {exact} of {len(output.proofs)} claims proved  {written[0].parent}"
+    return f"{exact} of {len(output.proofs)} claims proved"

@@ -262,7 +262,7 @@ def folder(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("name", ["mesh", "particles", "both", "composite"])
 def test_one_command_from_a_file_to_energies_kernels_and_note(folder, name):
     """I, principal axes, energies, kernels and note; and the record asks for the same again."""
-    run = ["run", str(folder / f"{name}.toml"), "--out", str(folder / "out")]
+    run = ["run", str(folder / f"{name}.toml"), "--full", "--out", str(folder / "out")]
     result = CliRunner().invoke(commands, run)
     assert result.exit_code == 0, result.output
     assert "I₁ = " in result.output
@@ -319,7 +319,7 @@ def test_a_mesh_from_a_file_is_that_of_trimesh(folder):
         ('parts = [{ shape = "sphere", turned = "z(" }]', "body.parts[0].turned"),
         ('parts = [{ shape = "sphere", hole = true, mass = 2.0 }]', "the mass is -2 kg"),
         ('mesh = "none.stl"\ndensity = 1.0', "no such mesh"),
-        ('particles = "none.npy"', "no such file of particles"),
+        ('particles = "none.npy"', "none.npy: no such file"),
     ],
 )
 def test_a_wrong_body_is_refused_with_its_place(text, fault):
