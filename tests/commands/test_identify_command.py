@@ -80,9 +80,9 @@ def test_several_samples_with_signs_and_velocity_as_json(tmp_path):
 def test_several_answers_are_cut_short_and_say_what_would_separate_them(tmp_path):
     words = options(sample(Reading(sequence="ZYX", degrees=True), (0, 0, 40)))
     done = call("identify", *words, cwd=tmp_path)
-    assert "96 readings fit 1 sample, all degrees" in done.stdout
+    assert "96 conventions fit 1 sample, all degrees" in done.stdout
     assert "and 90 more; --all shows them" in done.stdout
-    assert "To tell them apart, add a sample with these numbers in the columns:\n" in done.stdout
+    assert "To tell them apart, add a sample with these values in the columns:\n" in done.stdout
     assert max(map(len, done.stdout.splitlines())) <= 80
     everything = call("identify", *words, "--all", cwd=tmp_path).stdout
     assert everything.count("from scipy.spatial.transform") == 96
@@ -95,14 +95,14 @@ def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
     matrix = listed(attitude(AEROSPACE, (10, 20, 30.5))["matrix"])
     words = ("identify", "--angles", "10,20,30", "--matrix", matrix)
     done = call(*words, cwd=tmp_path, status=1)
-    assert "No reading fits 1 sample: 1152 were tried." in done.stdout
+    assert "No convention fits 1 sample: 1152 were tried," in done.stdout
     assert "Nearest: xyz extrinsic, passive, degrees, columns (a1, a2, a3)" in done.stdout
     assert "residual 0.0087 rad (0.5°), worst at sample 1" in done.stdout
-    assert "--tolerance 0.0092 takes it." in done.stdout
+    assert "--tolerance 0.0092 would accept it." in done.stdout
     assert done.stderr == ""
     call(*words, "--tolerance", "0.0092", cwd=tmp_path)
     far = call(*words[:2], "30,20,99", *words[3:], cwd=tmp_path, status=1)
-    assert "That is not near" in far.stdout
+    assert "Even the best match is" in far.stdout
     data = json.loads(call(*words, "--json", cwd=tmp_path, status=1).stdout)
     assert (data["fits"], data["answers"]) == (False, [])
     assert data["nearest"]["residual_rad"] == pytest.approx(np.radians(0.5))

@@ -1,4 +1,4 @@
-"""Data in a known convention, made without the detective: SciPy, and differences for Ω."""
+"""Data in a known convention, made without `identify`: SciPy, and differences for Ω."""
 
 from __future__ import annotations
 

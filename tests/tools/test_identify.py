@@ -1,4 +1,4 @@
-"""The detective names the convention of data from SciPy, SymPy and the lecture's formulas."""
+"""`identify` names the convention of data from SciPy, SymPy and the lecture's formulas."""
 
 from __future__ import annotations
 
@@ -319,7 +319,7 @@ def test_several_further_samples_where_the_tolerance_is_wide(tolerance):
 def test_a_tolerance_too_wide_for_any_sample_says_so():
     found = rs.identify((0, 0, 0), matrix=np.eye(3), tolerance=2.0)
     assert found.further is None
-    assert "too wide" in found.text()
+    assert "The tolerance is too large for any further sample" in found.text()
 
 
 # --- noise, rounding, no fit ----------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The calls that the detective prints are run, and give the data back."""
+"""The calls that `identify` prints are run, and give the data back."""
 
 from __future__ import annotations
 

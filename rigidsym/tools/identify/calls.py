@@ -9,7 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rigidsym.tools.identify.readings import RATES_IN_DEGREES, RATES_IN_RADIANS, Reading, Velocity
+import numpy as np
+
+from rigidsym.tools.identify.frames import IDENTITY, PERMUTATIONS, Matrix
+from rigidsym.tools.identify.readings import (
+    AS_THE_TURNS,
+    RATES_IN_DEGREES,
+    RATES_IN_RADIANS,
+    Reading,
+    Velocity,
+)
+from rigidsym.tools.identify.turns import quaternion_of
 
 _FRAME, _QUATERNION = "sympy.physics.vector import ReferenceFrame", "sympy import Quaternion"
 _CONVERSIONS = {RATES_IN_DEGREES: "np.pi / 180 * ", RATES_IN_RADIANS: "180 / np.pi * "}
@@ -47,6 +57,9 @@ def _scipy(reading: Reading) -> Iterator[str]:
     yield "from scipy.spatial.transform import Rotation"
     yield from _turns(reading)
     yield f'rotation = Rotation.from_euler("{reading.sequence}", {turns}{degrees}){inverse}'
+    if reading.frames != AS_THE_TURNS:
+        yield from _frames(reading)
+        yield f"rotation = {_framed(reading, 'rotation', 'Rotation.from_matrix({})', '*')}"
     if reading.scalar_last is None:
         yield "matrix = rotation.as_matrix()"
     else:
@@ -62,6 +75,7 @@ def _sympy(reading: Reading) -> Iterator[str]:
     if is_matrix:
         yield from _sympy_frames(reading, f"list({_radians(reading)})")
         yield f"matrix = {_sympy_matrix(reading)}"
+        yield from _framed_matrix(reading, "np.array(matrix, float)")
     else:
         yield from _sympy_quaternion(reading)
 
@@ -69,17 +83,23 @@ def _sympy(reading: Reading) -> Iterator[str]:
 def _sympy_frames(reading: Reading, turns: str) -> Iterator[str]:
     manner = "Body" if reading.is_intrinsic else "Space"
     yield 'N = ReferenceFrame("N")'
-    yield f'B = N.orientnew("B", "{manner}", {turns}, "{reading.sequence.upper()}")'
+    yield f'A = N.orientnew("A", "{manner}", {turns}, "{reading.sequence.upper()}")'
 
 
 def _sympy_matrix(reading: Reading) -> str:
-    return "B.dcm(N)" if reading.passive else "N.dcm(B)"
+    return "A.dcm(N)" if reading.passive else "N.dcm(A)"
 
 
 def _sympy_quaternion(reading: Reading) -> Iterator[str]:
     conjugate = ".conjugate()" if reading.passive else ""
     order = "p.b, p.c, p.d, p.a" if reading.scalar_last else "p.a, p.b, p.c, p.d"
     yield f'p = Quaternion.from_euler(list({_radians(reading)}), "{reading.sequence}"){conjugate}'
+    if reading.frames != AS_THE_TURNS:
+        for name, matrix in _sides(reading).items():
+            numbers = ", ".join(f"{x:.15g}" for x in quaternion_of(np.array(matrix)))
+            yield f"{name} = Quaternion({numbers})"
+        inverse = ".conjugate()" if reading.passive else ""
+        yield f"p = {_framed(reading, 'p', '{}', '*', inverse)}"
     yield f"quaternion = [{order}]"
 
 
@@ -95,10 +115,13 @@ def _sympy_motion(reading: Reading, velocity: Velocity) -> Iterator[str]:
     yield from _sympy_frames(reading, "q")
     if reading.scalar_last is None:
         yield f"matrix = msubs({_sympy_matrix(reading)}, at)"
+        yield from _framed_matrix(reading, "np.array(matrix, float)")
     else:
         yield from _sympy_quaternion(reading)
-    frame = "N" if velocity.frame == "space" else "B"
-    yield f"omega = msubs(B.ang_vel_in(N).to_matrix({frame}), rates_at, at)"
+    frame = "N" if velocity.frame == "space" else "A"
+    yield f"omega = msubs(A.ang_vel_in(N).to_matrix({frame}), rates_at, at)"
+    if side := _side_of(velocity, reading):
+        yield f"omega = np.array(omega, float).ravel() @ {side}"
     yield from _scaled(velocity)
 
 
@@ -107,9 +130,10 @@ def _rigidsym(reading: Reading) -> Iterator[str]:
     yield "import rigidsym as rs"
     yield from _turns(reading)
     yield f'model = rs.EulerAngles("{reading.sequence}"{passive})'
-    if reading.scalar_last is None:
+    if reading.scalar_last is None or reading.frames != AS_THE_TURNS:
         yield "kernels = rs.derive(model).kernels().load()"
         yield f"matrix = kernels.rotation_matrix({_radians(reading)})"
+        yield from _framed_matrix(reading, "matrix")
     else:
         conjugate = " * [1, -1, -1, -1]" if reading.passive else ""
         yield "kernels = rs.derive(model).kernels(conversions=True).load()"
@@ -119,7 +143,46 @@ def _rigidsym(reading: Reading) -> Iterator[str]:
     if reading.velocity:
         name = f"angular_velocity_{reading.velocity.frame}"
         yield f"omega = kernels.{name}({_radians(reading)}, {_name(reading, 'rates')})"
+        if side := _side_of(reading.velocity, reading):
+            yield f"omega = omega @ {side}"
         yield from _scaled(reading.velocity)
+
+
+def _sides(reading: Reading) -> dict[str, Matrix]:
+    """The constant rotations S and B that are not 1."""
+    both = {"S": reading.frames.space, "B": reading.frames.body}
+    return {name: matrix for name, matrix in both.items() if matrix != IDENTITY}
+
+
+def _frames(reading: Reading) -> Iterator[str]:
+    for name, matrix in _sides(reading).items():
+        rows = [f"[{', '.join(f'{x:.15g}' for x in row)}]" for row in matrix]
+        separator = ", " if matrix in PERMUTATIONS else ",\n     "
+        yield f"{name} = np.array([{separator.join(rows)}])"
+
+
+def _framed(reading: Reading, name: str, form: str, operator: str, transposed: str = ".T") -> str:
+    """S R B, or its transpose if the reading is passive and `name` is Rᵀ already."""
+    sides = _sides(reading)
+    before, after = ("B", "S") if reading.passive else ("S", "B")
+    inverse = transposed if reading.passive else ""
+    parts = [form.format(before + inverse)] if before in sides else []
+    parts += [name, *([form.format(after + inverse)] if after in sides else [])]
+    return f" {operator} ".join(parts)
+
+
+def _framed_matrix(reading: Reading, name: str) -> Iterator[str]:
+    if reading.frames != AS_THE_TURNS:
+        yield from _frames(reading)
+        yield f"matrix = {_framed(reading, name, '{}', '@')}"
+
+
+def _side_of(velocity: Velocity, reading: Reading) -> str:
+    """What Ω as a row is multiplied by: Sᵀ in space components, B in those of the body."""
+    side = {"space": "S", "body": "B"}[velocity.frame]
+    if side not in _sides(reading):
+        return ""
+    return "S.T" if side == "S" else side
 
 
 def _scaled(velocity: Velocity) -> Iterator[str]:

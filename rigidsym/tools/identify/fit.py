@@ -10,6 +10,7 @@ from functools import cache
 import numpy as np
 
 from rigidsym.data.text import MOST_SHOWN
+from rigidsym.tools.identify.align import aligned
 from rigidsym.tools.identify.readings import VELOCITIES, Reading, Velocity, distinct
 from rigidsym.tools.identify.samples import SLACK, Block, SampleError, check
 from rigidsym.tools.identify.sources import Source
@@ -141,6 +142,11 @@ def _narrowed(
             if found:
                 return tolerance, found
     if not left:
+        for tolerance in tolerances(asked, block, source.coarseness, scale):
+            framed = aligned(table, block, tolerance)
+            found = _with_velocities(framed, block, scale, tolerance.velocity) if framed else []
+            if found:
+                return tolerance, found
         left = [readings[np.lexsort((angles.max(axis=0), off.sum(axis=0)))[0]]]
     return tolerance, _nearest_velocity(left, block, scale)
 

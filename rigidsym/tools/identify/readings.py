@@ -12,6 +12,8 @@ from itertools import product
 from math import pi
 from typing import Literal
 
+from rigidsym.tools.identify.frames import IDENTITY, Frames, Matrix
+
 Three = tuple[int, int, int]
 Frame = Literal["space", "body"]
 
@@ -28,6 +30,7 @@ _PLAIN_COLUMNS: tuple[Three, ...] = ((0, 1, 2), (0, 2, 1), (1, 0, 2))
 # Of two patterns of signs that are each other's opposite, the one with fewer flips.
 _PLAIN_SIGNS: tuple[Three, ...] = ((1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
 _OTHER: dict[Frame, Frame] = {"space": "body", "body": "space"}
+AS_THE_TURNS = Frames()
 RATES_IN_DEGREES, RATES_IN_RADIANS = "rates in deg/s, Ω in rad/s", "rates in rad/s, Ω in deg/s"
 _FACTORS = {"": 1.0, RATES_IN_DEGREES: pi / 180, RATES_IN_RADIANS: 180 / pi}
 
@@ -84,6 +87,7 @@ class Reading:
     degrees: bool = False
     scalar_last: bool | None = None  # None: a matrix
     velocity: Velocity | None = None
+    frames: Frames = AS_THE_TURNS  # of the data
 
     @property
     def is_intrinsic(self) -> bool:
@@ -138,6 +142,20 @@ class Reading:
             signs=(-third, -second, -first),
             passive=not self.passive,
             velocity=self.velocity and self.velocity.of_the_inverse(),
+            frames=self.frames.inverse,
+        )
+
+    def about_other_axes(self, matrix: Matrix) -> Reading:
+        """P R Pᵀ for a rotation P that permutes and reverses axes: turns about P e."""
+        images = [
+            tuple(row[axis] for row in matrix) for axis in map("xyz".index, self.sequence.lower())
+        ]
+        letters = "".join("xyz"[[abs(x) for x in image].index(1)] for image in images)
+        signs = [int(sum(image)) * sign for image, sign in zip(images, self.signs, strict=True)]
+        return replace(
+            self,
+            sequence=letters.upper() if self.is_intrinsic else letters,
+            signs=(signs[0], signs[1], signs[2]),
         )
 
     def intrinsic(self) -> Reading:
@@ -150,6 +168,8 @@ class Reading:
 
     def aliases(self) -> tuple[Reading, ...]:
         """The other readings that are this function of the data, the plainest first."""
+        if self.frames != AS_THE_TURNS:  # in the other direction, S and B would change sides
+            return (self.in_other_manner(),)
         other = self.in_other_direction()
         found = (self.in_other_manner(), other, other.in_other_manner())
         return tuple(sorted(found, key=Reading.plainness))
@@ -158,6 +178,7 @@ class Reading:
         """Sorts readings: few signs flipped, columns as given, active, intrinsic, radians."""
         opposite = self.velocity is not None and self.velocity.is_opposite
         return (
+            self.frames.cost(),
             self.flips + opposite,
             _displaced(self.columns),
             self.passive,
@@ -172,14 +193,14 @@ class Reading:
     def words(self, names: Sequence[str] = ANGLE_NAMES) -> str:
         """ "ZYX intrinsic, passive, degrees, columns (yaw, −pitch, roll), scalar first" """
         turns, direction, columns = self._parts(names)
-        parts = [turns, direction, self.unit, columns, self.scalar_words]
+        parts = [turns, direction, self.unit, columns, self.scalar_words, *self.frames.words()]
         parts += [self.velocity.words] if self.velocity else []
         return ", ".join(filter(None, parts))
 
     def brief(self, names: Sequence[str] = ANGLE_NAMES) -> str:
         """What tells it from its aliases."""
         velocity = [self.velocity.of_what] if self.velocity else []
-        return ", ".join([*self._parts(names), *velocity])
+        return ", ".join([*self._parts(names), *self.frames.words(), *velocity])
 
     def _parts(self, names: Sequence[str]) -> tuple[str, str, str]:
         return (
@@ -194,6 +215,11 @@ class Reading:
         angles = turns._angles(names)
         text = " ".join(
             f"R{axis}({angle})" for axis, angle in zip(turns.sequence.lower(), angles, strict=True)
+        )
+        text = " ".join(
+            ["S"] * (self.frames.space != IDENTITY)
+            + [text]
+            + ["B"] * (self.frames.body != IDENTITY)
         )
         return f"({text})ᵀ" if self.passive else text
 

@@ -18,7 +18,7 @@ _ACCEPTABLE = 0.2  # radians; a nearest reading further off is no candidate
 
 
 def text(found: Findings, *, everything: bool = False) -> str:
-    """What a terminal shows, in at most 80 columns where the names of the angles allow it."""
+    """The text for a terminal, in 80 columns unless the names of the angles are long."""
     if found.nearest:
         lines = _no_fit(found, found.nearest)
     elif len(found.answers) == 1:
@@ -34,8 +34,9 @@ def _single(found: Findings, answer: Answer) -> Iterator[str]:
     yield from _wrapped("= " + same.brief(found.names), "")
     yield ""
     yield from _facts(found, answer)
-    yield ""
-    yield "The same in other words:"
+    if others:
+        yield ""
+        yield "Equivalent descriptions:"
     for reading in others:
         yield from _wrapped(reading.brief(found.names), "  ")
     yield ""
@@ -61,7 +62,9 @@ def _several(found: Findings, *, everything: bool) -> Iterator[str]:
     count = len(found.answers)
     shown = found.answers if everything else found.answers[:_MOST_SHOWN]
     common = _common([answer.reading for answer in found.answers])
-    yield f"{count} readings fit {_samples(found.samples)}" + (f", all {common}" if common else "")
+    yield f"{count} conventions fit {_samples(found.samples)}" + (
+        f", all {common}" if common else ""
+    )
     yield f"tolerance {_tolerance(found)}"
     for number, answer in enumerate(shown, 1):
         yield ""
@@ -73,13 +76,13 @@ def _several(found: Findings, *, everything: bool) -> Iterator[str]:
             yield indent("\n".join(_calls(answer)), "    ")
     if not everything:
         more = f"and {count - len(shown)} more; " if count > len(shown) else ""
-        yield f"\n{more}--all shows {'them, and ' if more else ''}the calls for each."
+        yield f"\n{more}--all shows {'them and ' if more else ''}the calls for each."
     yield ""
     yield from _further(found, found.further)
 
 
 def _common(readings: Sequence[Reading]) -> str:
-    """In words, what all of them say of the units, of the scalar and of Ω."""
+    """In words, what all readings have in common: unit, order of the quaternion, Ω."""
     said = {
         (reading.unit, reading.scalar_words, reading.velocity.words if reading.velocity else "")
         for reading in readings
@@ -90,15 +93,15 @@ def _common(readings: Sequence[Reading]) -> str:
 
 def _further(found: Findings, further: Separation | None) -> Iterator[str]:
     if further is None:
-        yield "The tolerance is too wide for a further sample to tell them all apart."
+        yield "The tolerance is too large for any further sample to tell all of them apart."
         return
     if not _differ_in_orientation(found):
-        yield "They differ in Ω alone; no orientation at rest tells them apart."
+        yield "They differ only in Ω; no sample at rest tells them apart."
     count = "a sample" if len(further.samples) == 1 else f"{len(further.samples)} samples"
-    yield f"To tell them apart, add {count} with these numbers in the columns:"
+    yield f"To tell them apart, add {count} with these values in the columns:"
     for sample in further.samples:
         yield f"  {_sample(found.names, sample)}"
-    yield f"There {_apart(found, further)}."
+    yield f"For these, {_apart(found, further)}."
 
 
 def _sample(names: Sequence[str], sample: FurtherSample) -> str:
@@ -122,7 +125,8 @@ def _differ_in_orientation(found: Findings) -> bool:
 
 
 def _no_fit(found: Findings, nearest: Answer) -> Iterator[str]:
-    yield f"No reading fits {_samples(found.samples)}: {found.tried} were tried."
+    yield f"No convention fits {_samples(found.samples)}: {found.tried} were tried,"
+    yield "also with permuted or reversed axes and with misaligned frames."
     yield f"tolerance {_tolerance(found)}"
     yield ""
     yield from _wrapped(nearest.reading.words(found.names), "Nearest: ")
@@ -132,9 +136,10 @@ def _no_fit(found: Findings, nearest: Answer) -> Iterator[str]:
         yield f"  {nearest.fitting} of {nearest.samples} samples fit"
     worst = max(nearest.residual, nearest.velocity_residual or 0.0)
     if worst <= _ACCEPTABLE:
-        yield f"--tolerance {_above(worst)} takes it."
+        yield f"--tolerance {_above(worst)} would accept it."
     else:
-        yield "That is not near: are angles and attitude of one moment, and of one body?"
+        yield f"Even the best match is {degrees(worst):.2g}° off: do the angles and the attitude"
+        yield "belong to the same instant and the same body?"
 
 
 def _above(value: float) -> str:
@@ -164,7 +169,7 @@ def _samples(count: int) -> str:
 
 
 def _wrapped(words: str, head: str, width: int = 80) -> Iterator[str]:
-    """Words after a head, broken between the parts of a reading where they are too long."""
+    """Words after a head, broken between the parts of a reading if they are too long."""
     line, margin = head, " " * len(head)
     for part in words.split(", "):
         piece = part if line in (head, margin) else ", " + part
@@ -220,6 +225,7 @@ def _reading(reading: Reading, names: Sequence[str]) -> dict[str, Any]:
         "columns": list(reading.columns),
         "signs": list(reading.signs),
         "scalar_last": reading.scalar_last,
+        "frames": {"space": reading.frames.space, "body": reading.frames.body},
         "velocity": velocity
         and {"frame": velocity.frame, "opposite": velocity.is_opposite, "units": velocity.units},
     }

@@ -125,6 +125,8 @@ def from_arrays(
 
 def _shaped(name: str, value: ArrayLike) -> tuple[NDArray[Any], list[str]]:
     """The array with samples on the first axis and numbers on the second."""
+    if hasattr(value, "as_matrix") and hasattr(value, "as_quat"):  # a Rotation of SciPy
+        value = value.as_quat() if name == "quaternion" else value.as_matrix()
     try:
         array = np.asanyarray(value)
     except ValueError as error:  # rows of different lengths

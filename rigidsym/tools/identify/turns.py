@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidsym.tools.identify.readings import RADIANS_PER_DEGREE, Reading
+from rigidsym.tools.identify.readings import AS_THE_TURNS, RADIANS_PER_DEGREE, Reading
 
 Array = NDArray[np.float64]
 _AXES = "XYZ"
@@ -24,6 +24,11 @@ class Table:
         self._signs = np.array([turn.signs for turn in turns], float).T
         self._units = np.array([int(turn.degrees) for turn in turns])
         self._scalar_last = np.array([bool(reading.scalar_last) for reading in self.readings])
+        frames = [turn.frames for turn in turns]
+        self._frames = None
+        if any(each != AS_THE_TURNS for each in frames):
+            sides = [each.space for each in frames], [each.body for each in frames]
+            self._frames = [quaternion_of(np.array(side)).T for side in sides]  # (4, readings)
 
     def __len__(self) -> int:
         return len(self.readings)
@@ -33,9 +38,21 @@ class Table:
 
         `orientation` (n, 4) is the quaternion of the data with its numbers in their own order.
         """
+        return angle_between(self._quaternions(angles), self._given(orientation), axis=0)
+
+    def constants(self, angles: Array, orientation: Array) -> tuple[Array, Array]:
+        """The rotations by which each reading falls short of the data: (4, n, readings), twice.
+
+        The data are the reading times the first, and the second times the reading.
+        """
+        turns, given = conjugate(self._quaternions(angles)), self._given(orientation)
+        return times(turns, given), times(given, turns)
+
+    def _given(self, orientation: Array) -> Array:
+        """The data as each reading takes them, scalar first: (4, n, readings)."""
         given = np.repeat(orientation.T[..., None], len(self), axis=2)
         given[..., self._scalar_last] = np.roll(given[..., self._scalar_last], 1, axis=0)
-        return angle_between(self._quaternions(angles), given, axis=0)
+        return given
 
     def as_given(self, angles: Array) -> Array:
         """The quaternions with their numbers in the order of the data: (n, readings, 4)."""
@@ -58,6 +75,9 @@ class Table:
                 which = (slice(None), columns, self._units[places])
                 turn = _then_about(_AXES.index(axis), turn, cosines[which], sines[which] * signs)
             found[..., places] = turn
+        if self._frames:
+            space, body = (side[:, None] for side in self._frames)
+            found = times(times(space, found), body)
         return found
 
 
@@ -75,6 +95,31 @@ def _then_about(axis: int, turn: Array, cosine: Array, sine: Array) -> Array:
     product[first] += turn[second] * sine
     product[second] -= turn[first] * sine
     return product
+
+
+def times(p: Array, q: Array) -> Array:
+    """The product of quaternions (4, ...), scalar first."""
+    (a, b, c, d), (w, x, y, z) = p, q
+    return np.stack(
+        np.broadcast_arrays(
+            a * w - b * x - c * y - d * z,
+            a * x + b * w + c * z - d * y,
+            a * y - b * z + c * w + d * x,
+            a * z + b * y - c * x + d * w,
+        )
+    )
+
+
+def conjugate(q: Array) -> Array:
+    """The inverse of unit quaternions (4, ...), scalar first."""
+    return np.stack([q[0], -q[1], -q[2], -q[3]])
+
+
+def matrix_of(q: Array) -> Array:
+    """The rotation matrix (3, 3) of a unit quaternion (4,), scalar first."""
+    w, v = q[0], q[1:]
+    cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+    return np.asarray(np.eye(3) + 2 * w * cross + 2 * cross @ cross)
 
 
 def angle_between(p: Array, q: Array, axis: int = -1) -> Array:

@@ -8,7 +8,7 @@ from types import ModuleType
 
 import numpy as np
 
-from rigidsym.tools.identify.readings import Reading, Velocity
+from rigidsym.tools.identify.readings import AS_THE_TURNS, Reading, Velocity
 from rigidsym.tools.identify.turns import Array
 
 _FRAMES = ("space", "body")
@@ -42,6 +42,10 @@ def angular_velocities(readings: Sequence[Reading], angles: Array, rates: Array)
         for k, frame in enumerate(_FRAMES):
             kernel = getattr(_kernels(sequence), f"angular_velocity_{frame}")
             omega[:, here, k] = kernel(q[:, here], q_dot[:, here])
+    for k, turn in enumerate(turns):
+        if turn.frames != AS_THE_TURNS:  # Ω of S R B is S Ω, and its Ω′ is Bᵀ Ω′
+            omega[:, k, 0] = omega[:, k, 0] @ np.array(turn.frames.space).T
+            omega[:, k, 1] = omega[:, k, 1] @ np.array(turn.frames.body)
     return omega
 
 
