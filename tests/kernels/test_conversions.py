@@ -169,9 +169,20 @@ def test_a_quaternion_of_any_length_is_a_rotation_and_zero_is_none(scalar_last):
     assert np.isnan(functions.rotation_matrix_scalar(0.0, 0.0, 0.0, 0.0)).all()
     assert np.isnan(functions.quaternion(np.zeros(4))).all()
     for size in (1e-300, 1e300):
-        assert_allclose(
-            functions.quaternion(size * quaternion), quaternions(ANY), rtol=4 * EPS, atol=EPS
-        )
+        found = functions.quaternion(size * quaternion)
+        assert_allclose(found, quaternion, rtol=4 * EPS, atol=EPS)
+
+
+@pytest.mark.parametrize("text", ["quaternion", "unit_quaternion"])
+def test_conversions_of_scalar_last_quaternions_are_scalar_last(text):
+    functions = rs.derive(rotation_from(text, scalar_last=True)).kernels(conversions=True).load()
+    quaternion = ANY.as_quat()  # SciPy's are scalar last, too
+    for name in ("quaternion", "from_quaternion"):
+        assert_allclose(getattr(functions, name)(quaternion), quaternion, atol=4 * EPS)
+        assert "scalar last" in getattr(functions, name).__doc__
+    found = functions.from_rotation_matrix(ANY.as_matrix())
+    assert_allclose(np.abs((found * quaternion).sum(axis=-1)), 1.0, atol=8 * EPS)
+    assert_allclose(functions.rotation_matrix(found), ANY.as_matrix(), atol=8 * EPS)
 
 
 def test_velocities_of_unit_quaternions_are_those_of_all():

@@ -24,10 +24,10 @@ from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.read import Reader
 from rigidsym.kernels.lowering.schedule import write
+from rigidsym.mechanics.conversions.continuity import Continuity
+from rigidsym.mechanics.conversions.conversion_functions import Converted, converted
 from rigidsym.mechanics.conversions.conversions import Conversions
-from rigidsym.mechanics.conversions.function import Function, Input
-from rigidsym.mechanics.conversions.functions import Converted, converted
-from rigidsym.mechanics.conversions.unwrapping import Unwrapping
+from rigidsym.mechanics.conversions.function import ConversionFunction, ConversionInput
 from rigidsym.mechanics.derivation import (
     Argument as Vector,
     Derivation,
@@ -71,7 +71,7 @@ def lower(
         arguments=tuple(a for name, a in kernels.arguments.items() if name in used),
         kernels=found,
         remarks=added.remarks,
-        unwrapping=kernels.unwrapping(added.unwrapping) if added.unwrapping else None,
+        unwrapping=kernels.unwrapping(added.continuity) if added.continuity else None,
     )
 
 
@@ -162,7 +162,7 @@ class _Lowering:
             parts=derivative.parts,
         )
 
-    def of_function(self, function: Function) -> ir.Kernel:
+    def of_function(self, function: ConversionFunction) -> ir.Kernel:
         """The kernel of a conversion: its values one by one, as they are written."""
         arguments = tuple(map(self._taken, function.inputs))
         known = {
@@ -190,7 +190,7 @@ class _Lowering:
             unit=function.unit,
         )
 
-    def _taken(self, given: Input) -> ir.Argument:
+    def _taken(self, given: ConversionInput) -> ir.Argument:
         """An argument of a conversion; the coordinates that are kept are called as in q."""
         name, symbols = given.argument.name, given.argument.symbols
         if name not in self.arguments:
@@ -208,7 +208,7 @@ class _Lowering:
             )
         return self.arguments[name]
 
-    def unwrapping(self, found: Unwrapping) -> ir.Unwrapping:
+    def unwrapping(self, found: Continuity) -> ir.Unwrapping:
         return ir.Unwrapping(
             kind=found.kind,
             arguments=tuple(self.arguments[name] for name in found.inputs),

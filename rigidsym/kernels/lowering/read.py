@@ -12,7 +12,7 @@ import sympy as sp
 from rigidsym.algebra.stumpff import Entire
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.cse import CHOICE, Factors, Graph, Weighted
-from rigidsym.mechanics.conversions.values import Choice, Epsilon
+from rigidsym.mechanics.conversions.values import Epsilon, Where
 
 Monomial = tuple[Fraction, Factors]  # a number times nodes of the graph, ~node dividing
 
@@ -89,7 +89,7 @@ class Reader:
         if isinstance(expression, sp.atan2 | Epsilon):
             name = "eps" if isinstance(expression, Epsilon) else "atan2"
             return Fraction(1), (self.graph.call(name, *map(self.weighted, expression.args)),)
-        if isinstance(expression, Choice):
+        if isinstance(expression, Where):
             condition, *others = expression.args
             relation = self.graph.call(
                 condition.rel_op, *map(self.weighted, (condition.lhs, condition.rhs))

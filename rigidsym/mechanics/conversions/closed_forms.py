@@ -34,6 +34,11 @@ class ClosedForm:
     branch: str  # sentences: which of the possible coordinates are given
     claims: tuple[Claim, ...]
 
+    @property
+    def is_scalar_last(self) -> bool:
+        """Whether the coordinates are a quaternion (x, y, z, w)."""
+        return self.rule == "quaternion" and self.order[0] == 3
+
 
 def closed_form(model: RotationModel) -> ClosedForm | None:
     """The form of a model that is one of the parametrisations; None where it is none."""

@@ -2,72 +2,65 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 import sympy as sp
 
-from rigidsym.mechanics.conversions.values import Choice, Values, Vector, short_way, square
-from rigidsym.models.so3 import hat
+from rigidsym.mechanics.conversions.conversions import rotation_of
+from rigidsym.mechanics.conversions.values import NamedValues, Vector, Where, short_way, square
 
 
-def rotation_of(parts: Sequence[sp.Expr]) -> sp.Matrix:
-    """The matrix (3, 3) of a quaternion, times the square of its length."""
-    w, *vector = parts
-    v = sp.Matrix(vector)
-    return (w**2 - v.dot(v)) * sp.eye(3) + 2 * v * v.T + 2 * w * hat(v)
-
-
-def unit(values: Values, quaternion: Vector) -> Vector:
+def unit(values: NamedValues, quaternion: Vector) -> Vector:
     length = values.length("length", quaternion)
     return tuple(part / length for part in quaternion)
 
 
-def _cayley_klein(values: Values, quaternion: Vector) -> Vector:
+def _cayley_klein(values: NamedValues, quaternion: Vector) -> Vector:
     w, x, y, z = unit(values, quaternion)
     return w, z, y, x
 
 
-def _axis_angle(values: Values, quaternion: Vector) -> Vector:
+def _axis_angle(values: NamedValues, quaternion: Vector) -> Vector:
     w, x, y, z = short_way(values, quaternion)
     none, length = _length_of_vector(values, (x, y, z))
-    axis = values.let("axis_x", Choice(none, sp.S.One, x / length))
-    return axis, y / length, z / length, 2 * sp.atan2(Choice(none, sp.S.Zero, length), w)
+    axis = values.let("axis_x", Where(none, sp.S.One, x / length))
+    return axis, y / length, z / length, 2 * sp.atan2(Where(none, sp.S.Zero, length), w)
 
 
-def _length_of_vector(values: Values, vector: Vector) -> tuple[sp.Basic, sp.Expr]:
+def _length_of_vector(values: NamedValues, vector: Vector) -> tuple[sp.Basic, sp.Expr]:
     """Whether a vector vanishes, and its length, or one: a root of zero has no derivative."""
     size = values.let("square", square(vector))
     none = sp.Eq(size, 0)
-    return none, values.let("length", sp.sqrt(Choice(none, sp.S.One, size)))
+    return none, values.let("length", sp.sqrt(Where(none, sp.S.One, size)))
 
 
-def _rotation_vector(values: Values, quaternion: Vector) -> Vector:
+def _rotation_vector(values: NamedValues, quaternion: Vector) -> Vector:
     w, *vector = short_way(values, quaternion)
     none, length = _length_of_vector(values, tuple(vector))
-    limit = 2 / Choice(sp.Eq(w, 0), sp.S.One, w)
-    factor = values.let("factor", Choice(none, limit, 2 * sp.atan2(length, w) / length))
+    limit = 2 / Where(sp.Eq(w, 0), sp.S.One, w)
+    factor = values.let("factor", Where(none, limit, 2 * sp.atan2(length, w) / length))
     return tuple(factor * part for part in vector)
 
 
-def _gibbs_vector(values: Values, quaternion: Vector) -> Vector:  # noqa: ARG001  (as the others)
+def _gibbs_vector(values: NamedValues, quaternion: Vector) -> Vector:  # noqa: ARG001  (as the others)
     w, *vector = quaternion
     return tuple(
-        part / Choice(sp.Eq(w, 0), Choice(sp.Eq(part, 0), sp.S.One, w), w) for part in vector
+        part / Where(sp.Eq(w, 0), Where(sp.Eq(part, 0), sp.S.One, w), w) for part in vector
     )
 
 
-def _modified_rodrigues(values: Values, quaternion: Vector) -> Vector:
+def _modified_rodrigues(values: NamedValues, quaternion: Vector) -> Vector:
     parts = short_way(values, quaternion)
     divisor = values.let("divisor", values.length("length", parts) + parts[0])
     return tuple(part / divisor for part in parts[1:])
 
 
-def _direction_cosines(values: Values, quaternion: Vector) -> Vector:
+def _direction_cosines(values: NamedValues, quaternion: Vector) -> Vector:
     size = values.let("square", square(quaternion))
     return tuple(sp.expand(entry) / size for entry in rotation_of(quaternion))
 
 
-RULES: Mapping[str, Callable[[Values, Vector], Vector]] = {
+RULES: Mapping[str, Callable[[NamedValues, Vector], Vector]] = {
     "quaternion": unit,
     "cayley_klein": _cayley_klein,
     "axis_angle": _axis_angle,

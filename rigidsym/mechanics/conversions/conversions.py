@@ -1,7 +1,8 @@
 """Coordinates to the unit quaternion and back, and to R: what converts, how, and its proofs.
 
-A quaternion p is scalar first here, (p_w, p_x, p_y, p_z), whatever the order of a model's own, and
-it is that of R, which turns the body, also where a model presents the transpose.
+A quaternion p is scalar first here, (p_w, p_x, p_y, p_z); only the results for a model whose own
+quaternion is scalar last are in its order. It is that of R, which turns the body, also where a
+model presents the transpose.
 """
 
 from __future__ import annotations
@@ -83,6 +84,11 @@ class InverseConversion:
     source: Citation | None = None
     given: tuple[str, ...] = ()  # arguments that the functions take besides: "parameters", "kept"
 
+    @property
+    def is_scalar_last(self) -> bool:
+        """Whether quaternions are (x, y, z, w), as the coordinates are."""
+        return isinstance(self.rule, ClosedForm) and self.rule.is_scalar_last
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Conversions:
@@ -161,7 +167,8 @@ def rotation_of(parts: Sequence[sp.Expr]) -> sp.Matrix:
 def _forward(model: RotationModel, form: ClosedForm | None) -> Step | None:
     """The unit quaternion as a formula in the coordinates; None where R has to be taken apart."""
     if form is not None:
-        return _step(model, form.quaternion, form.because) if form.quaternion else None
+        step = _step(model, form.quaternion, form.because) if form.quaternion else None
+        return _scalar_last(step) if step and form.is_scalar_last else step
     if not model.turns or len(model.turns) > LONGEST_CHAIN:
         return None
     try:
@@ -170,6 +177,13 @@ def _forward(model: RotationModel, form: ClosedForm | None) -> Step | None:
         return None
     # Where it is a root of a root, the ring may not know that: R, which is proved, is taken apart.
     return step if all(proof.is_exact for proof in step.proofs) else None
+
+
+def _scalar_last(step: Step) -> Step:
+    """The quaternion in the order of the coordinates, (x, y, z, w)."""
+    w, *vector = step.expression
+    quantity = replace(step.quantity, about="unit quaternion of the rotation, scalar last")
+    return replace(step, quantity=quantity, expression=sp.ImmutableMatrix([*vector, w]))
 
 
 def _step_of_turns(model: RotationModel) -> Step:

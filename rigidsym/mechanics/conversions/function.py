@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import sympy as sp
 
 from rigidsym.formula.tree import Symbol
-from rigidsym.mechanics.conversions.values import Values, Vector
+from rigidsym.mechanics.conversions.values import NamedValues, Vector
 from rigidsym.mechanics.derivation import Argument
 
 Line = tuple[sp.Symbol, sp.Expr]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Input:
+class ConversionInput:
     """An argument of a conversion."""
 
     argument: Argument
@@ -24,12 +24,12 @@ class Input:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Function:
+class ConversionFunction:
     """One conversion of a vector, or of a matrix."""
 
     name: str
     symbol: str  # of the result, in Unicode
-    inputs: tuple[Input, ...]
+    inputs: tuple[ConversionInput, ...]
     shared: tuple[Line, ...] = ()  # values first of all, whose common parts are computed once
     values: tuple[Line, ...]
     outputs: Vector
@@ -53,14 +53,14 @@ def argument_of(name: str, components: Sequence[sp.Symbol], about: str) -> Argum
 def function_of(
     name: str,
     symbol: str,
-    inputs: Iterable[Input],
-    values: Values,
+    inputs: Iterable[ConversionInput],
+    values: NamedValues,
     outputs: Sequence[sp.Expr],
     about: str,
     *remarks: str,
     unit: str = "",
-) -> Function:
-    return Function(
+) -> ConversionFunction:
+    return ConversionFunction(
         name=name,
         symbol=symbol,
         inputs=tuple(inputs),

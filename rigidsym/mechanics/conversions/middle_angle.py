@@ -9,9 +9,9 @@ import sympy as sp
 
 from rigidsym.mechanics.conversions.three_axes import dot
 from rigidsym.mechanics.conversions.values import (
-    Choice,
-    Values,
+    NamedValues,
     Vector,
+    Where,
     nearest,
     number,
     rounded,
@@ -67,7 +67,7 @@ def halves_between(axes: Sequence[Vector], half: Vector, sign: int) -> tuple[Hal
     )
 
 
-def longer(values: Values, halves: tuple[Half, Half], found: Sequence[Vector]) -> Vector:
+def longer(values: NamedValues, halves: tuple[Half, Half], found: Sequence[Vector]) -> Vector:
     """The values by the vector that is longer: by one vector where that is known."""
     names = "abcdefgh"
     lengths = [half.square for half in halves]
@@ -78,12 +78,12 @@ def longer(values: Values, halves: tuple[Half, Half], found: Sequence[Vector]) -
     is_first = sizes[0] >= sizes[1]
     pairs = [[values.let("v", rounded(part)) for part in pair] for pair in zip(*found, strict=True)]
     return tuple(
-        values.let(name, Choice(is_first, *pair))
+        values.let(name, Where(is_first, *pair))
         for name, pair in zip(names[: len(pairs)], pairs, strict=True)
     )
 
 
-def angle_between(values: Values, first: Vector, second: Vector) -> sp.Expr:
+def angle_between(values: NamedValues, first: Vector, second: Vector) -> sp.Expr:
     """The angle between two unit vectors."""
     cosine, cross = dot(first, second), sp.Matrix(first).cross(sp.Matrix(second))
     if all(part.is_number for part in (*first, *second)):
@@ -92,7 +92,7 @@ def angle_between(values: Values, first: Vector, second: Vector) -> sp.Expr:
     return values.let("side", sp.atan2(sine, values.let("cosine", rounded(cosine))))
 
 
-def flat_angle(values: Values, first: Vector, middle: Vector, last: Vector) -> sp.Expr:
+def flat_angle(values: NamedValues, first: Vector, middle: Vector, last: Vector) -> sp.Expr:
     """The middle angle at which the first axis, the middle one and the turned last are in one
     plane, the outer ones on one side: atan2(B, A)."""
     one, two, three = map(sp.Matrix, (first, middle, last))
@@ -104,7 +104,7 @@ def flat_angle(values: Values, first: Vector, middle: Vector, last: Vector) -> s
 
 
 def middle_of_triangle(
-    values: Values, axes: Sequence[Vector], swing: sp.Expr
+    values: NamedValues, axes: Sequence[Vector], swing: sp.Expr
 ) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
     """The middle angle by the three sides, where the triangle is flat, and how far from one.
 
@@ -120,20 +120,20 @@ def middle_of_triangle(
     opened = values.positive("opened", _of_sines(values, half + apart, half - apart))
     closed = values.positive("closed", _of_sines(values, together + half, together - half))
     bend = values.let("bend", 2 * sp.atan2(sp.sqrt(opened), sp.sqrt(closed)))
-    angle = values.let("middle", base + Choice(base > 0, -bend, bend))
+    angle = values.let("middle", base + Where(base > 0, -bend, bend))
     near = values.let("near_side", apart - half)
-    far = values.let("far_side", half - Choice(together > sp.pi / 2, sp.pi - together, together))
-    return angle, base, values.let("beyond", 2 * Choice(near > far, near, far))
+    far = values.let("far_side", half - Where(together > sp.pi / 2, sp.pi - together, together))
+    return angle, base, values.let("beyond", 2 * Where(near > far, near, far))
 
 
-def _of_sines(values: Values, first: sp.Expr, second: sp.Expr) -> sp.Expr:
+def _of_sines(values: NamedValues, first: sp.Expr, second: sp.Expr) -> sp.Expr:
     """The product of two sines; their angles are not taken apart."""
     angles = values.each(("sum", "difference"), (first, second))
     return sp.Mul(*map(sp.sin, angles))
 
 
 def middle_of_half(
-    values: Values,
+    values: NamedValues,
     fixed: tuple[Half, Half],
     free: tuple[Half, Half],
     length: sp.Expr,
@@ -170,7 +170,7 @@ def middle_of_half(
             "grows",
             along * (cosine * n[2] - sine * n[0]) + across * (cosine * n[3] - sine * n[1]),
         )
-        slope = values.let("slope", grows / Choice(sp.Eq(radius, 0), sp.S.One, radius))
+        slope = values.let("slope", grows / Where(sp.Eq(radius, 0), sp.S.One, radius))
         miss = values.let("miss", length / whole - radius)
         step = values.let("step", dot((*misses, miss), (*slopes, slope)))
         weight = values.let("weight", square((*slopes, slope)))
@@ -179,14 +179,14 @@ def middle_of_half(
     return values.wrapped("middle", 2 * half), beyond
 
 
-def _measured(values: Values, found: Vector) -> tuple[sp.Expr | Vector, ...]:
+def _measured(values: NamedValues, found: Vector) -> tuple[sp.Expr | Vector, ...]:
     """What is before the matrix, and the matrix over the length that measures it, with that."""
     *before, c, d, e, f, size = found
-    root = values.let("size", sp.sqrt(Choice(size > 0, size, sp.S.One)))
+    root = values.let("size", sp.sqrt(Where(size > 0, size, sp.S.One)))
     return (*before, (*values.each("mnpq", (entry / root for entry in (c, d, e, f))), root))
 
 
-def _nearest(values: Values, given: Vector, m: Vector, guesses: Sequence[sp.Expr]) -> sp.Expr:
+def _nearest(values: NamedValues, given: Vector, m: Vector, guesses: Sequence[sp.Expr]) -> sp.Expr:
     """Half the middle angle for which the given components are nearest to those of m±."""
     a, b = given
     base = values.let("base", m[0] * m[0] + m[2] * m[2])
@@ -194,7 +194,7 @@ def _nearest(values: Values, given: Vector, m: Vector, guesses: Sequence[sp.Expr
     skew = values.let("skew", base * b - (m[0] * m[1] + m[2] * m[3]) * a)
     side = values.let("side", skew * turn)
     opened = values.let("opened", sp.sqrt(values.positive("opened", base - a * a)))
-    signed = Choice(side < 0, -opened, opened)
+    signed = Where(side < 0, -opened, opened)
     third = values.let("third", sp.atan2(m[2], m[0]) + sp.atan2(signed, a))
     half, least = sp.S.Zero, sp.oo
     for guess, handicap in ((guesses[0] / 2, 0), (guesses[1] / 2, 0), (third, values.reach)):
@@ -204,16 +204,16 @@ def _nearest(values: Values, given: Vector, m: Vector, guesses: Sequence[sp.Expr
             ("along", "across"), (cosine * m[0] + sine * m[2], cosine * m[1] + sine * m[3])
         )
         is_opposite = values.let("agreement", a * along + b * across) < 0
-        angle = values.let("guess", Choice(is_opposite, angle + sp.pi, angle))
+        angle = values.let("guess", Where(is_opposite, angle + sp.pi, angle))
         differences = (
-            values.let("off", a - Choice(is_opposite, -along, along)),
-            values.let("off", b - Choice(is_opposite, -across, across)),
+            values.let("off", a - Where(is_opposite, -along, along)),
+            values.let("off", b - Where(is_opposite, -across, across)),
         )
         miss = values.length("miss", differences)
         if least is sp.oo:
             half, least = angle, miss
         else:  # the triangle is better where it is one
             is_nearer = values.let("raised", miss + handicap) < least
-            half = values.let("half", Choice(is_nearer, angle, half))
-            least = values.let("least", Choice(is_nearer, miss, least))
+            half = values.let("half", Where(is_nearer, angle, half))
+            least = values.let("least", Where(is_nearer, miss, least))
     return half

@@ -1,6 +1,6 @@
 """Conversions as lists of named values, each an expression in those before it.
 
-Where a formula has cases, such as the poles of Euler angles, a value is a `Choice`. The order of
+Where a formula has cases, such as the poles of Euler angles, a value is a `Where`. The order of
 the operations is part of a conversion, since its digits depend on it.
 """
 
@@ -19,8 +19,8 @@ _DIGITS = 30
 _ZERO = sp.Float("1e-25")  # a number known to 30 digits is larger or zero
 
 
-class Choice(sp.Function):
-    """Choice(condition, a, b): a where the comparison holds, else b."""
+class Where(sp.Function):
+    """Where(condition, a, b): a where the comparison holds, else b."""
 
     nargs = 3
 
@@ -42,7 +42,7 @@ def symbols(names: Iterable[str]) -> tuple[sp.Dummy, ...]:
     return tuple(map(sp.Dummy, names))
 
 
-class Values:
+class NamedValues:
     """Named values in order.
 
     `given` is one of the inputs, for its type.
@@ -81,13 +81,13 @@ class Values:
     def positive(self, name: str, value: sp.Expr) -> sp.Expr:
         """The value, or zero if it is negative."""
         value = self.let(name, value)
-        return self.let(name, Choice(value < 0, sp.S.Zero, value))
+        return self.let(name, Where(value < 0, sp.S.Zero, value))
 
     def wrapped(self, name: str, value: sp.Expr) -> sp.Expr:
         """An angle between −2π and 2π, taken into (−π, π]."""
         angle = self.let(name, value)
-        turned = Choice(angle <= -sp.pi, angle + 2 * sp.pi, angle)
-        return self.let(name, Choice(angle > sp.pi, angle - 2 * sp.pi, turned))
+        turned = Where(angle <= -sp.pi, angle + 2 * sp.pi, angle)
+        return self.let(name, Where(angle > sp.pi, angle - 2 * sp.pi, turned))
 
 
 def square(vector: Sequence[sp.Expr]) -> sp.Expr:
@@ -118,15 +118,20 @@ def _rounded_term(factors: Sequence[sp.Expr]) -> sp.Expr:
     return sp.Mul(size, *(factor for factor in factors if not factor.is_number))
 
 
-def scaled(values: Values, quaternion: Sequence[sp.Expr]) -> Vector:
+def scalar_last(quaternion: Vector) -> Vector:
+    """(x, y, z, w) from (w, x, y, z)."""
+    return (*quaternion[1:], quaternion[0])
+
+
+def scaled(values: NamedValues, quaternion: Sequence[sp.Expr]) -> Vector:
     """The quaternion over the sum of its parts' sizes: any length will do, and zero gives NaN."""
     quarters = [values.let("quarter", sp.Abs(part) / 4) for part in quaternion]  # no overflow
     size = values.let("size", sp.Add(*quarters))
     return values.each(QUATERNION, [part / size for part in quaternion])
 
 
-def short_way(values: Values, quaternion: Sequence[sp.Expr]) -> Vector:
+def short_way(values: NamedValues, quaternion: Sequence[sp.Expr]) -> Vector:
     """The same rotation by the quaternion whose scalar is not negative."""
     w, *vector = quaternion
-    flipped = [Choice(w < 0, -part, part) for part in vector]
+    flipped = [Where(w < 0, -part, part) for part in vector]
     return values.each(QUATERNION, [sp.Abs(w), *flipped])

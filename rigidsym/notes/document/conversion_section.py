@@ -28,7 +28,7 @@ from rigidsym.notes.prose.words import symbols_of, with_symbols, words
 
 TITLE = "Conversions"
 _BEFORE = "What was proved"  # the section that it stands before
-_FUNCTIONS = ("from_quaternion(p{})", "from_rotation_matrix(matrix{})")
+_FUNCTIONS = ("from_quaternion(quaternion{})", "from_rotation_matrix(matrix{})")
 
 
 def with_conversions(

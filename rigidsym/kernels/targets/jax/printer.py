@@ -44,7 +44,7 @@ def render(program: Program) -> dict[str, str]:
             has_parts=has_parts,
             has_divisors=any(map(statements.guards_of, kernels)),
             series="\n".join(map(python.series_entry, orders)),
-            helpers="".join(f"\n\n\n{text}" for text in python.helpers(kernels, "jax")),
+            helpers="".join(f"\n\n{text}\n" for text in python.helpers(kernels, "jax")),
         )
     )
     return {f"{program.name}_jax.py": text}

@@ -11,6 +11,7 @@ import sympy as sp
 from rigidsym.mechanics.conversions.chain_inverse import at_poles, chain_coordinates, outer_angles
 from rigidsym.mechanics.conversions.closed_forms import ClosedForm
 from rigidsym.mechanics.conversions.closed_inverse import BOTH_SIGNS, RULES, unit
+from rigidsym.mechanics.conversions.continuity import Continuity, continuity_of
 from rigidsym.mechanics.conversions.conversions import (
     SHEPPERD,
     UNIT,
@@ -19,17 +20,22 @@ from rigidsym.mechanics.conversions.conversions import (
     outer_product,
 )
 from rigidsym.mechanics.conversions.davenport_angles import DavenportAngles
-from rigidsym.mechanics.conversions.function import Function, Input, argument_of, function_of
+from rigidsym.mechanics.conversions.function import (
+    ConversionFunction,
+    ConversionInput,
+    argument_of,
+    function_of,
+)
 from rigidsym.mechanics.conversions.turn_chain import TurnChain
-from rigidsym.mechanics.conversions.unwrapping import Unwrapping, unwrapping_of
 from rigidsym.mechanics.conversions.values import (
     MATRIX,
     QUATERNION,
-    Choice,
-    Values,
+    NamedValues,
     Vector,
+    Where,
     nearest,
     rounded,
+    scalar_last,
     scaled,
     short_way,
     square,
@@ -46,8 +52,8 @@ class Converted:
     """What a module offers of conversions."""
 
     steps: tuple[Step, ...] = ()  # in closed form, like other quantities
-    functions: tuple[Function, ...] = ()
-    unwrapping: Unwrapping | None = None
+    functions: tuple[ConversionFunction, ...] = ()
+    continuity: Continuity | None = None
     remarks: tuple[str, ...] = ()  # for the head of the module
 
 
@@ -63,19 +69,19 @@ def converted(derivation: Derivation, conversions: Conversions) -> Converted:
     return Converted(
         steps=(*steps, *variants),
         functions=functions,
-        unwrapping=unwrapping_of(derivation, inverse) if inverse else None,
+        continuity=continuity_of(derivation, inverse) if inverse else None,
         remarks=(conversions.without,) if conversions.without else (),
     )
 
 
 def _quaternion(
     derivation: Derivation, conversions: Conversions
-) -> tuple[tuple[Step, ...], tuple[Function, ...]]:
+) -> tuple[tuple[Step, ...], tuple[ConversionFunction, ...]]:
     """The unit quaternion, as a step where it has a formula of its own."""
     number_in_note = len(derivation.steps) + 1
-    if conversions.variants:
-        return (), (_of_any_length(derivation, number_in_note),)
     rule = conversions.inverse.rule if conversions.inverse else None
+    if isinstance(rule, ClosedForm) and conversions.variants:
+        return (), (_of_any_length(derivation, rule, number_in_note),)
     if isinstance(rule, ClosedForm) and rule.rule == "rotation_vector":
         return (), (_of_rotation_vector(derivation, number_in_note),)
     if conversions.quaternion is not None:
@@ -83,13 +89,13 @@ def _quaternion(
     return (), (_quaternion_of_matrix(derivation),)
 
 
-def _inputs(derivation: Derivation, inverse: InverseConversion) -> list[Input]:
+def _inputs(derivation: Derivation, inverse: InverseConversion) -> list[ConversionInput]:
     """The arguments beside the rotation."""
     found = []
     if "parameters" in inverse.given:
-        found.append(Input(argument=derivation.argument("parameters")))
+        found.append(ConversionInput(argument=derivation.argument("parameters")))
     if isinstance(inverse.rule, TurnChain) and inverse.rule.kept:
-        found.append(Input(argument=_kept(derivation, inverse.rule), is_optional=True))
+        found.append(ConversionInput(argument=_kept(derivation, inverse.rule), is_optional=True))
     return found
 
 
@@ -111,28 +117,30 @@ def _kept(derivation: Derivation, rule: TurnChain) -> Argument:
     )
 
 
-def _from_quaternion(derivation: Derivation, inverse: InverseConversion) -> Function:
+def _from_quaternion(derivation: Derivation, inverse: InverseConversion) -> ConversionFunction:
     given = symbols(QUATERNION)
-    values = Values(given[0])
+    values = NamedValues(given[0])
     quaternion = scaled(values, given)
-    rotation = argument_of("quaternion", given, "a quaternion of any length, scalar first")
+    order = "last" if inverse.is_scalar_last else "first"
+    listed = scalar_last(given) if inverse.is_scalar_last else given
+    rotation = argument_of("quaternion", listed, f"a quaternion of any length, scalar {order}")
     return function_of(
         "from_quaternion",
         "q",
-        [Input(argument=rotation), *_inputs(derivation, inverse)],
+        [ConversionInput(argument=rotation), *_inputs(derivation, inverse)],
         values,
         _coordinates(values, derivation.model, inverse, quaternion),
-        "the coordinates of a quaternion, scalar first",
+        f"the coordinates of a quaternion, scalar {order}",
         *_remarks(inverse),
         "Its length does not matter; zero gives NaN.",
         unit=_unit(derivation.model),
     )
 
 
-def _from_matrix(derivation: Derivation, inverse: InverseConversion) -> Function:
+def _from_matrix(derivation: Derivation, inverse: InverseConversion) -> ConversionFunction:
     model, rule = derivation.model, inverse.rule
     given = symbols(MATRIX)
-    values = Values(given[0])
+    values = NamedValues(given[0])
     matrix = sp.Matrix(3, 3, given)
     matrix = matrix.T if model.passive else matrix
     if isinstance(rule, ClosedForm) and rule.rule == "direction_cosines":
@@ -151,7 +159,7 @@ def _from_matrix(derivation: Derivation, inverse: InverseConversion) -> Function
     return function_of(
         "from_rotation_matrix",
         "q",
-        [Input(argument=rotation, is_matrix=True), *_inputs(derivation, inverse)],
+        [ConversionInput(argument=rotation, is_matrix=True), *_inputs(derivation, inverse)],
         values,
         outputs,
         f"the coordinates of a rotation matrix {shown}, as `rotation_matrix` gives it",
@@ -173,7 +181,7 @@ def _unit(model: RotationModel) -> str:
 
 
 def _coordinates(
-    values: Values, model: RotationModel, inverse: InverseConversion, quaternion: Vector
+    values: NamedValues, model: RotationModel, inverse: InverseConversion, quaternion: Vector
 ) -> Vector:
     """The coordinates of a scaled quaternion."""
     rule = inverse.rule
@@ -193,19 +201,19 @@ def _in_order(found: Vector, order: Sequence[int]) -> Vector:
     return tuple(placed[place] for place in range(len(found)))
 
 
-def _davenport(values: Values, rule: DavenportAngles, parts: Vector) -> Vector:
+def _davenport(values: NamedValues, rule: DavenportAngles, parts: Vector) -> Vector:
     """The angles from the quaternion in the frame of the turns."""
     far, near = values.length("far", parts[:2]), values.length("near", parts[2:])
     total = values.let("half_sum", sp.atan2(parts[1], parts[0]))
     difference = values.let("half_difference", sp.atan2(parts[3], parts[2]))
     sign = -1 if rule.last_is_first_turn else 1
-    total, difference = at_poles(values, near, far, total, difference, sign)
+    total, difference = at_poles(values, (near, far), (total, difference), sign)
     middle = rule.sign * (2 * sp.atan2(near, far) - nearest(rule.offset))
     first, last = outer_angles(values, total, difference)
     return _in_order((first, middle, last), rule.places)
 
 
-def shepperd(values: Values, matrix: sp.Matrix) -> Vector:
+def shepperd(values: NamedValues, matrix: sp.Matrix) -> Vector:
     """The column of 4 p pᵀ with the largest diagonal entry, so that nothing cancels.
 
     Its scalar is not negative where the first column is taken.
@@ -216,18 +224,15 @@ def shepperd(values: Values, matrix: sp.Matrix) -> Vector:
         values.each(names[k], [outer[min(j, k), max(j, k)] for j in range(4)]) for k in range(4)
     )
     by_x, by_z = x[1] > w[0], z[3] > y[2]
-    upper = values.let("upper", Choice(by_x, x[1], w[0]))
-    lower = values.let("lower", Choice(by_z, z[3], y[2]))
+    upper = values.let("upper", Where(by_x, x[1], w[0]))
+    lower = values.let("lower", Where(by_z, z[3], y[2]))
     return values.each(
         QUATERNION,
-        [
-            Choice(lower > upper, Choice(by_z, z[k], y[k]), Choice(by_x, x[k], w[k]))
-            for k in range(4)
-        ],
+        [Where(lower > upper, Where(by_z, z[k], y[k]), Where(by_x, x[k], w[k])) for k in range(4)],
     )
 
 
-def _quaternion_of_matrix(derivation: Derivation) -> Function:
+def _quaternion_of_matrix(derivation: Derivation) -> ConversionFunction:
     """The quaternion of a rotation that is known by its matrix alone."""
     model = derivation.model
     found = {step.quantity.name: step.expression for step in derivation.steps}
@@ -237,13 +242,13 @@ def _quaternion_of_matrix(derivation: Derivation) -> Function:
     else:
         matrix = sp.Matrix(presented.T if model.passive else presented)
     entries = symbols(MATRIX)
-    values = Values(model.coordinates[0])
+    values = NamedValues(model.coordinates[0])
     quaternion = short_way(values, shepperd(values, sp.Matrix(3, 3, entries)))
     names = ("q", "parameters") if model.constants else ("q",)
     function = function_of(
         "quaternion",
         "p",
-        [Input(argument=derivation.argument(name)) for name in names],
+        [ConversionInput(argument=derivation.argument(name)) for name in names],
         values,
         unit(values, quaternion),
         "unit quaternion of the rotation, scalar first and not negative",
@@ -252,58 +257,60 @@ def _quaternion_of_matrix(derivation: Derivation) -> Function:
     return replace(function, shared=tuple(zip(entries, matrix, strict=True)))
 
 
-def _of_any_length(derivation: Derivation, number_in_note: int) -> Function:
-    model = derivation.model
-    scalar_last = model.coordinates[0] in model.vector
-    q = model.coordinates
-    parts = (q[3], *q[:3]) if scalar_last else q
-    values = Values(parts[0])
-    outputs = unit(values, scaled(values, parts))
+def _of_any_length(
+    derivation: Derivation, rule: ClosedForm, number_in_note: int
+) -> ConversionFunction:
+    q, is_last = derivation.model.coordinates, rule.is_scalar_last
+    values = NamedValues(q[0])
+    parts = unit(values, scaled(values, (q[3], *q[:3]) if is_last else q))
+    order = "last" if is_last else "first"
     return function_of(
         "quaternion",
         "p",
-        [Input(argument=derivation.argument("q"))],
+        [ConversionInput(argument=derivation.argument("q"))],
         values,
-        outputs,
-        "unit quaternion of the rotation, scalar first",
+        scalar_last(parts) if is_last else parts,
+        f"unit quaternion of the rotation, scalar {order}",
         f"Equation ({number_in_note}) of the note.",
         "The coordinates are divided by their length; zero gives NaN.",
     )
 
 
-def _of_rotation_vector(derivation: Derivation, number_in_note: int) -> Function:
+def _of_rotation_vector(derivation: Derivation, number_in_note: int) -> ConversionFunction:
     """Where n² is too small for a float, sin(n/2)/n is 1/2."""
     q = derivation.argument("q")
-    values = Values(q.symbols[0])
+    values = NamedValues(q.symbols[0])
     size = values.let("square", square(q.symbols))
     none = sp.Eq(size, 0)
-    length = values.let("length", sp.sqrt(Choice(none, sp.S.One, size)))
-    factor = values.let("factor", Choice(none, sp.S.Half, sp.sin(length / 2) / length))
+    length = values.let("length", sp.sqrt(Where(none, sp.S.One, size)))
+    factor = values.let("factor", Where(none, sp.S.Half, sp.sin(length / 2) / length))
     return function_of(
         "quaternion",
         "p",
-        [Input(argument=q)],
+        [ConversionInput(argument=q)],
         values,
-        [Choice(none, sp.S.One, sp.cos(length / 2)), *(factor * part for part in q.symbols)],
+        [Where(none, sp.S.One, sp.cos(length / 2)), *(factor * part for part in q.symbols)],
         "unit quaternion of the rotation, scalar first: cos n/2 and v sin(n/2)/n",
         f"Equation ({number_in_note}) of the note; accurate at every length.",
     )
 
 
-def _shadow_sets(derivation: Derivation, inverse: InverseConversion) -> tuple[Function, ...]:
+def _shadow_sets(
+    derivation: Derivation, inverse: InverseConversion
+) -> tuple[ConversionFunction, ...]:
     """The other set of modified Rodrigues parameters, and the shorter of both."""
     if not isinstance(inverse.rule, ClosedForm) or inverse.rule.rule != "modified_rodrigues":
         return ()
     q = derivation.argument("q")
-    shadow, shorter = Values(q.symbols[0]), Values(q.symbols[0])
+    shadow, shorter = NamedValues(q.symbols[0]), NamedValues(q.symbols[0])
     size = shadow.let("square", square(q.symbols))
     length = shorter.let("square", square(q.symbols))
-    scale = shorter.let("scale", Choice(length > 1, -length, sp.S.One))
+    scale = shorter.let("scale", Where(length > 1, -length, sp.S.One))
     return (
         function_of(
             "shadow_set",
             "s",
-            [Input(argument=q)],
+            [ConversionInput(argument=q)],
             shadow,
             [-part / size for part in q.symbols],
             "the other set of the same rotation, −s/(s·s)",
@@ -312,7 +319,7 @@ def _shadow_sets(derivation: Derivation, inverse: InverseConversion) -> tuple[Fu
         function_of(
             "shorter_set",
             "s",
-            [Input(argument=q)],
+            [ConversionInput(argument=q)],
             shorter,
             [part / scale for part in q.symbols],
             "the same rotation by the set with s·s ≤ 1: the shadow set where s·s > 1",

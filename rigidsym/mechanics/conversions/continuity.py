@@ -9,22 +9,28 @@ import sympy as sp
 
 from rigidsym.mechanics.conversions.conversions import InverseConversion
 from rigidsym.mechanics.conversions.davenport_angles import DavenportAngles
-from rigidsym.mechanics.conversions.function import Function, Input, argument_of, function_of
+from rigidsym.mechanics.conversions.function import (
+    ConversionFunction,
+    ConversionInput,
+    argument_of,
+    function_of,
+)
 from rigidsym.mechanics.conversions.middle_angle import angle_between, flat_angle
 from rigidsym.mechanics.conversions.turn_chain import TurnChain
-from rigidsym.mechanics.conversions.values import Values, nearest, symbols
+from rigidsym.mechanics.conversions.values import NamedValues, nearest, symbols
 from rigidsym.mechanics.derivation import Derivation
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Unwrapping:
-    """How coordinates are made continuous; the functions are those of turns."""
+class Continuity:
+    """How coordinates are made continuous; only turns need functions."""
 
     kind: str
     inputs: tuple[str, ...]  # names of arguments
     remarks: tuple[str, ...]
-    turns: Function | None = None  # from the coordinates to the angles, and what relates two sets
-    coordinates: Function | None = None  # from the coordinates and the followed angles
+    # From the coordinates to the angles and what relates two sets of them, and back.
+    turns: ConversionFunction | None = None
+    coordinates: ConversionFunction | None = None
 
 
 _REMARKS: Mapping[str, str] = {
@@ -48,7 +54,7 @@ _TWO_SETS = (
 _WHOLE_TURNS = "No angle of a turn changes by more than π from one sample to the next."
 
 
-def unwrapping_of(derivation: Derivation, inverse: InverseConversion) -> Unwrapping | None:
+def continuity_of(derivation: Derivation, inverse: InverseConversion) -> Continuity | None:
     """The continuity of the coordinates; None if they are unique."""
     rule = inverse.rule
     if isinstance(rule, DavenportAngles | TurnChain):
@@ -56,16 +62,16 @@ def unwrapping_of(derivation: Derivation, inverse: InverseConversion) -> Unwrapp
     if rule.rule not in _REMARKS:
         return None
     kind = "quaternion" if rule.rule == "cayley_klein" else rule.rule
-    return Unwrapping(kind=kind, inputs=("q",), remarks=(_REMARKS[rule.rule],))
+    return Continuity(kind=kind, inputs=("q",), remarks=(_REMARKS[rule.rule],))
 
 
 def _of_turns(
     derivation: Derivation, rule: DavenportAngles | TurnChain, given: Sequence[str]
-) -> Unwrapping:
+) -> Continuity:
     model = derivation.model
     names = ("q", *(name for name in given if name == "parameters"))
-    inputs = [Input(argument=derivation.argument(name)) for name in names]
-    values = Values(model.coordinates[0])
+    inputs = [ConversionInput(argument=derivation.argument(name)) for name in names]
+    values = NamedValues(model.coordinates[0])
     if isinstance(rule, DavenportAngles):
         angles = [model.coordinates[place] for place in rule.places]
         base = -rule.sign * nearest(rule.offset)
@@ -85,15 +91,15 @@ def _of_turns(
     coordinates = function_of(
         "coordinates_of_turns",
         "",
-        [*inputs, Input(argument=argument_of("turns", found, "angles of the turns"))],
-        Values(model.coordinates[0]),
+        [*inputs, ConversionInput(argument=argument_of("turns", found, "angles of the turns"))],
+        NamedValues(model.coordinates[0]),
         [placed.get(place, q) for place, q in enumerate(model.coordinates)],
         "coordinates",
     )
     remarks = [_TWO_SETS if relation else _WHOLE_TURNS]
     if len(places) < len(model.coordinates):
         remarks.append("What the rotation does not determine stays as it is.")
-    return Unwrapping(
+    return Continuity(
         kind="turns", inputs=names, remarks=tuple(remarks), turns=turns, coordinates=coordinates
     )
 
@@ -101,7 +107,7 @@ def _of_turns(
 _ACROSS = (sp.S.One, sp.S.Zero, sp.S.Zero, sp.S.One)  # exactly, as no cosine of π/2 is
 
 
-def _relation(values: Values, rule: TurnChain) -> tuple[sp.Expr, ...]:
+def _relation(values: NamedValues, rule: TurnChain) -> tuple[sp.Expr, ...]:
     """The flat middle angle, the difference and the sum of the sides, and of half of each its
     cosine and its sine."""
     first, middle, last = (values.each(("axis_x", "axis_y", "axis_z"), axis) for axis in rule.axes)
