@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, fields, replace
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from rigidsym.errors import QuantityError
+import sympy as sp
+
+from rigidsym.errors import ModelError, QuantityError
 from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, Notation as Notation
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import Body, derive as derivation_of
+from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.models.forces import forces_on
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.system.limits import time_limit
@@ -27,7 +31,7 @@ if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
     from rigidsym.notes.note import Note
 
-QUANTITIES = (*QUANTITY_NAMES, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES)
+QUANTITIES = (*QUANTITY_NAMES, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES, *DYNAMICS_QUANTITIES)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,6 +145,8 @@ def derive(
     only: str | Collection[str] = (),
     *,
     body: Body | None = None,
+    potential: sp.Expr | str | None = None,
+    forces: Mapping[str, sp.Expr | str] | None = None,
     theory: bool = False,
     timeout: float | None = None,
 ) -> Motion:
@@ -149,6 +155,8 @@ def derive(
     A rotation may be a text, as on the command line: "ZXZ", "z(phi) x(theta)", "quaternion". With
     a `body`, its kinetic energy and angular momentum follow, in principal axes or any others; a
     description or a distribution of mass is integrated first.
+    With a `potential` V(q) or `forces` by coordinate ("theta": "-c*theta_dot") its equations of
+    motion about a fixed point follow; the inertia tensor is then about that point.
     `theory` adds equations 1 to 16 of the lecture, which hold for every body and rotation.
     `timeout` limits the time, in seconds.
 
@@ -172,7 +180,12 @@ def derive(
         if name not in QUANTITIES:
             raise QuantityError(f"no quantity {name!r}; {offer(name, QUANTITIES)}")
     with nullcontext() if timeout is None else time_limit(timeout):
-        derivation = derivation_of(rotation, wanted, body=body, theory=theory)
+        acting = None
+        if potential is not None or forces:
+            if body is None:
+                raise ModelError("forces act on a body; expected body=rs.principal_moments(...)")
+            acting = forces_on(rotation, potential or 0, forces or {})
+        derivation = derivation_of(rotation, wanted, body=body, forces=acting, theory=theory)
     return Motion(**{f.name: getattr(derivation, f.name) for f in fields(Derivation)})
 
 

@@ -48,6 +48,29 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
     return found
 
 
+def arguments_of_motion(model: RotationModel) -> tuple[Argument, ...]:
+    """The generalised momenta and the torque, inputs of Hamilton's and Euler's equations."""
+    plain = [coordinate.func.__name__ for coordinate in model.coordinates]
+    return (
+        Argument(
+            name="momenta",
+            symbols=tuple(sp.Symbol(f"p_{label}") for label in plain),
+            names=tuple(f"p_{label}" for label in plain),
+            notation=tuple(formula("p_{#1}", named(label)) for label in plain),
+            units=("kg m^2/s",) * len(plain),
+            about="generalised momenta",
+        ),
+        Argument(
+            name="torque",
+            symbols=tuple(sp.Symbol(f"torque_{k}") for k in (1, 2, 3)),
+            names=tuple(f"torque_{k}" for k in (1, 2, 3)),
+            notation=tuple(formula(f"N'_{k}") for k in (1, 2, 3)),
+            units=("N m",) * 3,
+            about="body components of the torque about the fixed point",
+        ),
+    )
+
+
 def _check_names(arguments: Iterable[Argument], model: str) -> None:
     names = [name for argument in arguments for name in argument.names]
     twice = sorted(name for name, count in Counter(names).items() if count > 1)

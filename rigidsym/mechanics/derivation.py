@@ -97,6 +97,15 @@ class VectorForm:
     proof: Proof
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FirstIntegral:
+    """A quantity that is constant along every motion, with the proof that it is."""
+
+    name: str  # "energy", "momentum_phi"
+    expression: sp.Expr  # in the coordinates and their rates
+    proof: Proof
+
+
 class StepPrinter(Protocol):
     """Prints the equation of a step."""
 
@@ -254,6 +263,7 @@ class Derivation:
     body: RigidBody | None = None  # what turns, where energy and momentum were asked for
     theory: tuple[Statement, ...] = ()  # the equations that the steps rest on, where asked for
     definitions: tuple[Definition, ...] = ()  # intermediate quantities that the steps name
+    first_integrals: tuple[FirstIntegral, ...] = ()  # where equations of motion were asked for
 
     def step(self, quantity: str) -> Step:
         """The step that defines a quantity; raises QuantityError for one that is not here."""
@@ -295,6 +305,7 @@ class Derivation:
     def proofs(self) -> Iterator[Proof]:
         yield from (proof for statement in self.theory for proof in statement.proofs)
         yield from (proof for step in self.steps for proof in step.proofs)
+        yield from (integral.proof for integral in self.first_integrals)
 
     @property
     def is_proved(self) -> bool:

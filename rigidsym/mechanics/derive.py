@@ -5,8 +5,9 @@
    of turns turn by turn (`kinematics.turn_by_turn`).
 3. The inertia of the body, its energy and its momentum follow (`mass.derive`, `energy.derive`).
 4. The steps are numbered, and described by the tables of `quantities`.
-5. Where the rates fail is found (`singularities.derive`).
-6. The equations of the lecture may go before all of it (`lecture.derive`).
+5. With forces, the equations of motion follow (`dynamics.derive`).
+6. Where the rates fail is found (`singularities.derive`).
+7. The equations of the lecture may go before all of it (`lecture.derive`).
 """
 
 from __future__ import annotations
@@ -17,11 +18,13 @@ from dataclasses import replace
 import sympy as sp
 
 from rigidsym.errors import QuantityError
+from rigidsym.mechanics.arguments import arguments_of_motion
 from rigidsym.mechanics.derivation import (
     OF_RATES,
     Argument,
     Definition,
     Derivation,
+    FirstIntegral,
     Found,
     Quantity,
     Singularities,
@@ -30,12 +33,14 @@ from rigidsym.mechanics.derivation import (
 from rigidsym.mechanics.kinematics import derive as kinematics
 from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES, quantities
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.mechanics.singularities.derive import singularities_of
 from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.distribution import Distribution
+from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel
 
 _STUDIED = 5  # turns up to which the minors of W are few enough to solve for their zeros
@@ -48,12 +53,14 @@ def derive(
     only: Collection[str] = (),
     *,
     body: Body | None = None,
+    forces: Forces | None = None,
     theory: bool = False,
 ) -> Derivation:
     """The kinematics of a rotation model, each step proved; with a body its energies and momenta.
 
-    `only` names the quantities to derive; all there are if it is empty. `theory` puts the
-    equations of the lecture before them.
+    `only` names the quantities to derive; all there are if it is empty. With `forces` the
+    equations of motion of the body about a fixed point follow. `theory` puts the equations of the
+    lecture before them.
 
     Raises NotARotation for a matrix with R Rᵀ ≠ 1 or det R ≠ 1, AlgebraError for expressions that
     the ring cannot hold, BodyError for a body that cannot be, ModelError if a name means two
@@ -62,8 +69,9 @@ def derive(
     if theory:
         from rigidsym.mechanics.lecture.derive import NEEDED, with_theory
 
-        return with_theory(derive(model, only and {*only, *NEEDED}, body=body))
-    _check_names(only, has_body=body is not None)
+        wanted = only and {*only, *NEEDED}
+        return with_theory(derive(model, wanted, body=body, forces=forces))
+    _check_names(only, has_body=body is not None, has_forces=forces is not None)
     values = Values(model)
     turns = TurnByTurn(model) if is_shorter(model) else None
     turning = [name for name in only if name in QUANTITY_NAMES]
@@ -78,9 +86,14 @@ def derive(
         )
     whole: RigidBody | None = None
     arguments: Mapping[str, Argument] = values.arguments
+    integrals: tuple[FirstIntegral, ...] = ()
     if body is not None:
-        whole, arguments, of_body = _of_body(model, body, only)
+        whole, arguments, of_body = _of_body(model, body, only, forces)
         found |= of_body
+        if forces is not None:
+            of_motion, integrals = _of_forces(model, whole, forces, only)
+            found |= of_motion
+            arguments = {**arguments, **{a.name: a for a in arguments_of_motion(model)}}
     definitions = turns.definitions([step.expression for step in found.values()]) if turns else ()
     constants = set(arguments["parameters"].symbols) if "parameters" in arguments else set()
     constants |= _resting_on(constants, definitions)
@@ -94,6 +107,7 @@ def derive(
         singularities=_singularities(values, turns) if has_rates else None,
         body=whole,
         definitions=definitions,
+        first_integrals=integrals,
     )
 
 
@@ -116,7 +130,7 @@ def _resting_on(
 
 
 def _of_body(
-    model: RotationModel, body: Body, only: Collection[str]
+    model: RotationModel, body: Body, only: Collection[str], forces: Forces | None
 ) -> tuple[RigidBody, Mapping[str, Argument], dict[str, Found]]:
     """The body, integrated, the arguments of its quantities, and what was found of them."""
     from rigidsym.mechanics.energy import derive as energy
@@ -124,6 +138,8 @@ def _of_body(
     from rigidsym.mechanics.mass.bodies import rigid_body
 
     whole = rigid_body(body)
+    if forces is not None:
+        whole = forces.with_parameters(whole, model)
     values = Values(model, whole)
     found = dict(mass.steps(values, [n for n in INERTIA_QUANTITIES if not only or n in only]))
     absent = [name for name in INERTIA_QUANTITIES if name in only and name not in found]
@@ -134,9 +150,22 @@ def _of_body(
     return whole, values.arguments, found
 
 
-def _check_names(only: Collection[str], *, has_body: bool) -> None:
+def _of_forces(
+    model: RotationModel, body: RigidBody, forces: Forces, only: Collection[str]
+) -> tuple[dict[str, Found], tuple[FirstIntegral, ...]]:
+    """The equations of motion, and what is constant along it."""
+    from rigidsym.mechanics.dynamics.derive import Motion
+    from rigidsym.mechanics.dynamics.lagrange import Lagrange
+
+    motion = Motion(Lagrange(model, body, forces))
+    found = dict(motion.steps([n for n in DYNAMICS_QUANTITIES if not only or n in only]))
+    return found, tuple(motion.first_integrals())
+
+
+def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:
     of_body = (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if has_body else ()
-    known = (*QUANTITY_NAMES, *of_body)
+    of_motion = tuple(DYNAMICS_QUANTITIES) if has_forces else ()
+    known = (*QUANTITY_NAMES, *of_body, *of_motion)
     unknown = ", ".join(name for name in only if name not in known)
     if unknown:
         raise QuantityError(f"no quantity {unknown}; there are {', '.join(known)}")
@@ -150,7 +179,7 @@ def _table(values: Values) -> Mapping[str, Quantity]:
         coordinates=len(values.model.coordinates),
         rate_unit=units.pop() if len(units) == 1 else "",
     )
-    return {**of_rotation, **INERTIA_QUANTITIES, **ENERGY_QUANTITIES}
+    return {**of_rotation, **INERTIA_QUANTITIES, **ENERGY_QUANTITIES, **DYNAMICS_QUANTITIES}
 
 
 def _numbered(

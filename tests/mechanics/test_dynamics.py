@@ -1,0 +1,160 @@
+"""Equations of motion: SymPy's own Lagrange, first integrals, and what cannot be asked for."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+import sympy as sp
+from sympy.physics.mechanics import LagrangesMethod
+
+import rigidsym as rs
+from helpers.witness import agree, evaluate, mp
+from rigidsym.mechanics.dynamics.derive import Motion
+from rigidsym.mechanics.dynamics.lagrange import Lagrange
+from rigidsym.models.forces import Forces
+
+A, B, C = sp.symbols("A B C")
+TOP = "m*g*l*cos(theta)"
+ANYWHERE = "m*g*(sin(theta)*(a*sin(psi) + b*cos(psi)) + l*cos(theta))"
+
+
+def top(sequence: str = "ZXZ", moments=(A, A, C), potential: str = TOP, **more) -> rs.Motion:
+    model = rs.EulerAngles(sequence, angles=("phi", "theta", "psi"))
+    return rs.derive(model, body=rs.principal_moments(*moments), potential=potential, **more)
+
+
+def values_for(motion: rs.Motion, seed: int = 3) -> dict:
+    generator = random.Random(seed)
+    symbols = [s for argument in motion.arguments for s in argument.symbols]
+    return {symbol: mp.mpf(generator.randint(100, 900)) / 700 for symbol in symbols}
+
+
+@pytest.mark.parametrize(
+    ("sequence", "moments", "potential", "forces"),
+    [
+        ("ZXZ", (A, A, C), TOP, {}),
+        ("ZXZ", (A, B, C), ANYWHERE, {"theta": "-c*theta_dot", "psi": "k"}),
+        ("ZYX", (A, B, C), "m*g*l*sin(theta)*cos(psi)", {}),
+        ("zyz", (A, B, C), "0", {"phi": "-c*phi_dot**2"}),
+    ],
+)
+def test_accelerations_are_those_of_sympy(sequence, moments, potential, forces):
+    motion = top(sequence, moments, potential, forces=forces)
+    assert motion.is_proved
+    q = list(motion.model.coordinates)
+    method = LagrangesMethod(motion.lagrangian, q)
+    equations = method.form_lagranges_equations()
+    values = values_for(motion)
+    known = dict(values)
+    for coordinate, acceleration in zip(q, evaluate(motion.accelerations, values), strict=True):
+        known[sp.diff(coordinate, "t", 2)] = acceleration
+    acting = sp.Matrix([read(forces.get(c.func.__name__, "0"), q) for c in q])
+    assert agree(evaluate(equations, known), evaluate(acting, known))
+
+
+def read(force: str, coordinates) -> sp.Expr:
+    names = {q.func.__name__ + "_dot": sp.diff(q, "t") for q in coordinates}
+    return sp.sympify(force, locals=names)
+
+
+def test_the_pieces_of_the_equations_belong_together():
+    """M q̈ + h = 0 without forces, p = M q̇, H(q, p) = E = T + V, L = T − V"""
+    motion = top(moments=(A, B, C), potential=ANYWHERE)
+    values = values_for(motion)
+
+    def at(name):
+        return evaluate(sp.Matrix([getattr(motion, name)]), values)
+
+    rates = mp.matrix([values[s] for s in motion.argument("q_dot").symbols])
+    assert agree(at("mass_matrix") * at("accelerations"), -at("bias_vector"))
+    momenta = at("mass_matrix") * rates
+    assert agree(at("generalised_momenta"), momenta)
+    assert agree(at("energy") - at("lagrangian"), 2 * at("potential_energy"))
+    values |= dict(zip(motion.argument("momenta").symbols, momenta, strict=True))
+    assert agree(at("hamiltonian"), at("energy"))
+
+
+def test_first_integrals_of_the_heavy_symmetric_top_are_found_and_proved():
+    motion = top()
+    assert [i.name for i in motion.first_integrals] == ["energy", "momentum_phi", "momentum_psi"]
+    assert all(integral.proof.is_exact for integral in motion.first_integrals)
+    damped = top(forces={"psi": "-c*psi_dot"})
+    assert [i.name for i in damped.first_integrals] == ["momentum_phi"]
+    asymmetric = top(moments=(A, B, C), potential=ANYWHERE)
+    assert [i.name for i in asymmetric.first_integrals] == ["energy", "momentum_phi"]
+
+
+def test_first_integrals_do_not_change_along_the_motion():
+    motion = top(moments=(A, B, C), potential=ANYWHERE)
+    values = values_for(motion)
+    for symbol, value in zip(
+        motion.argument("q_ddot").symbols, evaluate(motion.accelerations, values), strict=True
+    ):
+        values[symbol] = value
+    for integral in motion.first_integrals:
+        rate = sp.diff(integral.expression, sp.Symbol("t"))
+        assert agree(evaluate(sp.Matrix([rate]), values), mp.matrix([0]))
+
+
+def test_euler_equations_of_any_inertia_tensor():
+    """I′ dΩ′/dt + Ω′ × I′ Ω′ = N′"""
+    model = rs.EulerAngles("ZXZ")
+    motion = rs.derive(model, body=rs.general_inertia(), potential=0)
+    values = values_for(motion)
+    tensor = evaluate(motion.inertia_tensor, values)
+    omega, torque = (
+        mp.matrix([values[s] for s in motion.argument(name).symbols])
+        for name in ("omega_body", "torque")
+    )
+    alpha = evaluate(motion.angular_acceleration_from_torque, values)
+    spin = mp.matrix([[0, -omega[2], omega[1]], [omega[2], 0, -omega[0]], [-omega[1], omega[0], 0]])
+    assert agree(tensor * alpha + spin * tensor * omega, torque)
+
+
+def test_operations_stay_few():
+    """At most 60 for the heavy symmetric top, 180 with the centre of mass anywhere"""
+    for moments, potential, most in (((A, A, C), TOP, 60), ((A, B, C), ANYWHERE, 180)):
+        shared, outputs = sp.cse(list(top(moments=moments, potential=potential).accelerations))
+        count = sum(sp.count_ops(e) for _, e in shared) + sum(map(sp.count_ops, outputs))
+        assert count <= most
+
+
+def test_kernels_hold_the_equations_of_motion():
+    motion = top()
+    kernels = motion.kernels().load()
+    values = {s: float(v) for s, v in values_for(motion).items()}
+    given = {
+        name: [values[s] for s in motion.argument(name).symbols]
+        for name in ("q", "q_dot", "parameters")
+    }
+    exact = evaluate(motion.accelerations, values)
+    computed = kernels.accelerations(given["q"], given["q_dot"], given["parameters"])
+    assert computed == pytest.approx([float(x) for x in exact], rel=1e-13)
+
+
+def test_a_wrong_bias_is_refuted():
+    work = Lagrange(rs.EulerAngles("ZXZ"), rs.principal_moments(A, A, C), Forces())
+    work.gyroscopic = work.gyroscopic.scale(work.ring.one + work.ring.one)
+    with pytest.raises(rs.RigidsymError, match="is false"):
+        Motion(work).bias_vector()
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"potential": "m*g*theta_dot"}, "depends on rates"),
+        ({"potential": TOP, "forces": {"chi": "1"}}, "a force on chi, which is none of phi, theta"),
+        ({"potential": "m*g*("}, "expected a number"),
+    ],
+)
+def test_forces_that_cannot_be_are_refused(given, message):
+    with pytest.raises(rs.RigidsymError, match=message):
+        top(**given)
+
+
+def test_forces_need_a_body_and_free_coordinates():
+    with pytest.raises(rs.RigidsymError, match="a body"):
+        rs.derive("ZXZ", potential=TOP)
+    with pytest.raises(rs.RigidsymError, match="three free coordinates"):
+        rs.derive("unit_quaternion", body=rs.principal_moments(A, A, C), potential=0)
