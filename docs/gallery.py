@@ -19,10 +19,11 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from rigidsym.notes.formats.mathml import mathml
+
 import rigidsym as rs
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.solids import SHAPES
-from rigidsym.notes.formats.mathml import mathml
 
 BUILT = Path(__file__).parents[1] / "build" / "gallery" / "gallery"
 CHAINS = ("z(phi) x(theta) z(psi) y(delta)", "[1,1,0](beta)", "z(phi) [1,2,2](theta) x(psi)")

@@ -113,7 +113,7 @@ class Motion(Derivation):
         """What Jupyter shows: the note, the equations, or the text of the terminal."""
         from rigidsym.notes.formats.jupyter import bundle_of
 
-        return bundle_of(self, self.note(with_kernels=False), self.notation)
+        return bundle_of(self, self.note(with_kernels=False).markdown(), self.notation)
 
     def _repr_latex_(self) -> str:
         return self._repr_mimebundle_()["text/latex"]

@@ -23,8 +23,8 @@ from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.body import RigidBody
 from rigidsym.motion import CHOICES, DEFAULT, QUANTITIES, Motion, Notation, derive
+from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.record import record
-from rigidsym.notes.note import Note
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.spec.faults import Source
 from rigidsym.spec.vocabulary import Vocabulary
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
 PDF = "pdf"  # typeset from the LaTeX, which is written beside it
 PAGE = "page"  # NAME_page.html: the note with an interactive figure
-_PRINTERS = {"tex": Note.latex, "html": Note.html, "md": Note.markdown, "ipynb": Note.notebook}
-NOTE_FORMATS = (*_PRINTERS, PAGE, PDF)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -121,7 +119,7 @@ def vocabulary() -> Vocabulary:
     return Vocabulary(
         quantities=QUANTITIES,
         kernels=tuple(TARGETS),
-        note=NOTE_FORMATS,
+        note=note_formats(),
         notation=Notation,
         choices=CHOICES,
         derivative=read_request,
@@ -177,13 +175,18 @@ def _printed(
 
 def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
     note = motion.note(with_kernels="numpy" in spec.kernels, conversions=spec.conversions)
-    for ending, printer in _PRINTERS.items():
+    for ending in FORMATS:
         if ending in spec.note or (ending == "tex" and PDF in spec.note):
-            yield f"{spec.name}.{ending}", printer(note)
+            yield f"{spec.name}.{ending}", note.render(ending)
     if PAGE in spec.note:
         from rigidsym.page.page import print_page
 
         yield page_name(spec.name), print_page(motion, note.document)
+
+
+def note_formats() -> tuple[str, ...]:
+    """All that `note` may list: the registered formats, the page and the PDF."""
+    return (*FORMATS, PAGE, PDF)
 
 
 def page_name(name: str) -> str:

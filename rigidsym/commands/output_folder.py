@@ -10,7 +10,7 @@ from pathlib import Path
 from rigidsym.commands.command import message
 from rigidsym.errors import SpecError
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.pipeline import NOTE_FORMATS, PAGE, PDF, Output, page_name, read_record
+from rigidsym.pipeline import PAGE, PDF, Output, note_formats, page_name, read_record
 from rigidsym.spec.derivation_spec import DerivationSpec
 
 
@@ -73,5 +73,5 @@ def _file(output: str, folder: Path) -> Path:
     name = folder.name
     if output in TARGETS:
         return folder / f"{name}{TARGETS[output].ending}"
-    assert output in NOTE_FORMATS
+    assert output in note_formats()
     return folder / (page_name(name) if output == PAGE else f"{name}.{output}")

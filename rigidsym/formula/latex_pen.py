@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from rigidsym.formula.pen import Height, Piece
 from rigidsym.formula.sheet_pen import Aligned, SheetPen, Size
-from rigidsym.formula.tree import Big, Call, Formula, Number, Rate, Root, Row, Symbol
+from rigidsym.formula.tree import Big, Formula, FunctionCall, Numeral, Radical, Rate, Row, Symbol
 
 _SIGNS = {
     "−": "-",
@@ -71,7 +71,7 @@ class LatexPen(SheetPen):
     def spelt_gap(self, before: Formula, after: Formula, is_thin: bool) -> str:
         if is_thin:
             return self.thin if not isinstance(before, Big) else " "
-        return " " if isinstance(before, Number | Big) or isinstance(after, Call) else ""
+        return " " if isinstance(before, Numeral | Big) or isinstance(after, FunctionCall) else ""
 
     def spelt_function(self, function: str, exponent: int, argument: Piece) -> str:
         known = function in _MACROS
@@ -85,7 +85,7 @@ class LatexPen(SheetPen):
         is_raised = isinstance(base, Symbol) and (
             base.prime == "ᴮ" or (base.prime and base.index is not None)
         )
-        is_whole = is_raised or isinstance(base, Rate | Root | Row)
+        is_whole = is_raised or isinstance(base, Rate | Radical | Row)
         return f"{{{inside}}}^{_braced(exponent)}" if is_whole else f"{inside}^{_braced(exponent)}"
 
     def spelt_fraction(self, above: str, below: str) -> str:

@@ -9,7 +9,7 @@ from html import escape
 
 from rigidsym.formula.pen import Height, Piece
 from rigidsym.formula.sheet_pen import Aligned, SheetPen, Size
-from rigidsym.formula.tree import Big, Call, Formula, Symbol
+from rigidsym.formula.tree import Big, Formula, FunctionCall, Symbol
 
 _THIN, _QUAD = '<mspace width=".1667em"/>', '<mspace width="1em"/>'
 _DOTS = ("", "˙", "¨")
@@ -58,7 +58,11 @@ class MathmlPen(SheetPen):
         return f"<mo{space}>{character}</mo>"
 
     def spelt_gap(self, before: Formula, after: Formula, is_thin: bool) -> str:
-        return _THIN if is_thin or (isinstance(after, Call) and not isinstance(before, Big)) else ""
+        return (
+            _THIN
+            if is_thin or (isinstance(after, FunctionCall) and not isinstance(before, Big))
+            else ""
+        )
 
     def spelt_function(self, function: str, exponent: int, argument: Piece) -> str:
         name = f"<mi>{escape(function)}</mi>"

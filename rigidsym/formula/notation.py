@@ -63,7 +63,7 @@ _FRAME_WORDS = (
 _VECTORS = frozenset("uvwxyrpmngscdLeΩω")  # bold matrices and columns of coordinates stay so
 
 
-class Named(Protocol):
+class HasNames(Protocol):
     """Something with symbols of its own."""
 
     @property
@@ -104,7 +104,7 @@ class Notation:
         """Whether formulas stay as they were composed."""
         return all(getattr(self, name) == known[0] for name, known in CHOICES.items())
 
-    def check(self, model: Named) -> None:
+    def check(self, model: HasNames) -> None:
         """Raises ModelError for a name in a model that looks like the angular velocity."""
         alike = sorted(name for name in model.names if name.split("_")[0].lower() == "omega")
         if alike and self.angular_velocity == "omega":

@@ -18,17 +18,17 @@ from rigidsym.formula.tree import (
     Apply,
     Big,
     Bracket,
-    Call,
     Differential,
     Formula,
     Fraction,
+    FunctionCall,
     Gap,
     Indexed,
     Matrix,
-    Number,
+    Numeral,
     Power,
+    Radical,
     Rate,
-    Root,
     Row,
     Sign,
     Symbol,
@@ -64,7 +64,7 @@ class Height(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Chunk:
+class Segment:
     """Part of a line that is never broken; a line may end before it."""
 
     text: str
@@ -76,7 +76,7 @@ class Chunk:
 class Piece:
     """Part of a formula that has been written."""
 
-    chunks: tuple[Chunk, ...]
+    chunks: tuple[Segment, ...]
     width: float
     binding: Binding = Binding.NAME
     height: Height = Height.FLAT
@@ -87,7 +87,7 @@ class Piece:
 
     def solid(self) -> Piece:
         """The same, which nothing can break."""
-        return replace(self, chunks=(Chunk(self.text, self.width),))
+        return replace(self, chunks=(Segment(self.text, self.width),))
 
 
 class Pen:
@@ -118,9 +118,9 @@ class Pen:
                 return self.symbol(formula)
             case Row(parts):
                 return self.row(parts)
-            case Number(digits):
+            case Numeral(digits):
                 return self.number(digits)
-            case Call(function, argument, exponent):
+            case FunctionCall(function, argument, exponent):
                 return self.call(function, self.node(argument), exponent, argument)
             case Power(base, exponent):
                 return self.power(base, exponent)
@@ -130,7 +130,7 @@ class Pen:
                 return self.bracket(self.node(inside), kind)
             case Rate():
                 return self.rate(formula)
-            case Root(inside):
+            case Radical(inside):
                 return self.root(self.node(inside))
             case Apply(head, inside):
                 applied = self.bracket(self.node(inside), "()")
@@ -161,7 +161,7 @@ class Pen:
                 is_binary = before is not None and not isinstance(before, Sign)
                 sign = self.sign(part.character, is_binary=is_binary and not is_tight)
                 if is_binary and part.character in _BREAKS:
-                    sign = replace(sign, chunks=(Chunk("", 0.0), *sign.chunks))
+                    sign = replace(sign, chunks=(Segment("", 0.0), *sign.chunks))
                 pieces.append(sign)
             else:
                 if before is not None and not isinstance(before, Sign | Gap) and not is_tight:
@@ -177,18 +177,18 @@ class Pen:
 
     def glued(self, pieces: Iterable[Piece], binding: Binding = Binding.CALL) -> Piece:
         """Pieces side by side, which break where each of them does."""
-        chunks = [Chunk("", 0.0)]
+        chunks = [Segment("", 0.0)]
         height = Height.FLAT
         for piece in pieces:
             first, *others = piece.chunks
             last = chunks[-1]
-            chunks[-1] = Chunk(last.text + first.text, last.width + first.width, last.level)
+            chunks[-1] = Segment(last.text + first.text, last.width + first.width, last.level)
             chunks += others
             height = max(height, piece.height)
         return self.whole(chunks, binding, height)
 
     def whole(
-        self, chunks: Sequence[Chunk], binding: Binding, height: Height = Height.FLAT
+        self, chunks: Sequence[Segment], binding: Binding, height: Height = Height.FLAT
     ) -> Piece:
         width = sum(chunk.width for chunk in chunks) + self.blank * (len(chunks) - 1)
         return Piece(tuple(chunks), width, binding, height)
@@ -200,7 +200,7 @@ class Pen:
         binding: Binding = Binding.NAME,
         height: Height = Height.FLAT,
     ) -> Piece:
-        return Piece((Chunk(text, width),), width, binding, height)
+        return Piece((Segment(text, width),), width, binding, height)
 
     def within(self, opening: Piece, inside: Piece, closing: Piece, level: int = 1) -> Piece:
         """A piece in brackets, whose signs stand deeper by `level`."""
@@ -225,7 +225,7 @@ class Pen:
         d, time = Differential(), Symbol("t")
         if rate.order == 1:
             return row(d, rate.of), row(d, time)
-        order = Number(str(rate.order))
+        order = Numeral(str(rate.order))
         return row(Power(d, order), rate.of), row(d, Power(time, order))
 
     def symbol(self, symbol: Symbol) -> Piece:
@@ -322,18 +322,18 @@ def break_lines(piece: Piece, width: float, indent: float, blank: float = 0.0) -
     ]
 
 
-def _width(chunks: Sequence[Chunk], blank: float) -> float:
+def _width(chunks: Sequence[Segment], blank: float) -> float:
     return sum(chunk.width for chunk in chunks) + blank * (len(chunks) - 1)
 
 
 def _lines(
-    chunks: Sequence[Chunk], width: float, indent: float, blank: float
-) -> list[Sequence[Chunk]]:
+    chunks: Sequence[Segment], width: float, indent: float, blank: float
+) -> list[Sequence[Segment]]:
     if len(chunks) == 1 or _width(chunks, blank) <= width:
         return [chunks]
     level = min(chunk.level for chunk in chunks[1:])
     cuts = [0, *(k for k, chunk in enumerate(chunks) if k and chunk.level == level), len(chunks)]
-    lines: list[list[Chunk]] = []
+    lines: list[list[Segment]] = []
     for start, end in pairwise(cuts):
         part = list(chunks[start:end])
         if lines and _width([*lines[-1], *part], blank) <= width:

@@ -22,18 +22,18 @@ from rigidsym.formula.tree import (
     Apply,
     Big,
     Bracket,
-    Call,
     Differential,
     Face,
     Formula,
     Fraction,
+    FunctionCall,
     Gap,
     Indexed,
     Matrix,
-    Number,
+    Numeral,
     Power,
+    Radical,
     Rate,
-    Root,
     Row,
     Sign,
     Symbol,
@@ -77,7 +77,7 @@ def formula(text: str, *parts: Formula) -> Formula:
 
     Raises AlgebraError, showing the rest, where it cannot be read.
     """
-    reader = _Reader(text, parts)
+    reader = _TexReader(text, parts)
     found = reader.row(())
     if reader.tokens:
         raise reader.error()
@@ -95,7 +95,7 @@ def greek_letter(name: str) -> str:
         return ""
 
 
-class _Reader:
+class _TexReader:
     """Reads tokens from left to right; a blank parts a bracket from a letter."""
 
     def __init__(self, text: str, parts: tuple[Formula, ...]) -> None:
@@ -173,7 +173,7 @@ class _Reader:
             self.tokens.append(token)
             return self._argument()
         if token.isdigit():
-            return Number(token)
+            return Numeral(token)
         if token.startswith("#"):
             return self.parts[int(token[1:]) - 1]
         if token == "d" and (self._next()[:1].isalpha() or self._next()[:1] in ("\\", "#")):
@@ -207,7 +207,7 @@ class _Reader:
         if token in (r"\frac", r"\tfrac"):
             return _quotient(self._argument(), self._argument())
         if token == r"\sqrt":
-            return Root(self._argument())
+            return Radical(self._argument())
         if token in _BIG:
             return Big(_BIG[token])
         if token == r"\partial":
@@ -226,14 +226,14 @@ class _Reader:
         if self._next() == "^":
             self.tokens.pop()
             power = self._argument()
-            assert isinstance(power, Number)
+            assert isinstance(power, Numeral)
             exponent = int(power.digits)
         while self._next().isspace() or self._next() == r"\,":
             self.tokens.pop()
         argument = self._part()
         while self._next() in ("'", "_", "^"):
             argument = self._script(argument, self.tokens.pop())
-        return Call(function, argument, exponent)
+        return FunctionCall(function, argument, exponent)
 
     def _matrix(self) -> Formula:
         rows: list[list[Formula]] = [[]]
@@ -266,7 +266,7 @@ def _symbols(inside: Formula) -> list[Symbol]:
 
 def _faced(inside: Formula, face: Face) -> Formula:
     """A letter, or a bold 1 or 0, in another face."""
-    if isinstance(inside, Number):
+    if isinstance(inside, Numeral):
         return Symbol(inside.digits, face)
     if isinstance(inside, Symbol):
         return replace(inside, face=face)

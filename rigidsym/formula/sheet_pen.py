@@ -11,10 +11,10 @@ from rigidsym.formula import widths
 from rigidsym.formula.pen import Binding, Height, Pen, Piece
 from rigidsym.formula.tree import (
     Bracket,
-    Call,
     Differential,
     Formula,
-    Number,
+    FunctionCall,
+    Numeral,
     Power,
     Rate,
     Symbol,
@@ -66,9 +66,9 @@ class SheetPen(Pen):
         return self.atom(self.spelt_gap(before, after, is_thin), widths.THIN if is_thin else 0.0)
 
     def call(self, function: str, argument: Piece, exponent: int, given: Formula) -> Piece:
-        if self._is_short(Call(function, given)):
+        if self._is_short(FunctionCall(function, given)):
             letter = Symbol(function[0], index=given)
-            return self.node(letter if exponent == 1 else Power(letter, Number(str(exponent))))
+            return self.node(letter if exponent == 1 else Power(letter, Numeral(str(exponent))))
         width = widths.function_width(function)
         if exponent != 1:
             width += widths.SCRIPT * widths.DIGIT
@@ -77,7 +77,7 @@ class SheetPen(Pen):
 
     def _is_short(self, part: Formula) -> bool:
         """Whether a function is abbreviated to a letter, and so stands as one among factors."""
-        return self.short and isinstance(part, Call) and part.function in ("sin", "cos")
+        return self.short and isinstance(part, FunctionCall) and part.function in ("sin", "cos")
 
     def power(self, base: Formula, exponent: Formula) -> Piece:
         raised = self.node(exponent)
@@ -209,10 +209,10 @@ class SheetPen(Pen):
 
 def _is_thin(before: Formula, after: Formula) -> bool:
     """A thin space stands between letters; numbers, functions and signs bring their own."""
-    if isinstance(before, Words) or isinstance(after, Words | Call):
+    if isinstance(before, Words) or isinstance(after, Words | FunctionCall):
         return False
     if isinstance(before, Bracket) and isinstance(after, Bracket):
         return False
     if is_differential(before):
         return isinstance(after, Symbol) and len(after.letter) > 1 and before == Differential()
-    return not isinstance(before, Number)
+    return not isinstance(before, Numeral)

@@ -45,7 +45,7 @@ class Symbol(Formula):
 
 
 @dataclass(frozen=True, slots=True)
-class Number(Formula):
+class Numeral(Formula):
     digits: str
 
 
@@ -113,7 +113,7 @@ class Indexed(Formula):
 
 
 @dataclass(frozen=True, slots=True)
-class Root(Formula):
+class Radical(Formula):
     inside: Formula
 
 
@@ -124,7 +124,7 @@ class Bracket(Formula):
 
 
 @dataclass(frozen=True, slots=True)
-class Call(Formula):
+class FunctionCall(Formula):
     """A named function of an argument, which has its own brackets where it needs any: sin² θ."""
 
     function: str

@@ -11,10 +11,10 @@ from rigidsym.formula.tree import (
     Apply,
     Big,
     Bracket,
-    Call,
     Formula,
     Fraction,
-    Number,
+    FunctionCall,
+    Numeral,
     Power,
     Rate,
     Symbol,
@@ -81,7 +81,7 @@ class UnicodePen(Pen):
     def factor(self, part: Formula) -> Piece:
         """A quotient beside another factor is ½, or stands in brackets."""
         if isinstance(part, Fraction):
-            if isinstance(part.above, Number) and isinstance(part.below, Number):
+            if isinstance(part.above, Numeral) and isinstance(part.below, Numeral):
                 short = _FRACTIONS.get((part.above.digits, part.below.digits))
                 if short:
                     return self._atom(short, Binding.NUMBER)
@@ -101,7 +101,7 @@ class UnicodePen(Pen):
         if all(ord(c) in _ABOVE for c in text):
             raised = text.translate(_ABOVE)
         else:
-            is_word = isinstance(exponent, Symbol | Number)
+            is_word = isinstance(exponent, Symbol | Numeral)
             raised = f"^{text}" if is_word else f"^({text})"
         return self.glued((written, self._atom(raised)), Binding.POWER)
 
@@ -157,10 +157,10 @@ def _space(before: Formula, after: Formula) -> str:
         return "·"
     if isinstance(before, Bracket) and isinstance(after, Bracket):
         return ""
-    is_number = isinstance(before, Number) or (isinstance(before, Fraction) and before in _SHORT)
-    if is_number and not isinstance(after, Call | Rate | Fraction | Big):
+    is_number = isinstance(before, Numeral) or (isinstance(before, Fraction) and before in _SHORT)
+    if is_number and not isinstance(after, FunctionCall | Rate | Fraction | Big):
         return " " if isinstance(after, Symbol) and after.letter.isdigit() else ""
     return " "
 
 
-_SHORT = {Fraction(Number(a), Number(b)) for a, b in _FRACTIONS}
+_SHORT = {Fraction(Numeral(a), Numeral(b)) for a, b in _FRACTIONS}

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.notes.document.compose import compose
 from rigidsym.notes.document.document import Document
-from rigidsym.notes.formats.latex import print_latex
+from rigidsym.notes.formats import FORMATS
+from rigidsym.notes.sections.compose import compose
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -30,27 +30,25 @@ class Note:
         """What Jupyter shows: the whole note, or one line."""
         return {"text/markdown": self.markdown(), "text/plain": repr(self)}
 
+    def render(self, ending: str) -> str:
+        """The text of a file in one of FORMATS; the same derivation gives the same bytes."""
+        return FORMATS[ending].render(self.document)
+
     def latex(self) -> str:
-        """A complete LaTeX file; the same derivation gives the same bytes."""
-        return print_latex(self.document)
+        """A complete LaTeX file."""
+        return self.render("tex")
 
     def html(self) -> str:
         """A complete HTML file with MathML, for any screen; it loads nothing."""
-        from rigidsym.notes.formats.html import print_html
-
-        return print_html(self.document)
+        return self.render("html")
 
     def markdown(self) -> str:
         """Markdown with mathematics between dollar signs, as GitHub and Jupyter read it."""
-        from rigidsym.notes.formats.markdown import print_markdown
-
-        return print_markdown(self.document)
+        return self.render("md")
 
     def notebook(self) -> str:
         """A Jupyter notebook (.ipynb); raises MissingExtra without nbformat."""
-        from rigidsym.notes.formats.notebook import print_notebook
-
-        return print_notebook(self.document)
+        return self.render("ipynb")
 
 
 def note(
@@ -73,7 +71,7 @@ def note(
     )
     if conversions is None:
         return Note(document)
-    from rigidsym.notes.document.conversion_section import with_conversions
+    from rigidsym.notes.sections.conversion_section import with_conversions
 
     return Note(with_conversions(document, derivation, conversions, has_functions=bool(module)))
 
@@ -82,6 +80,6 @@ def _composed(derivation: Derivation) -> Callable[..., Document]:
     """How a derivation is composed, with its theory or without."""
     if not derivation.theory:
         return compose
-    from rigidsym.notes.document.lecture_note import compose_lecture
+    from rigidsym.notes.sections.lecture_note import compose_lecture
 
     return compose_lecture

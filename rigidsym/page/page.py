@@ -12,16 +12,16 @@ import re
 from collections.abc import Collection, Iterator, Sequence
 from typing import Any
 
-from rigidsym.formula.tree import NOTHING, PLUS, Formula, Number, Symbol, equal, joined, row
+from rigidsym.formula.tree import NOTHING, PLUS, Formula, Numeral, Symbol, equal, joined, row
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import Document, Equation, Paragraph, Text
+from rigidsym.notes.document.document import Document, Equation, Paragraph, Text, words
 from rigidsym.notes.figure.scene import scene_of
-from rigidsym.notes.formats.html import Printer, escape, rendered
+from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
 from rigidsym.notes.prose.singular_words import singular
-from rigidsym.notes.prose.words import unit_in_words, words
+from rigidsym.notes.prose.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
 from rigidsym.page.copies import LANGUAGES, copies_of
 from rigidsym.page.functions import Functions, functions_of
@@ -103,7 +103,7 @@ def print_page(derivation: Derivation, document: Document) -> str:
     )
 
 
-class PagePrinter(Printer):
+class PagePrinter(HtmlPrinter):
     """The note of a page, whose equations can be copied."""
 
     def __init__(self, document: Document, *, copied: Collection[str]) -> None:
@@ -167,7 +167,7 @@ def _turn_words(model: RotationModel, document: Document, printer: PagePrinter) 
     rays = [posed.named(arc.axis) for arc in posed.arcs] if posed else []
     axes = [ray.name if ray else NOTHING for ray in rays]
     if not axes:
-        axes = [Symbol("N", index=Number(str(k))) for k in range(1, len(model.turns) + 1)]
+        axes = [Symbol("N", index=Numeral(str(k))) for k in range(1, len(model.turns) + 1)]
     angles = [turn["name"] for turn in stage_of(model, document.letters)["turns"]]
     sentences = [
         printer.words(words("Turn {} of {}: by {} about {}", str(k), str(len(axes)), angle, axis))
@@ -185,7 +185,7 @@ def _sum(
     terms = [
         row(rate, Symbol("e", "bold", index=axis))
         for rate, axis in zip(rates, axes, strict=True)
-        if rate != Number("0")
+        if rate != Numeral("0")
     ]
     return f"<p>{printer.formula(equal(omega, joined(terms, PLUS)))}</p>"
 

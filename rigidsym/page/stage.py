@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.formula.tree import NOTHING, Formula, Number, Symbol
+from rigidsym.formula.tree import NOTHING, Formula, Numeral, Symbol
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import AXES, TIME
@@ -79,7 +79,7 @@ def _rays(model: RotationModel, letters: Letters) -> Iterator[dict[str, Any]]:
     for axis, direction in zip(BODY, STANDARD, strict=True):
         yield _ray("body", letters.notation.applied(axis), count, direction)
     for k in range(count):
-        axis = Symbol("N", index=Number(str(k + 1))) if has_turns(model) else Symbol("e", "bold")
+        axis = Symbol("N", index=Numeral(str(k + 1))) if has_turns(model) else Symbol("e", "bold")
         yield _ray("node", axis, k, None)
 
 

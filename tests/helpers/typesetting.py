@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from rigidsym.notes.document.document import Document
-from rigidsym.notes.formats.latex import print_latex
+from rigidsym.notes.formats.latex import render as print_latex
 
 BEGIN, END = r"\begin{document}", r"\end{document}"
 

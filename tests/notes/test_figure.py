@@ -19,6 +19,7 @@ from rigidsym.models.quaternions import AxisAngle, UnitQuaternion
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import time_function
 from rigidsym.models.vectors import GibbsVector, RotationVector
+from rigidsym.notes.document.document import plain
 from rigidsym.notes.figure.camera import STANDARD, camera, combined, cross, dot, turned, unit
 from rigidsym.notes.figure.drawing import Box, Drawing, Ellipse, Label, Stroke, beyond, placed
 from rigidsym.notes.figure.scene import MOST_TURNS, scene_of
@@ -26,7 +27,6 @@ from rigidsym.notes.figure.svg import svg
 from rigidsym.notes.figure.tikz import tikz
 from rigidsym.notes.formula.letters import letters_of
 from rigidsym.notes.prose.figure_words import figure_of
-from rigidsym.notes.prose.words import plain
 
 LETTERS = "zxyzxy"
 ANGLES = ("heading", "elevation", "bank")

@@ -13,9 +13,9 @@ import pytest
 
 import rigidsym as rs
 from helpers.typesetting import UNPACKED, bound_together, sheet_of
-from rigidsym.notes.document.boxed import RESULTS
-from rigidsym.notes.document.document import Document, EquationReference, EquationRow, Table
+from rigidsym.notes.document.document import Document, EquationReference, EquationRow, NoteTable
 from rigidsym.notes.formats.pdf import typeset
+from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.pipeline import output_of, read_file
 
 OTHERS = ("unit_quaternion", "rotation_vector", "z(a) x(b) z(c) y(d)")
@@ -37,7 +37,9 @@ def section(document: Document, title: str):
 
 @pytest.mark.parametrize("place", range(1 + len(OTHERS)))
 def test_every_symbol_of_the_theory_has_a_meaning_and_a_unit_once(place):
-    (table,) = [b for b in section(documents()[place], "Symbols").blocks if isinstance(b, Table)]
+    (table,) = [
+        b for b in section(documents()[place], "Symbols").blocks if isinstance(b, NoteTable)
+    ]
     symbols = [row[0] for row in table.rows]
     assert len(symbols) == len(set(map(str, symbols)))
     assert all(row[1] and row[2] for row in table.rows)
@@ -51,7 +53,7 @@ def test_every_symbol_of_the_theory_has_a_meaning_and_a_unit_once(place):
 @pytest.mark.parametrize("place", range(1 + len(OTHERS)))
 def test_the_symbols_name_equations_that_are_there(place):
     document = documents()[place]
-    (table,) = [b for b in section(document, "Symbols").blocks if isinstance(b, Table)]
+    (table,) = [b for b in section(document, "Symbols").blocks if isinstance(b, NoteTable)]
     named = {
         span.label
         for row in table.rows

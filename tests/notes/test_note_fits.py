@@ -14,8 +14,8 @@ from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import hat
 from rigidsym.notes.document.document import Document, Equation, EquationRow
-from rigidsym.notes.formats.latex import print_latex
-from rigidsym.notes.formats.markdown import print_markdown
+from rigidsym.notes.formats.latex import render as print_latex
+from rigidsym.notes.formats.markdown import render as print_markdown
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formula.lengths import length_of
 from rigidsym.notes.formula.letters import letters_of

@@ -18,14 +18,14 @@ from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.rotation import LECTURE, Citation, RotationModel
 from rigidsym.models.so3 import elementary, time_function
-from rigidsym.notes.document.boxed import RESULTS
-from rigidsym.notes.document.document import Document, Equation, Paragraph, Table
+from rigidsym.notes.document.document import Document, Equation, NoteTable, Paragraph, listed, plain
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.layout.entries import entry_names, indexed
 from rigidsym.notes.note import Note, note
 from rigidsym.notes.prose.singular_words import determined
-from rigidsym.notes.prose.words import listed, plain, unit_in_words, with_symbols
+from rigidsym.notes.prose.words import unit_in_words, with_symbols
+from rigidsym.notes.sections.boxed import RESULTS
 
 ZXZ = "euler_zxz_intrinsic"
 
@@ -141,7 +141,7 @@ def test_only_the_functions_of_the_module_are_named():
 
 def test_every_claim_stands_in_the_table_of_proofs(motion):
     (section,) = (s for s in _note(motion).document.sections if s.title == "What was proved")
-    (table,) = (block for block in section.blocks if isinstance(block, Table))
+    (table,) = (block for block in section.blocks if isinstance(block, NoteTable))
     shown = [row[1][0] for row in table.rows]
     assert shown == [proof.claim for proof in motion.proofs]
 
@@ -350,7 +350,7 @@ def _symbols(motion: rs.Motion) -> dict[str, tuple[str, str]]:
     """Meaning and unit by symbol, in plain text."""
     (section,) = (s for s in motion.note().document.sections if s.title == "Symbols")
     (table,) = section.blocks
-    assert isinstance(table, Table)
+    assert isinstance(table, NoteTable)
     return {plain(row[0]): (plain(row[1]), plain(row[2])) for row in table.rows}
 
 

@@ -55,9 +55,7 @@ def body_of(
     numbers unless `allow` is set.
     """
     if not isinstance(distribution, Distribution):
-        raise BodyError(
-            f"expected a distribution of mass, got {distribution!r}"
-        )
+        raise BodyError(f"expected a distribution of mass, got {distribution!r}")
     try:
         return _integrated(distribution, name, title, parameters, allow)
     except BodyError as error:

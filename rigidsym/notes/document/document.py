@@ -6,8 +6,9 @@ hold SymPy matrices, so that each printer can break and abbreviate them for its 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain, zip_longest
 
 import sympy as sp
 
@@ -55,6 +56,37 @@ Span = str | Formula | Code | Strong | EquationReference | Cited
 Text = tuple[Span, ...]
 
 
+def words(template: str, *spans: Span) -> Text:
+    """The template with a span in place of each {}."""
+    parts = template.split("{}")
+    mixed = chain.from_iterable(zip(parts, (*spans, ""), strict=True))
+    return tuple(span for span in mixed if span)
+
+
+def listed(items: Sequence[Text], last: str = " and ") -> Text:
+    """The texts a, b, c as: a, b and c."""
+    joints = [*[", "] * (len(items) - 2), last] if len(items) > 1 else []
+    mixed = chain.from_iterable((*item, joint) for item, joint in zip_longest(items, joints))
+    return tuple(span for span in mixed if span)
+
+
+def plain(text: Text) -> str:
+    """The text on one line of Unicode."""
+    return "".join(map(_plain, text))
+
+
+def _plain(span: Span) -> str:
+    match span:
+        case str():
+            return span
+        case Formula() | Code() | Strong():
+            return span.text
+        case Cited():
+            return str(span.citation)
+        case EquationReference():
+            return span.label
+
+
 @dataclass(frozen=True, slots=True)
 class Paragraph:
     text: Text
@@ -84,7 +116,7 @@ class EquationRow:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Table:
+class NoteTable:
     caption: str
     head: tuple[Text, ...]
     rows: tuple[tuple[Text, ...], ...]
@@ -92,7 +124,7 @@ class Table:
 
 
 @dataclass(frozen=True, slots=True)
-class Program:
+class CodeBlock:
     """A few lines of Python that can be run as they stand, beside the kernel module."""
 
     code: str  # ASCII, lines of at most 80 columns
@@ -105,13 +137,13 @@ class Figure:
     description: Text  # what the figure says, in words that do without it
 
 
-Block = Paragraph | Equation | EquationRow | Table | Program | Figure
+NoteBlock = Paragraph | Equation | EquationRow | NoteTable | CodeBlock | Figure
 
 
 @dataclass(frozen=True, slots=True)
 class Section:
     title: str
-    blocks: tuple[Block, ...]
+    blocks: tuple[NoteBlock, ...]
     on_own_page: bool = False  # at the end, on a sheet that can be handed out alone
 
 
@@ -158,5 +190,5 @@ class Document:
                     yield block.text
                 elif isinstance(block, Figure):
                     yield from (block.caption, block.description)
-                elif isinstance(block, Table):
+                elif isinstance(block, NoteTable):
                     yield from (cell for row in block.rows for cell in row)

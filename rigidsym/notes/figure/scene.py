@@ -17,7 +17,7 @@ from typing import Literal
 import sympy as sp
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula, Number, Symbol
+from rigidsym.formula.tree import Formula, Numeral, Symbol
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.figure.camera import (
@@ -282,7 +282,7 @@ def _rays(axes: Sequence[Vector], model: RotationModel, letters: Letters) -> Ite
         if not model.turns:
             yield Ray(kind="vector", name=named(VECTOR), frame=k, direction=axes[k])
         else:
-            several = Symbol("N", index=Number(str(number)))
+            several = Symbol("N", index=Numeral(str(number)))
             node = several if len(between) > 1 else NODE
             yield Ray(kind="node", name=node, frame=k, direction=axes[k])
 

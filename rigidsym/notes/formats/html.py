@@ -15,30 +15,31 @@ from rigidsym.formula.mathml_pen import MathmlPen, math
 from rigidsym.formula.tree import Formula, Matrix, equal
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.notes.document.document import (
-    Block,
     Cited,
     Code,
+    CodeBlock,
     Document,
     Equation,
     EquationReference,
     EquationRow,
     Figure,
+    NoteBlock,
+    NoteTable,
     Paragraph,
-    Program,
     Section,
     Span,
     Strong,
-    Table,
     Text,
+    plain,
 )
 from rigidsym.notes.figure.svg import svg
-from rigidsym.notes.formats.sanitize import cleaned
 from rigidsym.notes.formula.scalars import formula_of, matrix_of
 from rigidsym.notes.layout.layout import Display, display, inline_parts
 from rigidsym.notes.prose.prose import announcement
-from rigidsym.notes.prose.words import plain
+from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
 
+ENDING = "html"
 TEMPLATE = "note.html.jinja"
 _PAGE = 39.5  # ems of a display on a page, some less than there are: browsers differ in fonts
 _IN_WORDS = 0.75  # of a display's ems: what a formula among words may take
@@ -49,12 +50,12 @@ _SMALLER = 1.45  # times as many on a phone in smaller type, which can still be 
 _INLINE = 13.0  # ems of a formula between words on such a screen
 
 
-def print_html(document: Document) -> str:
+def render(document: Document) -> str:
     """The note as an HTML file; the same document gives the same bytes."""
-    return rendered(TEMPLATE, Printer(document))
+    return rendered(TEMPLATE, HtmlPrinter(document))
 
 
-def rendered(template: str, printer: Printer, **more: object) -> str:
+def rendered(template: str, printer: HtmlPrinter, **more: object) -> str:
     """A template with the note in it; `more` is what else the template places."""
     document = printer.document
     return (
@@ -92,7 +93,7 @@ class _Written:
     html: str
 
 
-class Printer:
+class HtmlPrinter:
     """Blocks and spans of one document in HTML."""
 
     def __init__(self, document: Document) -> None:
@@ -108,7 +109,7 @@ class Printer:
                 blocks[place] = blocks[place].replace("<p>", '<p class="lead">', 1)
         return "\n".join(blocks)
 
-    def _block(self, block: Block) -> str:
+    def _block(self, block: NoteBlock) -> str:
         match block:
             case Paragraph():
                 return f"<p>{self._text(block.text)}</p>"
@@ -117,11 +118,11 @@ class Printer:
             case EquationRow():
                 displays = (self.forms(equation) for equation in block.equations)
                 return f'<div class="row">{"".join(displays)}</div>'
-            case Table():
+            case NoteTable():
                 return self.table(block)
             case Figure():
                 return self._figure(block)
-            case Program():
+            case CodeBlock():
                 return f'<pre tabindex="0"><code>{escape_markup(block.code)}</code></pre>'
 
     def _equation(self, equation: Equation) -> Iterator[str]:
@@ -181,7 +182,7 @@ class Printer:
     def _function(self, equation: Equation) -> str:
         return f" {self._span(Code(equation.function))}" if equation.function else ""
 
-    def table(self, table: Table) -> str:
+    def table(self, table: NoteTable) -> str:
         head = "".join(f'<th scope="col">{self._text(cell)}</th>' for cell in table.head)
         rows = "\n".join(
             f"<tr>{''.join(f'<td>{self._text(cell)}</td>' for cell in row)}</tr>"

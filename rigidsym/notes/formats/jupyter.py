@@ -12,20 +12,22 @@ from rigidsym.formula.latex_pen import MarkdownPen
 from rigidsym.formula.notation import Notation
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.compose import equation_of
 from rigidsym.notes.formats.terminal import show, show_step
 from rigidsym.notes.formula.letters import letters_of
-from rigidsym.notes.layout.fitting import as_vectors
 from rigidsym.notes.layout.layout import display
-from rigidsym.notes.note import Note
+from rigidsym.notes.sections.compose import equation_of
+from rigidsym.notes.sections.fitting import as_vectors
 
 _WIDTH = 44.0  # ems
 
 
-def bundle_of(derivation: Derivation, note: Note, notation: Notation) -> dict[str, str]:
-    """The whole derivation: as the note, as one display of its equations, as plain text."""
+def bundle_of(derivation: Derivation, markdown: str, notation: Notation) -> dict[str, str]:
+    """The whole derivation: as the note, as one display of its equations, as plain text.
+
+    `markdown` is its note.
+    """
     return {
-        "text/markdown": note.markdown(),
+        "text/markdown": markdown,
         "text/latex": "\n\n".join(step._repr_latex_() for step in derivation.steps),
         "text/plain": show(derivation, notation=notation),
     }

@@ -5,31 +5,32 @@ from __future__ import annotations
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import (
-    Block,
     Cited,
     Code,
+    CodeBlock,
     Document,
     Equation,
     EquationReference,
     EquationRow,
     Figure,
+    NoteBlock,
+    NoteTable,
     Paragraph,
-    Program,
     Section,
     Span,
     Strong,
-    Table,
     Text,
 )
 from rigidsym.notes.figure.tikz import tikz
 from rigidsym.notes.formats.escape import escape
-from rigidsym.notes.formats.sanitize import cleaned
 from rigidsym.notes.layout.layout import PAGE, Rows, display, pack
 from rigidsym.notes.layout.paging import paged
 from rigidsym.notes.prose.prose import announcement
+from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
 from rigidsym.version import __version__
 
+ENDING = "tex"
 TEMPLATE = "note.tex.jinja"
 _DELIMITERS = {
     "block_start_string": "((*",
@@ -43,9 +44,9 @@ _LINE = 41.5  # ems: 160 mm at 11 points
 _TALL = 30  # lines of text, of about fifty on a page: more than these may part
 
 
-def print_latex(document: Document) -> str:
+def render(document: Document) -> str:
     """The note as a LaTeX file; the same document gives the same bytes."""
-    printer = _Printer(document)
+    printer = _LatexPrinter(document)
     template = resources.environment(**_DELIMITERS).get_template(TEMPLATE)
     return template.render(
         title=escape(document.title),
@@ -84,7 +85,7 @@ def _utf16(text: str) -> str:
     return ("\ufeff" + cleaned(text)).encode("utf-16-be", "replace").hex().upper()
 
 
-class _Printer:
+class _LatexPrinter:
     """Blocks and spans of one document in LaTeX."""
 
     def __init__(self, document: Document) -> None:
@@ -95,7 +96,7 @@ class _Printer:
     def body(self, section: Section) -> str:
         return "\n".join(map(self._block, section.blocks))
 
-    def _block(self, block: Block) -> str:
+    def _block(self, block: NoteBlock) -> str:
         match block:
             case Paragraph():
                 # no empty line: a display that follows belongs to the paragraph
@@ -105,11 +106,11 @@ class _Printer:
             case EquationRow():
                 packed = pack(block.equations, self.document.letters, _LINE, self.pen)
                 return f"\\[\n{packed}\n\\]"
-            case Table():
+            case NoteTable():
                 return "\n".join(map(self._table, paged(block)))
             case Figure():
                 return self._figure(block)
-            case Program():
+            case CodeBlock():
                 return f"{{\\keep\n\\begin{{verbatim}}\n{block.code}\n\\end{{verbatim}}\n}}"
 
     def _equation(self, equation: Equation) -> str:
@@ -158,7 +159,7 @@ class _Printer:
     def _function(self, equation: Equation) -> str:
         return rf"\texttt{{{escape(equation.function)}}}" if equation.function else ""
 
-    def _table(self, table: Table) -> str:
+    def _table(self, table: NoteTable) -> str:
         head, *rows = (
             " & ".join(map(self._cell, row)) + r" \\" for row in (table.head, *table.rows)
         )
@@ -229,6 +230,6 @@ def _breakable(code: str) -> str:
     return code.replace(r"\_", r"\_\allowbreak ").replace("(", r"(\allowbreak ")
 
 
-def _columns(table: Table) -> str:
+def _columns(table: NoteTable) -> str:
     """l for a column of one line a cell, T for the one of words."""
     return "".join("T" if place == table.of_words else "l" for place in range(len(table.head)))

@@ -15,23 +15,24 @@ from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import (
     Cited,
     Code,
+    CodeBlock,
     Document,
     Equation,
     EquationReference,
     EquationRow,
     Figure,
+    NoteTable,
     Paragraph,
-    Program,
     Section,
     Span,
     Strong,
-    Table,
     Text,
 )
-from rigidsym.notes.formats.sanitize import cleaned
 from rigidsym.notes.layout.layout import display, pack
 from rigidsym.notes.prose.prose import announcement
+from rigidsym.notes.sanitize import cleaned
 
+ENDING = "md"
 _WIDTH = 40.0  # ems
 _SPECIAL = re.compile(r"([\\`*_{}\[\]<>#&~|!@])")
 _DOLLARS = re.compile(r"\$+")
@@ -39,15 +40,15 @@ _LINE_START = re.compile(r"^(\s*)(?:([-+=])|(\d+)([.)]))")
 _TICKS = re.compile(r"`+")
 
 
-def print_markdown(document: Document) -> str:
+def render(document: Document) -> str:
     """The note as Markdown; the same document gives the same bytes."""
-    pieces = (_fenced(p) if isinstance(p, Program) else p for p in parts(document))
+    pieces = (_fenced(p) if isinstance(p, CodeBlock) else p for p in parts(document))
     return "\n\n".join(pieces) + "\n"
 
 
-def parts(document: Document) -> Iterator[str | Program]:
+def parts(document: Document) -> Iterator[str | CodeBlock]:
     """The note in pieces, in order: Markdown text, and the programs between."""
-    printer = _Printer(document)
+    printer = _MarkdownPrinter(document)
     yield f"# {escape(document.title)}\n\n{escape(document.subtitle)}"
     for section in document.sections:
         yield from printer.section(section)
@@ -65,7 +66,7 @@ def _unlisted(start: re.Match[str]) -> str:
     return f"{blank}\\{mark}" if mark else f"{blank}{number}\\{point}"
 
 
-class _Printer:
+class _MarkdownPrinter:
     """Blocks and spans of one document in Markdown."""
 
     def __init__(self, document: Document) -> None:
@@ -73,10 +74,10 @@ class _Printer:
         self.notation = document.letters.notation
         self.pen = MarkdownPen(self.notation)
 
-    def section(self, section: Section) -> Iterator[str | Program]:
+    def section(self, section: Section) -> Iterator[str | CodeBlock]:
         prose = [f"## {escape(section.title)}"]
         for block in section.blocks:
-            if isinstance(block, Program):
+            if isinstance(block, CodeBlock):
                 yield "\n\n".join(prose)
                 yield block
                 prose = []
@@ -89,7 +90,7 @@ class _Printer:
         lines = (f"{place}. {escape(s)}" for place, s in enumerate(self.document.sources, start=1))
         return "\n".join(["## Sources", "", *lines])
 
-    def _block(self, block: Paragraph | Equation | EquationRow | Figure | Table) -> str:
+    def _block(self, block: Paragraph | Equation | EquationRow | Figure | NoteTable) -> str:
         match block:
             case Paragraph():
                 return _LINE_START.sub(_unlisted, self._text(block.text).lstrip())
@@ -99,7 +100,7 @@ class _Printer:
                 return _display(pack(block.equations, self.document.letters, _WIDTH, self.pen))
             case Figure():
                 return self._text(block.description)
-            case Table():
+            case NoteTable():
                 return self._table(block)
 
     def _equation(self, equation: Equation) -> Iterator[str]:
@@ -123,7 +124,7 @@ class _Printer:
         if equation.function:
             yield self._span(Code(equation.function))
 
-    def _table(self, table: Table) -> str:
+    def _table(self, table: NoteTable) -> str:
         rows = [self._row(table.head), "|---" * len(table.head) + "|", *map(self._row, table.rows)]
         return f"*{escape(table.caption)}*\n\n" + "\n".join(rows)
 
@@ -173,5 +174,5 @@ def _code(text: str) -> str:
     return f"{ticks}{inside}{ticks}"
 
 
-def _fenced(program: Program) -> str:
+def _fenced(program: CodeBlock) -> str:
     return f"```python\n{program.code}\n```"

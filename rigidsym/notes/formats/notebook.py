@@ -6,13 +6,14 @@ from types import ModuleType
 from typing import Any
 
 from rigidsym.errors import MissingExtra
-from rigidsym.notes.document.document import Document, Program
+from rigidsym.notes.document.document import CodeBlock, Document
 from rigidsym.notes.formats.markdown import parts
 
+ENDING = "ipynb"
 _KERNEL = {"display_name": "Python 3", "language": "python", "name": "python3"}
 
 
-def print_notebook(document: Document) -> str:
+def render(document: Document) -> str:
     """The note as an .ipynb file; the same document gives the same bytes.
 
     Raises MissingExtra without nbformat.
@@ -24,9 +25,9 @@ def print_notebook(document: Document) -> str:
     return str(nbformat.writes(notebook)) + "\n"
 
 
-def _cell(nbformat: ModuleType, part: str | Program, place: int) -> Any:
+def _cell(nbformat: ModuleType, part: str | CodeBlock, place: int) -> Any:
     # nbformat would draw an id by chance
-    if isinstance(part, Program):
+    if isinstance(part, CodeBlock):
         return nbformat.v4.new_code_cell(part.code, id=f"cell-{place}")
     return nbformat.v4.new_markdown_cell(part, id=f"cell-{place}")
 

@@ -16,7 +16,7 @@ from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import Span, Text
+from rigidsym.notes.document.document import Span, Text, plain
 from rigidsym.notes.formula.letters import Letters, letters_of
 from rigidsym.notes.formula.scalars import formula_of, matrix_of
 from rigidsym.notes.layout.entries import RESIDUAL, entry_names, indexed
@@ -24,7 +24,7 @@ from rigidsym.notes.layout.grid import grid
 from rigidsym.notes.prose.prose import turn
 from rigidsym.notes.prose.singular_words import failures, measured
 from rigidsym.notes.prose.vector_words import sum_of_vectors
-from rigidsym.notes.prose.words import convention, plain, symbols_of, unit_in_words, with_symbols
+from rigidsym.notes.prose.words import convention, symbols_of, unit_in_words, with_symbols
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -250,7 +250,7 @@ class _Screen(_Steps):
         """The parameters of the body that have values, and its principal axes."""
         if self.derivation.body is None:
             return
-        from rigidsym.notes.document.body_sections import lines_of_body
+        from rigidsym.notes.sections.body_sections import lines_of_body
 
         lines = list(lines_of_body(self.derivation, self.letters))
         if lines:

@@ -10,8 +10,8 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import AlgebraError
-from rigidsym.formula.naming import named
 from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.symbol_names import named
 from rigidsym.formula.tree import Formula, Symbol
 from rigidsym.mechanics.derivation import Argument
 from rigidsym.models.rotation import RotationModel

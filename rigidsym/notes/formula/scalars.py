@@ -16,13 +16,13 @@ from rigidsym.formula.tree import (
     MINUS,
     PLUS,
     Bracket,
-    Call,
     Formula,
     Fraction,
-    Number,
+    FunctionCall,
+    Numeral,
     Power,
+    Radical,
     Rate,
-    Root,
     Row,
     Sign,
     Symbol,
@@ -52,8 +52,8 @@ class Bound(IntEnum):
 
 
 _BOUND = {
-    Call: Bound.CALL,
-    Number: Bound.NUMBER,
+    FunctionCall: Bound.CALL,
+    Numeral: Bound.NUMBER,
     Fraction: Bound.FRACTION,
     Rate: Bound.FRACTION,
     Power: Bound.PRODUCT,
@@ -80,7 +80,7 @@ def text(expression: sp.Expr, letters: Letters) -> str:
 @lru_cache(maxsize=8192)
 def formula_of(expression: sp.Expr, letters: Letters) -> Formula:
     """The expression as a tree; raises AlgebraError as `latex` does."""
-    return _Walk(letters).expression(letters.shortened(expression))
+    return _ScalarWalk(letters).expression(letters.shortened(expression))
 
 
 def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> list[list[Formula]]:
@@ -88,7 +88,7 @@ def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> list[list[Formula]]:
     return [[formula_of(entry, letters) for entry in line] for line in matrix.tolist()]
 
 
-class _Walk:
+class _ScalarWalk:
     """One walk over an expression."""
 
     def __init__(self, letters: Letters) -> None:
@@ -107,7 +107,7 @@ class _Walk:
             return self._call(node, 1)
         if is_application(node):
             arguments = [self.expression(argument) for argument in node.args]
-            return Call(node.func.__name__, Bracket(joined(arguments, Sign(","))))
+            return FunctionCall(node.func.__name__, Bracket(joined(arguments, Sign(","))))
         return self.letters.name(node)
 
     def _sum(self, node: sp.Add) -> Formula:
@@ -155,19 +155,19 @@ class _Walk:
 
     def _factor(self, node: sp.Expr) -> Formula:
         if node.is_Rational and not node.is_Integer:
-            return Fraction(Number(str(node.p)), Number(str(node.q)))
+            return Fraction(Numeral(str(node.p)), Numeral(str(node.q)))
         return _at_least(Bound.PRODUCT, self.expression(node))
 
     def _power(self, node: sp.Pow) -> Formula:
         base, exponent = node.base, node.exp
         if exponent == sp.Rational(1, 2):
-            return Root(self.expression(base))
+            return Radical(self.expression(base))
         if not exponent.is_Rational:
             self.letters.name(node)  # raises: a general power has no name
         if base.func in FUNCTIONS and exponent.is_Integer:
             return self._call(base, int(exponent))
         whole = _at_least(Bound.NAME, self.expression(base))
-        raised = Number(str(exponent.p)) if exponent.is_Integer else _on_a_line(exponent)
+        raised = Numeral(str(exponent.p)) if exponent.is_Integer else _on_a_line(exponent)
         return Power(whole, raised)
 
     def _call(self, node: sp.Function, exponent: int) -> Formula:
@@ -175,20 +175,20 @@ class _Walk:
         argument = self.expression(angle)
         if not _is_multiple(angle):
             argument = _at_least(Bound.NUMBER, argument)
-        return Call(FUNCTIONS[node.func], argument, exponent)
+        return FunctionCall(FUNCTIONS[node.func], argument, exponent)
 
 
 def _rational(number: sp.Rational) -> Formula:
     if number.is_negative:
         return row(MINUS, _rational(-number))
     if number.is_Integer:
-        return Number(str(number))
-    return Fraction(Number(str(number.p)), Number(str(number.q)))
+        return Numeral(str(number))
+    return Fraction(Numeral(str(number.p)), Numeral(str(number.q)))
 
 
 def _on_a_line(exponent: sp.Rational) -> Formula:
     sign = (MINUS,) if exponent.is_negative else ()
-    return Row((*sign, Number(str(abs(exponent.p))), Sign("/"), Number(str(exponent.q))))
+    return Row((*sign, Numeral(str(abs(exponent.p))), Sign("/"), Numeral(str(exponent.q))))
 
 
 def _bound(formula: Formula) -> Bound:

@@ -11,7 +11,7 @@ from rigidsym.formula.tree import (
     Bracket,
     Formula,
     Indexed,
-    Number,
+    Numeral,
     Rate,
     Row,
     Sign,
@@ -58,7 +58,7 @@ def _indices(shape: tuple[int, ...]) -> Iterator[str]:
 
 def _indexed(symbol: Formula, index: str) -> Formula:
     """R₂₃, or L_R,1 where the symbol has an index of its own; brackets around what is compound."""
-    number = Number(index)
+    number = Numeral(index)
     if isinstance(symbol, Rate) and isinstance(symbol.of, Symbol):
         symbol = replace(symbol.of, dots=symbol.order)
     if not isinstance(symbol, Symbol):

@@ -8,8 +8,7 @@ from math import ceil
 
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
-from rigidsym.notes.document.document import Table, Text
-from rigidsym.notes.prose.words import plain
+from rigidsym.notes.document.document import NoteTable, Text, plain
 
 _ROWS = 40  # on a page, beside a heading
 _WORDS = 44  # letters of a column of words
@@ -17,7 +16,7 @@ _WORDS = 44  # letters of a column of words
 Row = tuple[Text, ...]
 
 
-def paged(table: Table) -> Iterator[Table]:
+def paged(table: NoteTable) -> Iterator[NoteTable]:
     """The table, or its parts; those after the first say in the caption that they go on."""
     heights = [max(map(_lines, row)) for row in table.rows]
     room = sum(heights) / max(1, ceil(sum(heights) / _ROWS))  # parts of about one height

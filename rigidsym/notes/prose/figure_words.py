@@ -6,12 +6,11 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 
 from rigidsym.models.rotation import RotationModel, Turn
-from rigidsym.notes.document.document import Figure, Text
+from rigidsym.notes.document.document import Figure, Text, listed, words
 from rigidsym.notes.figure.camera import Vector
 from rigidsym.notes.figure.drawing import drawn
 from rigidsym.notes.figure.scene import Arc, Kind, Posed, scene_of
 from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.prose.words import listed, words
 
 
 def figure_of(model: RotationModel, letters: Letters) -> Figure | None:

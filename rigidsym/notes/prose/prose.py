@@ -9,11 +9,11 @@ from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Symbol, equal,
 from rigidsym.mechanics.claims import rate_of, spin_of
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, ROTATION, SPACE
 from rigidsym.models.rotation import Turn, lecture
-from rigidsym.notes.document.document import Block, Cited, Equation, Paragraph, Text
+from rigidsym.notes.document.document import Cited, Equation, NoteBlock, Paragraph, Text, words
 from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.layout import Done
-from rigidsym.notes.prose.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION, words
+from rigidsym.notes.prose.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION
 
 _TURNING = lecture("3", "section 1.2")
 _MOTION = lecture("15", "section 3.2")
@@ -40,13 +40,13 @@ def axis_of(turn: Turn, letters: Letters) -> Formula:
     return Bracket(joined([formula_of(c, letters) for c in turn.components], COMMA), "[]")
 
 
-def motion(*, passive: bool) -> Iterator[Block]:
+def motion(*, passive: bool) -> Iterator[NoteBlock]:
     """Why the derivative times the transpose is the operator of the angular velocity."""
     yield from _passive_motion() if passive else _active_motion()
     yield Paragraph(words("For a vector {} the matrix of {} is", _VECTOR, _operator(_VECTOR)))
 
 
-def _active_motion() -> Iterator[Block]:
+def _active_motion() -> Iterator[NoteBlock]:
     spinning = spin_of(ROTATION)
     yield Paragraph(words("A point at rest in the body, {}, has the velocity", ACTIVE))
     yield Equation(
@@ -69,7 +69,7 @@ def _active_motion() -> Iterator[Block]:
     )
 
 
-def _passive_motion() -> Iterator[Block]:
+def _passive_motion() -> Iterator[NoteBlock]:
     spinning = spin_of(COSINES)
     yield Paragraph(
         words("A point at rest in space has the body components {}, which change by", PASSIVE)

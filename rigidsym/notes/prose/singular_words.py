@@ -9,7 +9,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula, Number, Symbol, equal
+from rigidsym.formula.tree import Formula, Numeral, Symbol, equal
 from rigidsym.mechanics.claims import transpose_of
 from rigidsym.mechanics.derivation import (
     Derivation,
@@ -19,10 +19,10 @@ from rigidsym.mechanics.derivation import (
     Singularity,
 )
 from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
-from rigidsym.notes.document.document import Text
+from rigidsym.notes.document.document import Text, listed, words
 from rigidsym.notes.formula.letters import Letters, letters_of
 from rigidsym.notes.formula.scalars import formula_of
-from rigidsym.notes.prose.words import listed, vector, words
+from rigidsym.notes.prose.words import vector
 
 _MOST_POINTS = 8  # that are told of one by one
 _FRAMES = (SPACE.matrix, BODY.matrix)
@@ -40,7 +40,7 @@ def measured(found: Singularities) -> tuple[Formula, ...]:
         "det Wᵀ W": r"\det(#3#1)",
     }.get(found.measure)
     if typed is None:
-        return (Symbol("Σ", index=Number(str(found.rank))),)
+        return (Symbol("Σ", index=Numeral(str(found.rank))),)
     return tuple(formula(typed, m, WITH_CONDITIONS, transpose_of(m)) for m in _FRAMES)
 
 

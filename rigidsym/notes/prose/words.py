@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain, zip_longest
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 
 import sympy as sp
 
@@ -16,7 +16,11 @@ from rigidsym.mechanics.quantities.energy import CENTRE
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, POINT
 from rigidsym.models.so3 import AXES
-from rigidsym.notes.document.document import Cited, Code, EquationReference, Span, Strong, Text
+from rigidsym.notes.document.document import (
+    Text,
+    listed,
+    words,
+)
 from rigidsym.notes.formula.lengths import VECTOR, length_of
 from rigidsym.notes.formula.letters import Letters, letters_of
 from rigidsym.notes.formula.scalars import formula_of
@@ -40,37 +44,6 @@ _OF_BODIES = (
 
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _ALSO_WORDS = ("a", "A", "I")  # in a sentence these are words, whatever an angle is called
-
-
-def words(template: str, *spans: Span) -> Text:
-    """The template with a span in place of each {}."""
-    parts = template.split("{}")
-    mixed = chain.from_iterable(zip(parts, (*spans, ""), strict=True))
-    return tuple(span for span in mixed if span)
-
-
-def listed(items: Sequence[Text], last: str = " and ") -> Text:
-    """The texts a, b, c as: a, b and c."""
-    joints = [*[", "] * (len(items) - 2), last] if len(items) > 1 else []
-    mixed = chain.from_iterable((*item, joint) for item, joint in zip_longest(items, joints))
-    return tuple(span for span in mixed if span)
-
-
-def plain(text: Text) -> str:
-    """The text on one line of Unicode."""
-    return "".join(map(_plain, text))
-
-
-def _plain(span: Span) -> str:
-    match span:
-        case str():
-            return span
-        case Formula() | Code() | Strong():
-            return span.text
-        case Cited():
-            return str(span.citation)
-        case EquationReference():
-            return span.label
 
 
 def symbols_of(derivation: Derivation) -> dict[str, Formula]:

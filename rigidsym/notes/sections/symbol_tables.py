@@ -11,13 +11,15 @@ from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import RATES
 from rigidsym.notes.document.document import (
-    Block,
     Code,
+    CodeBlock,
     EquationReference,
+    NoteBlock,
+    NoteTable,
     Paragraph,
-    Program,
-    Table,
     Text,
+    listed,
+    words,
 )
 from rigidsym.notes.formula.lengths import VECTOR
 from rigidsym.notes.formula.letters import Letters
@@ -26,12 +28,10 @@ from rigidsym.notes.prose.words import (
     BODY_POSITION,
     OPERATOR,
     POSITION,
-    listed,
     symbols_of,
     unit_in_words,
     vector,
     with_symbols,
-    words,
 )
 
 _U, _CROSS = formula(r"\mathbf{u}"), formula(r"\mathbf{u}\times")
@@ -40,7 +40,7 @@ _MOST_SYMBOLS = 6  # in one cell
 _CODE_WIDTH = 76  # columns of typewriter type on a page
 
 
-def symbols(derivation: Derivation, letters: Letters) -> Table:
+def symbols(derivation: Derivation, letters: Letters) -> NoteTable:
     """Every symbol with what it means and its unit."""
     known: dict[str, Row] = {}
     named = (_arguments, _constants, _of_the_body, partial(_length, letters), _points)
@@ -56,7 +56,7 @@ def symbols(derivation: Derivation, letters: Letters) -> Table:
         meaning = with_symbols(about, symbols_of(derivation))
         row = ((quantity.symbol,), meaning, (unit_in_words(quantity.unit),))
         known.setdefault(str(row[0]), (*row, _reference(step)))
-    return Table(
+    return NoteTable(
         caption="The symbols and their SI units",
         head=(("Symbol",), ("Meaning",), ("Unit",), ("Equation",)),
         rows=tuple(known.values()),
@@ -147,7 +147,7 @@ def _points(derivation: Derivation) -> Iterator[Row]:
     yield (OPERATOR,), ("matrix of ", _CROSS, ", for a vector ", _U), ("that of ", _U), ()
 
 
-def functions(derivation: Derivation, module: str, names: Sequence[str]) -> Iterator[Block]:
+def functions(derivation: Derivation, module: str, names: Sequence[str]) -> Iterator[NoteBlock]:
     """The functions of a module, and a call of one of them that runs as it stands."""
     yield Paragraph(
         words(
@@ -156,7 +156,7 @@ def functions(derivation: Derivation, module: str, names: Sequence[str]) -> Iter
             Code(module),
         )
     )
-    yield Program(_example(derivation, module, names))
+    yield CodeBlock(_example(derivation, module, names))
 
 
 def _example(derivation: Derivation, module: str, names: Sequence[str]) -> str:

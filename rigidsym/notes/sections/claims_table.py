@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.notes.document.document import (
-    Block,
     Equation,
     EquationReference,
+    NoteBlock,
+    NoteTable,
     Paragraph,
     Strong,
-    Table,
     Text,
 )
 from rigidsym.notes.layout.entries import RESIDUAL, indexed
@@ -20,11 +20,11 @@ from rigidsym.notes.prose.prose import proofs_in_words
 Claim = tuple[str, Proof]  # the label of an equation, and what was claimed there
 
 
-def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[Block]:
+def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[NoteBlock]:
     """Each claim with the label of its equation; below, what is left over of those unproved."""
     unproved = [proof for _, proof in claims if not proof.is_exact]
     yield Paragraph(proofs_in_words(is_proved=not unproved))
-    yield Table(
+    yield NoteTable(
         caption="What was claimed, and what became of it",
         head=(("Equation",), ("Claim",), ("Status",)),
         rows=tuple(
@@ -39,7 +39,7 @@ def _status(proof: Proof) -> Text:
     return ("exact",) if proof.is_exact else (Strong("unproved"),)
 
 
-def _left_over(proof: Proof) -> Iterator[Block]:
+def _left_over(proof: Proof) -> Iterator[NoteBlock]:
     """What remains of a claim that could not be decided."""
     yield Paragraph((Strong("Unproved:"), " ", proof.claim, ". What is left over is"))
     if proof.residual is not None:

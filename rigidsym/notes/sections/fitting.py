@@ -20,14 +20,20 @@ from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
-from rigidsym.notes.document.document import Block, Equation, EquationReference, Paragraph, Text
+from rigidsym.notes.document.document import (
+    Equation,
+    EquationReference,
+    NoteBlock,
+    Paragraph,
+    Text,
+    listed,
+)
 from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.abbreviations import Namer, Part
 from rigidsym.notes.layout.layout import PAGE, display
 from rigidsym.notes.prose.short import in_short
 from rigidsym.notes.prose.vector_words import sum_of_vectors
-from rigidsym.notes.prose.words import listed
 
 _MOST_LINES = 24  # of one quantity, where there is a short way to say it
 _MOST_OF_ROTATION = 48  # a page of R itself, which the others are for
@@ -52,7 +58,7 @@ class Fitter:
         self._namer = Namer(letters)
         self._explained_at: dict[sp.Symbol, str] = {}  # name of a part: label of its equation
 
-    def fitted(self, equation: Equation, step: Step) -> Iterator[Block]:
+    def fitted(self, equation: Equation, step: Step) -> Iterator[NoteBlock]:
         """An equation; where it would be long, in short, or its parts with their names first."""
         equation = as_vectors(equation, step, self.letters)
         short = in_short(step, self.derivation, self.letters) if self._breaks(equation) else None
@@ -117,7 +123,7 @@ class Fitter:
         fits = not display(named.equation, self.letters, PAGE).done
         return fits and (was_listed or all(value.is_Add for _, value in named.parts))
 
-    def _blocks(self, form: _Form) -> Iterator[Block]:
+    def _blocks(self, form: _Form) -> Iterator[NoteBlock]:
         """An equation behind what its names stand for; what was said before is referred to."""
         new = [part for part in form.parts if part[0] not in self._explained_at]
         old: dict[str, list[Text]] = {}
@@ -134,7 +140,7 @@ class Fitter:
             yield definitions(new, self.letters)
         yield form.equation
 
-    def _lines(self, block: Block) -> int:
+    def _lines(self, block: NoteBlock) -> int:
         if not isinstance(block, Equation):
             return 1
         shown = display(block, self.letters, PAGE)
@@ -160,7 +166,7 @@ def _is_of_motion(step: Step) -> bool:
     return step.quantity.name not in {*INERTIA_QUANTITIES, *ENERGY_QUANTITIES}
 
 
-def _said(equation: Equation, short: Sequence[Formula], lines: int) -> Iterator[Block]:
+def _said(equation: Equation, short: Sequence[Formula], lines: int) -> Iterator[NoteBlock]:
     """What it is, and how long it would be; the function evaluates it all the same."""
     what = "It" if equation.matrix is None else "Its entries"
     yield _without_entries(equation, short)

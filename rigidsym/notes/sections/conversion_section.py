@@ -10,21 +10,22 @@ import sympy as sp
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.conversions.conversions import SHEPPERD, Conversions, outer_product
 from rigidsym.mechanics.derivation import Derivation, Step
-from rigidsym.notes.document.compose import equation_of
 from rigidsym.notes.document.document import (
-    Block,
     Cited,
     Code,
     Document,
     Equation,
     EquationRow,
+    NoteBlock,
     Paragraph,
     Section,
     Strong,
+    words,
 )
 from rigidsym.notes.layout.entries import indexed
 from rigidsym.notes.prose.conversion_words import HOW, WHICH
-from rigidsym.notes.prose.words import symbols_of, with_symbols, words
+from rigidsym.notes.prose.words import symbols_of, with_symbols
+from rigidsym.notes.sections.compose import equation_of
 
 TITLE = "Conversions"
 _BEFORE = "What was proved"  # the section that it stands before
@@ -49,7 +50,7 @@ def with_conversions(
 
 def _blocks(
     derivation: Derivation, conversions: Conversions, *, has_functions: bool
-) -> Iterator[Block]:
+) -> Iterator[NoteBlock]:
     if conversions.quaternion is not None:
         yield from _quaternion(derivation, conversions.quaternion, has_functions=has_functions)
     yield from _matrix(conversions)
@@ -60,7 +61,7 @@ def _blocks(
         yield Paragraph(("The claims of this section were decided exactly, like the others.",))
 
 
-def _quaternion(derivation: Derivation, step: Step, *, has_functions: bool) -> Iterator[Block]:
+def _quaternion(derivation: Derivation, step: Step, *, has_functions: bool) -> Iterator[NoteBlock]:
     """The unit quaternion as a formula, with the number after that of the last step."""
     sentence = with_symbols(step.because.removesuffix("."), symbols_of(derivation) | HOW)
     source = step.quantity.source
@@ -70,7 +71,7 @@ def _quaternion(derivation: Derivation, step: Step, *, has_functions: bool) -> I
     yield replace(equation_of(numbered, derivation.arguments), function=call, is_result=True)
 
 
-def _matrix(conversions: Conversions) -> Iterator[Block]:
+def _matrix(conversions: Conversions) -> Iterator[NoteBlock]:
     """The columns of K(R) = 4 p pᵀ, from which the quaternion of a matrix is read."""
     yield Paragraph(
         words(
@@ -92,7 +93,7 @@ def _column(name: str, column: sp.ImmutableMatrix) -> Equation:
 
 def _coordinates(
     derivation: Derivation, conversions: Conversions, *, has_functions: bool
-) -> Iterator[Block]:
+) -> Iterator[NoteBlock]:
     inverse = conversions.inverse
     if inverse is None:
         yield Paragraph((conversions.without,))

@@ -7,19 +7,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.notes.document.document import (
-    Block,
     Equation,
     EquationReference,
     EquationRow,
+    NoteBlock,
     Paragraph,
     Section,
     Text,
+    listed,
 )
 from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.layout import PAGE, display, height
 from rigidsym.notes.prose.singular_words import failures, meaning, measured
-from rigidsym.notes.prose.words import convention, listed, vector_in_words
+from rigidsym.notes.prose.words import convention, vector_in_words
 
 TITLE = "Summary"
 _SENTENCES = 2  # what the coordinates are, and which way the rotation goes
@@ -56,7 +57,7 @@ def _numbered(sections: Sequence[Section]) -> Mapping[str, Equation]:
 
 def _blocks(
     derivation: Derivation, equations: Mapping[str, Equation], letters: Letters, room: float
-) -> Iterator[Block]:
+) -> Iterator[NoteBlock]:
     said = convention(derivation, letters.notation)[:_SENTENCES]
     on_vectors = tuple(vector_in_words(derivation, letters.notation))
     yield from map(Paragraph, (*said, *on_vectors))
@@ -118,7 +119,7 @@ def _fits(equation: Equation, letters: Letters) -> bool:
     return not shown.done and shown.width <= PAGE
 
 
-def _where_it_fails(derivation: Derivation, letters: Letters) -> Iterator[Block]:
+def _where_it_fails(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
     """What vanishes there, and where it does; what is lost there stands in the note."""
     found = derivation.singularities
     if found is None:

@@ -9,7 +9,7 @@ from sympy.printing.conventions import split_super_sub
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.formula.reader import greek_letter
-from rigidsym.formula.tree import Formula, Number, Power, Rate, Row, Symbol
+from rigidsym.formula.tree import Formula, Numeral, Power, Rate, Row, Symbol
 
 _VARIANTS = {"varphi": "φ", "vartheta": "ϑ", "varepsilon": "ε", "varrho": "ϱ", "varsigma": "ς"}
 
@@ -36,7 +36,7 @@ def named(label: str, order: int = 0) -> Formula:
 
 
 def _part(text: str) -> Formula:
-    return Number(text) if text.isdigit() else Symbol(_letter(text), macro=_macro(text))
+    return Numeral(text) if text.isdigit() else Symbol(_letter(text), macro=_macro(text))
 
 
 def _letter(name: str) -> str:

@@ -19,35 +19,30 @@ from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTAT
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.models.rotation import Citation, Turn
 from rigidsym.models.so3 import hat
-from rigidsym.notes.document.boxed import RESULTS
-from rigidsym.notes.document.claims_table import claims_in_a_table
 from rigidsym.notes.document.document import (
-    Block,
     Cited,
     Document,
     Equation,
     EquationRow,
     Figure,
+    NoteBlock,
     Paragraph,
     Section,
     Text,
+    words,
 )
-from rigidsym.notes.document.note_tables import functions, symbols
-from rigidsym.notes.document.summary import summary
 from rigidsym.notes.formula.letters import letters_of
 from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.entries import entry_names, indexed
-from rigidsym.notes.layout.fitting import Fitter
 from rigidsym.notes.prose.figure_words import figure_of
 from rigidsym.notes.prose.prose import motion, turn
 from rigidsym.notes.prose.singular_words import failures, meaning, measured
-from rigidsym.notes.prose.words import (
-    OPERATOR,
-    convention,
-    symbols_of,
-    with_symbols,
-    words,
-)
+from rigidsym.notes.prose.words import OPERATOR, convention, symbols_of, with_symbols
+from rigidsym.notes.sections.boxed import RESULTS
+from rigidsym.notes.sections.claims_table import claims_in_a_table
+from rigidsym.notes.sections.fitting import Fitter
+from rigidsym.notes.sections.summary import summary
+from rigidsym.notes.sections.symbol_tables import functions, symbols
 
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
 
@@ -128,24 +123,24 @@ class Composer:
         yield from sections
         yield summary(self.derivation, sections, self.letters)
 
-    def _body(self) -> Iterator[Block]:
+    def _body(self) -> Iterator[NoteBlock]:
         if self.derivation.body is not None:
-            from rigidsym.notes.document.body_sections import blocks_of_body
+            from rigidsym.notes.sections.body_sections import blocks_of_body
 
             yield from blocks_of_body(self.derivation, self.letters)
             yield from self._steps(tuple(INERTIA_QUANTITIES))
 
-    def _convention(self) -> Iterator[Block]:
+    def _convention(self) -> Iterator[NoteBlock]:
         return (Paragraph(text) for text in convention(self.derivation, self.letters.notation))
 
-    def _rotation(self) -> Iterator[Block]:
+    def _rotation(self) -> Iterator[NoteBlock]:
         if self.model.turns:
             yield from self._product_of_turns()
         else:
             yield from self._figure()
         yield from self._steps(("rotation_matrix",))
 
-    def _product_of_turns(self) -> Iterator[Block]:
+    def _product_of_turns(self) -> Iterator[NoteBlock]:
         turns = [turn(t, self.letters) for t in self.model.turns]
         kind = "a product of turns" if len(turns) > 1 else "one turn"
         yield Paragraph(words(f"The rotation is {kind}\u00a0{{}}:", Cited(self.model.source)))
@@ -188,7 +183,7 @@ class Composer:
             sides=(side,), matrix=any_turn.matrix, entries=indexed(side, any_turn.matrix.shape)
         )
 
-    def _angular_velocity(self) -> Iterator[Block]:
+    def _angular_velocity(self) -> Iterator[NoteBlock]:
         shown = COSINES if self.model.passive else ROTATION
         yield from motion(passive=self.model.passive)
         yield Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
@@ -202,7 +197,7 @@ class Composer:
         yield Equation(sides=(skew(spin_of(shown)),))
         yield from self._steps(_ANGULAR_VELOCITY)
 
-    def _rates(self) -> Iterator[Block]:
+    def _rates(self) -> Iterator[NoteBlock]:
         steps = list(self._steps(_RATES))
         found = self.derivation.singularities
         if not steps and found is None:
@@ -219,7 +214,7 @@ class Composer:
         if found is not None and found.rank < 3:
             yield Paragraph(("The rate matrices have no inverse; the rates are not solved for.",))
 
-    def _singularities(self) -> Iterator[Block]:
+    def _singularities(self) -> Iterator[NoteBlock]:
         found = self.derivation.singularities
         if found is None:
             return
@@ -229,7 +224,7 @@ class Composer:
             yield Equation(sides=(*measured(found), value))
         yield from map(Paragraph, failures(self.derivation, found))
 
-    def _steps(self, names: Sequence[str]) -> Iterator[Block]:
+    def _steps(self, names: Sequence[str]) -> Iterator[NoteBlock]:
         for step in self.derivation.steps:
             if step.quantity.name in names:
                 first, *others = self.fitter.fitted(self._equation(step), step)
@@ -265,11 +260,11 @@ class Composer:
         equation = equation_of(step, self.derivation.arguments)
         return replace(equation, function=function, is_result=step.quantity.name in RESULTS)
 
-    def _proofs(self) -> Iterator[Block]:
+    def _proofs(self) -> Iterator[NoteBlock]:
         steps = self.derivation.steps
         yield from claims_in_a_table([(s.quantity.name, p) for s in steps for p in s.proofs])
 
-    def _functions(self) -> Iterator[Block]:
+    def _functions(self) -> Iterator[NoteBlock]:
         if self.functions:
             yield from functions(self.derivation, self.module, self.functions)
 

@@ -24,17 +24,25 @@ from rigidsym.models.distribution import (
     Polyhedron,
     Solid,
 )
-from rigidsym.notes.document.document import Block, Equation, Paragraph, Table, Text
+from rigidsym.notes.document.document import (
+    Equation,
+    NoteBlock,
+    NoteTable,
+    Paragraph,
+    Text,
+    listed,
+    words,
+)
 from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.entries import indexed
-from rigidsym.notes.prose.words import listed, unit_in_words, words
+from rigidsym.notes.prose.words import unit_in_words
 
 _KINDS = ("the length", "the area", "the volume")
 _DIGITS = 6
 
 
-def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[Block]:
+def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
     """How the mass of the body is spread, with its integrals, and its values in numbers."""
     body = derivation.body
     if body is None:
@@ -60,7 +68,7 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[Block]:
     yield from _numbers(body, letters)
 
 
-def _solid(solid: Solid, letters: Letters) -> Iterator[Block]:
+def _solid(solid: Solid, letters: Letters) -> Iterator[NoteBlock]:
     """The map, its bounds, the element and the integrals of a solid."""
     yield Paragraph((f"{solid.title}: its points are",))
     yield Equation(sides=(PLACE,), matrix=solid.place, entries=indexed(PLACE, (3,)))
@@ -115,8 +123,8 @@ def _differentials(coordinates: Sequence[sp.Symbol], letters: Letters) -> list[F
     return [part for u in coordinates for part in (Differential(), formula_of(u, letters))]
 
 
-def _parts(parts: Sequence[Part], letters: Letters) -> Table:
-    return Table(
+def _parts(parts: Sequence[Part], letters: Letters) -> NoteTable:
+    return NoteTable(
         caption="The parts, each in its own axes, then turned and moved",
         head=(("Part",), ("Mass",), ("Moved by",), ("Turned",)),
         rows=tuple(
@@ -142,8 +150,8 @@ def _named(part: Part) -> str:
     return part.label or f"{kind}{' (hole)' if part.hole else ''}"
 
 
-def _particles(given: Particles, letters: Letters) -> Table:
-    return Table(
+def _particles(given: Particles, letters: Letters) -> NoteTable:
+    return NoteTable(
         caption="The particles",
         head=(("Mass",), ("Place",)),
         rows=tuple(
@@ -157,10 +165,10 @@ def _triple(column: sp.MatrixBase, letters: Letters) -> Text:
     return ("(", *listed([(formula_of(entry, letters),) for entry in column], ", "), ")")
 
 
-def _numbers(body: RigidBody, letters: Letters) -> Iterator[Block]:
+def _numbers(body: RigidBody, letters: Letters) -> Iterator[NoteBlock]:
     """The values of the parameters, and what follows from them in numbers."""
     if body.values:
-        yield Table(
+        yield NoteTable(
             caption="The parameters in numbers",
             head=(("Parameter",), ("Meaning",), ("Value",), ("Unit",)),
             rows=tuple(
@@ -181,10 +189,10 @@ def _numbers(body: RigidBody, letters: Letters) -> Iterator[Block]:
             yield Paragraph((found.principal.repeated,))
 
 
-def _principal(found: MassProperties) -> Table:
+def _principal(found: MassProperties) -> NoteTable:
     """The principal moments in ascending order, each with its axis."""
     principal = found.principal
-    return Table(
+    return NoteTable(
         caption="Principal moments and right-handed principal axes, in numbers",
         head=(("Moment, kg m²",), ("Radius of gyration, m",), ("Axis, body components",)),
         rows=tuple(

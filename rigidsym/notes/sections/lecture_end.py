@@ -8,21 +8,21 @@ from itertools import groupby
 
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.notes.document.boxed import RESULTS
 from rigidsym.notes.document.document import (
     Equation,
     EquationReference,
     EquationRow,
+    NoteTable,
     Paragraph,
     Section,
     Span,
-    Table,
     Text,
+    listed,
 )
-from rigidsym.notes.document.note_tables import symbols
-from rigidsym.notes.document.summary import SHEET, row_height, summary
 from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.prose.words import listed
+from rigidsym.notes.sections.boxed import RESULTS
+from rigidsym.notes.sections.summary import SHEET, row_height, summary
+from rigidsym.notes.sections.symbol_tables import symbols
 
 _LEAD = 2.0  # lines that the words before a row of equations take
 _OF_THE_THEORY: Sequence[tuple[str, str, str, str]] = (  # symbol, meaning, unit, equation
@@ -61,7 +61,7 @@ _BY_THE_BODY: Sequence[tuple[str, str, str, str]] = (  # where no body has them 
 
 def symbols_of_the_lecture(
     derivation: Derivation, letters: Letters, shown: Mapping[str, str]
-) -> Table:
+) -> NoteTable:
     """Symbols of the theory before those of the rotation and the body.
 
     `shown` names, for a quantity without an equation of its own, the one that it belongs to.

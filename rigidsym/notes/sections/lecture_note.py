@@ -10,21 +10,21 @@ from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Derivation, Statement, Step
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
-from rigidsym.notes.document.boxed import RESULTS
-from rigidsym.notes.document.claims_table import claims_in_a_table
-from rigidsym.notes.document.compose import ACCELERATION, Composer
 from rigidsym.notes.document.document import (
-    Block,
     Cited,
     Document,
     Equation,
+    NoteBlock,
     Paragraph,
     Section,
     Text,
+    words,
 )
-from rigidsym.notes.document.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 from rigidsym.notes.formula.summands import sums
-from rigidsym.notes.prose.words import words
+from rigidsym.notes.sections.boxed import RESULTS
+from rigidsym.notes.sections.claims_table import claims_in_a_table
+from rigidsym.notes.sections.compose import ACCELERATION, Composer
+from rigidsym.notes.sections.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",
@@ -89,17 +89,17 @@ class _Lecture(Composer):
         yield from sections
         yield summary_of_the_lecture(self.derivation, sections, self.letters)
 
-    def _symbols(self) -> Iterator[Block]:
+    def _symbols(self) -> Iterator[NoteBlock]:
         yield symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
 
-    def _method(self) -> Iterator[Block]:
+    def _method(self) -> Iterator[NoteBlock]:
         masses = formula(r"\sum_i m_i = M")
         places = formula(r"\sum_i m_i\,\mathbf{x}_i = \mathbf{0}")
         rotation, centre = formula(r"\mathbf{R}"), formula(r"\mathbf{r}_C")
         yield Paragraph(words(_SUMS, masses, places))
         yield Paragraph(words(_ROTATIONS, rotation, centre, rotation))
 
-    def _statement(self, statement: Statement) -> Iterator[Block]:
+    def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
         yield Paragraph(_with_source(statement))
         sides = statement.sides
         matrix = sums(statement, self.letters)
@@ -114,7 +114,7 @@ class _Lecture(Composer):
             is_result=statement.name in RESULTS,
         )
 
-    def _of_the_rotation(self) -> Iterator[Block]:
+    def _of_the_rotation(self) -> Iterator[NoteBlock]:
         yield from self._convention()
         yield from self._rotation()
         yield from self._steps(("rotation_rate", "spin_matrix", "angular_velocity_space"))
@@ -128,7 +128,7 @@ class _Lecture(Composer):
     def _label(self, step: Step) -> str:
         return _WHERE_SHOWN.get(step.quantity.name, step.quantity.name)
 
-    def _proofs(self) -> Iterator[Block]:
+    def _proofs(self) -> Iterator[NoteBlock]:
         claims = [
             (_WHERE_SHOWN.get(s.name, s.name), p) for s in self.derivation.theory for p in s.proofs
         ]
