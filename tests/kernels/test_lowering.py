@@ -13,8 +13,9 @@ import rigidsym as rs
 from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
 from rigidsym.kernels.ir import Assignment, Call, Guarded, Name, Negative, Number, Product, Sum
-from rigidsym.kernels.lowering.lower import MARGIN, _Reader, lower
+from rigidsym.kernels.lowering.lower import MARGIN, lower
 from rigidsym.kernels.lowering.naming import Names
+from rigidsym.kernels.lowering.read import Reader
 from rigidsym.kernels.lowering.schedule import write
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.text.infix import infix
@@ -35,7 +36,7 @@ def lowered(*expressions: sp.Expr) -> tuple[list[str], list[str]]:
 
 
 def lower_all(expressions):
-    reader = _Reader("test", INPUTS)
+    reader = Reader("test", INPUTS)
     weighted = [reader.weighted(sp.sympify(e)) for e in expressions]
     reader.graph.share(node for _, node in weighted)
     return write(reader.graph, weighted, list(INPUTS.values()), Names(INPUTS.values()))
