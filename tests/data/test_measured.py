@@ -340,7 +340,7 @@ def mesh_of(name: str) -> Mesh:
 def test_open_torn_and_inverted_meshes_are_refused():
     box = mesh_of("box")
     with pytest.raises(
-        BodyError, match=r"the surface is open: 3 edges have one face alone, such as"
+        BodyError, match=r"the surface is open: 3 edges have only one face, such as"
     ):
         mesh_inertia(Mesh(vertices=box.vertices, faces=box.faces[1:]), mass=1.0)
     torn = box.faces.copy()

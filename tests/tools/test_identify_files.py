@@ -203,7 +203,7 @@ def test_all_bad_samples_are_named_with_their_amounts():
     assert str(error.value).splitlines() == [
         "bad samples",
         "  sample 2: angles: a number that is missing or not finite",
-        "  sample 3: matrix: not a rotation, an entry of M Mᵀ is 0.21 off that of the unit matrix "
+        "  sample 3: matrix: not a rotation, M Mᵀ differs from 1 by 0.21 in an entry "
         "(det M = 1.331)",
         "  sample 4: matrix: not a rotation but a reflection, its determinant is -1",
         "  sample 5: matrix: a number that is missing or not finite",

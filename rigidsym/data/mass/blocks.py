@@ -19,17 +19,17 @@ from numpy.typing import NDArray
 from rigidsym.errors import BodyError
 
 Array = NDArray[np.float64]
-BLOCK = 8192  # particles that are summed at once; they stay in the cache
+BLOCK = 8192  # particles that are summed at once, so that they stay in the cache
 
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """The sums of one block of particles about a place near them."""
+    """The sums of one block of particles about a point near them."""
 
     count: int
     mass: float
     lightest: float
-    lightest_at: int  # which particle that is, counted from 0
+    lightest_at: int  # its number, counted from 0
     about: Array  # c, (3,)
     first: Array  # Σ m (x − c), (3,)
     second: Array  # Σ m (x − c)(x − c)ᵀ, (3, 3)
@@ -37,7 +37,7 @@ class Block:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Cloud:
-    """What a cloud of particles is as a rigid body, in SI units."""
+    """Mass, centre and inertia tensor of many particles, in SI units."""
 
     count: int
     mass: float  # kg
@@ -46,45 +46,45 @@ class Cloud:
 
 
 def named(row: int) -> str:
-    """What a particle is called in messages."""
+    """How messages name a particle."""
     return f"particle {row}, counted from 0"
 
 
 def block_of(
     masses: Array | None,
-    places: Array,
+    positions: Array,
     start: int = 0,
     name: Callable[[int], str] = named,
 ) -> Block:
-    """The sums of a block: masses (n,), ones where there are none, and places (3, n).
+    """The sums of a block: masses (n,), or None for ones, and positions (3, n).
 
-    `start` is the number of its first particle, `name` says it. Raises BodyError for NaN.
+    `start` is the number of its first particle, `name` names one. Raises BodyError for NaN.
     """
-    count = places.shape[1]
+    count = positions.shape[1]
     if masses is None:
         masses = np.ones(count)
-    with np.errstate(all="ignore"):  # what is not finite is looked for below
+    with np.errstate(all="ignore"):  # numbers that are not finite are found below
         mass = float(masses.sum())
-        about = places @ masses / mass if mass else places[:, 0].copy()
+        about = positions @ masses / mass if mass else positions[:, 0].copy()
         if not np.isfinite(about).all():
-            about = places[:, 0].copy()
-        apart = places - about[:, None]
+            about = positions[:, 0].copy()
+        apart = positions - about[:, None]
         weighted = apart * masses
         first, second = weighted.sum(axis=1), weighted @ apart.T
     block = Block(
         count, mass, float(masses.min()), start + int(masses.argmin()), about, first, second
     )
     if not np.isfinite(block.second).all():
-        raise BodyError(_not_finite(masses, places, start, name))
+        raise BodyError(_not_finite(masses, positions, start, name))
     return block
 
 
-def _not_finite(masses: Array, places: Array, start: int, name: Callable[[int], str]) -> str:
-    wrong = ~(np.isfinite(masses) & np.isfinite(places).all(axis=0))
+def _not_finite(masses: Array, positions: Array, start: int, name: Callable[[int], str]) -> str:
+    wrong = ~(np.isfinite(masses) & np.isfinite(positions).all(axis=0))
     if not wrong.any():
         return f"particles from {start} on: their moments are too large for double precision"
     row = int(np.argmax(wrong))
-    x, y, z = places[:, row]
+    x, y, z = positions[:, row]
     return (
         f"{name(start + row)}: expected finite numbers, got mass "
         f"{masses[row]:g} at ({x:g}, {y:g}, {z:g})"
@@ -94,10 +94,10 @@ def _not_finite(masses: Array, places: Array, start: int, name: Callable[[int], 
 def cloud_of(
     blocks: Iterable[Block], name: Callable[[int], str] = named, *, allow: bool = False
 ) -> Cloud:
-    """All blocks as one body; their order does not matter.
+    """All blocks as one body, whatever their order.
 
-    Raises BodyError for no particles, for a total mass that is not positive, and, unless they are
-    to `allow`, for negative masses of single particles.
+    Raises BodyError for no particles, for a total mass that is not positive, and, unless
+    `allow`, for a particle of negative mass.
     """
     found = list(blocks)
     if not found:
@@ -143,7 +143,7 @@ def _sums(tables: Sequence[Array]) -> Array:
 
 
 def inertia_from(second: Array) -> Array:
-    """tr(J) 1 − J, without adding what is taken away again."""
+    """tr(J) 1 − J, without adding numbers that cancel."""
     inertia = -second
     for k in range(3):
         inertia[k, k] = second[(k + 1) % 3, (k + 1) % 3] + second[(k + 2) % 3, (k + 2) % 3]

@@ -1,6 +1,6 @@
-"""A closed triangle mesh as a solid of uniform density: STL, OBJ, PLY and what else trimesh reads.
+"""A closed triangle mesh as a solid of uniform density: STL, OBJ, PLY, OFF, GLB.
 
-Sums over signed tetrahedra between a place inside and each triangle, after D. Eberly, Polyhedral
+Sums over signed tetrahedra between a point inside and each triangle, after D. Eberly, Polyhedral
 Mass Properties (2002), whose integrals are those over the unit simplex.
 """
 
@@ -42,7 +42,7 @@ _SIMPLEX = 1 / 6, 1 / 24, 1 / 120  # ∫ 1, ∫ u, ∫ u v over the unit simplex
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Mesh:
-    """Corners (n, 3), in m, and triangles (k, 3) of their numbers."""
+    """Vertices (n, 3), in m, and triangles (k, 3) of their numbers."""
 
     vertices: Array
     faces: NDArray[np.int64]
@@ -88,10 +88,10 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
 def mesh_inertia(
     mesh: Mesh, *, mass: float | None = None, density: float | None = None, allow: bool = False
 ) -> MassProperties:
-    """Mass, centre, inertia tensor and principal axes of a mesh that is filled uniformly.
+    """Mass, centre, inertia tensor and principal axes of a uniform solid bounded by a mesh.
 
     `mass` in kg or `density` in kg/m³. Raises BodyError for a surface that is open, whose faces
-    do not all look outwards, or that is inside out; `allow` takes it as it is.
+    are not oriented alike, or that is inside out; `allow` accepts the first two.
     """
     if (mass is None) == (density is None):
         raise BodyError("mesh: expected either the mass or the density")
@@ -130,7 +130,7 @@ def mesh_inertia(
 
 
 def check_closed(mesh: Mesh) -> None:
-    """Raises BodyError, with the edge, where an edge is not between two faces of one sense."""
+    """Raises BodyError, with an edge, unless every edge joins two faces of one orientation."""
     faces = mesh.faces
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     count = len(mesh.vertices)
@@ -139,13 +139,13 @@ def check_closed(mesh: Mesh) -> None:
     if times.max() > 1:
         edge = int(found[np.argmax(times)])
         raise BodyError(
-            f"mesh: {int((times > 1).sum())} edges have two faces that go along them in the same "
+            f"mesh: {int((times > 1).sum())} edges have two faces that run along them in the same "
             f"direction, such as {_edge(edge, mesh)}: some faces are turned over"
         )
     open_edges = np.setdiff1d(backward, found)
     if len(open_edges):
         raise BodyError(
-            f"mesh: the surface is open: {len(open_edges)} edges have one face alone, such as "
+            f"mesh: the surface is open: {len(open_edges)} edges have only one face, such as "
             f"{_edge(int(open_edges[0]), mesh)}"
         )
 

@@ -10,27 +10,27 @@ from numpy.typing import ArrayLike, NDArray
 from rigidsym.errors import BodyError
 
 Array = NDArray[np.float64]
-_EQUAL = 1e-9  # of the largest moment: closer ones are called equal
+_EQUAL = 1e-9  # of the largest moment: closer moments count as equal
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class PrincipalAxes:
-    """Moments in ascending order and the axes that belong to them."""
+    """Moments in ascending order, and their axes."""
 
     moments: Array  # (3,), kg m²
     axes: Array  # (3, 3), the columns are unit vectors, right-handed
 
     @property
     def repeated(self) -> str:
-        """A sentence on moments that are equal, and what that leaves open; empty where none are."""
+        """A sentence on equal moments and the axes they leave free; empty if all differ."""
         low, middle, high = self.moments
         slack = _EQUAL * abs(high)
         if high - low <= slack:
             return "All principal moments are equal: every axis through the centre is principal."
         if middle - low <= slack:
-            return "The first two principal moments are equal: every axis across the third is one."
+            return "The first two principal moments are equal: all axes normal to the third are principal."
         if high - middle <= slack:
-            return "The last two principal moments are equal: every axis across the first is one."
+            return "The last two principal moments are equal: all axes normal to the first are principal."
         return ""
 
 
@@ -46,7 +46,7 @@ def principal_axes_of(inertia: ArrayLike) -> PrincipalAxes:
     skew = np.abs(matrix - matrix.T).max()
     if skew > 1e-12 * np.abs(matrix).max():
         raise BodyError(f"the inertia tensor is not symmetric: entries differ by {skew:g} kg m²")
-    if not (matrix - np.diag(np.diag(matrix))).any():  # nothing to turn; the order is that of x y z
+    if not (matrix - np.diag(np.diag(matrix))).any():  # diagonal already
         order = np.argsort(np.diag(matrix), kind="stable")
         moments, axes = np.diag(matrix)[order], np.eye(3)[:, order]
     else:

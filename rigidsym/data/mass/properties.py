@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class MassProperties:
-    """A body in numbers, SI units."""
+    """Mass, centre, inertia tensor and principal axes of a body, in SI units."""
 
     count: int  # particles, or faces of a mesh
     mass: float  # kg
@@ -31,11 +31,11 @@ class MassProperties:
         return np.sqrt(np.maximum(self.principal.moments, 0) / self.mass)
 
     def text(self, noun: str = "particle") -> str:
-        """A few lines for a terminal; `noun` is what was counted."""
+        """A few lines for a terminal; `noun` is particle or face."""
         return f"{counted(self.count, noun)}\n{self._in_numbers()}"
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
-        """What Jupyter shows: what a terminal does, but for what was counted."""
+        """The text for Jupyter."""
         return {"text/plain": self._in_numbers()}
 
     def _in_numbers(self) -> str:
@@ -53,7 +53,7 @@ class MassProperties:
         return "\n".join([*lines, *([principal.repeated] if principal.repeated else [])])
 
     def record(self) -> dict[str, Any]:
-        """All of it as plain data."""
+        """The properties as plain data."""
         return {
             **({"count": self.count} if self.count else {}),
             "mass": self.mass,

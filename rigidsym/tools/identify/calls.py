@@ -1,7 +1,7 @@
 """The exact calls of SciPy, SymPy and rigidsym that reproduce the data of a reading.
 
-Each is a text of Python statements that end in `matrix` or `quaternion` and, where the data have
-it and the library can, `omega`. They start from NumPy as np and from `angles` (and `rates`): the
+Each is a text of Python statements that end in `matrix` or `quaternion` and, if the data have it
+and the library can, `omega`. They start from NumPy as np and from `angles` (and `rates`): the
 columns of one sample in the order of the data, (3,); SciPy and rigidsym take (..., 3) too.
 """
 
@@ -34,7 +34,7 @@ def calls(reading: Reading) -> dict[str, str]:
 
 
 def _turns(reading: Reading) -> Iterator[str]:
-    """The angles and rates of the turns in their order, where they are not the columns."""
+    """The angles and rates of the turns in their order, if they are not the columns."""
     if not reading.is_plain:
         for columns in ("angles", "rates") if reading.velocity else ("angles",):
             taken = f"{columns}[..., {list(reading.columns)}] * {list(reading.signs)}"
@@ -104,7 +104,7 @@ def _sympy_quaternion(reading: Reading) -> Iterator[str]:
 
 
 def _sympy_motion(reading: Reading, velocity: Velocity) -> Iterator[str]:
-    """With rates the angles are functions of time, and their values are put in last."""
+    """With rates the angles are functions of time; their values are substituted last."""
     if reading.scalar_last is not None:
         yield f"from {_QUATERNION}"
     yield "from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols, msubs"
@@ -186,7 +186,7 @@ def _side_of(velocity: Velocity, reading: Reading) -> str:
 
 
 def _scaled(velocity: Velocity) -> Iterator[str]:
-    """Ω in the sign and the unit of the data, where it is not so already."""
+    """Ω with the sign and the unit of the data, if they differ."""
     factor = ("-" if velocity.is_opposite else "") + _CONVERSIONS.get(velocity.units, "")
     if factor:
         yield f"omega = {factor}omega"

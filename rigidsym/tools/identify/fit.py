@@ -1,16 +1,18 @@
-"""Which readings fit: all of them on a few rows first, then those that are left on every row."""
+"""The readings that fit: all are tried on a few rows, and those that fit them on every row."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 
 from rigidsym.data.text import MOST_SHOWN
+from rigidsym.system.progress import Progress
 from rigidsym.tools.identify.align import aligned
+from rigidsym.tools.identify.calls import calls
 from rigidsym.tools.identify.readings import VELOCITIES, Reading, Velocity, distinct
 from rigidsym.tools.identify.samples import SLACK, Block, SampleError, check
 from rigidsym.tools.identify.sources import Source
@@ -18,14 +20,12 @@ from rigidsym.tools.identify.tolerance import Tolerance, check_tolerance, tolera
 from rigidsym.tools.identify.turns import Array, Table
 from rigidsym.tools.identify.velocity import angular_velocities, as_given
 
-Progress = Callable[[float], None]  # takes the share of the data that is done
-
 _AT_ONCE = 1 << 17  # rows times readings
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Match:
-    """How well one reading fits all of the data."""
+class Answer:
+    """One reading in its plainest words, and how well it fits all of the data."""
 
     reading: Reading
     residual: float  # the largest angle between the reading and the data, in radians
@@ -38,20 +38,30 @@ class Match:
     def fits(self) -> bool:
         return self.fitting == self.samples
 
+    @property
+    def aliases(self) -> tuple[Reading, ...]:
+        """Other readings that are the same function of the data."""
+        return self.reading.aliases()
+
+    @property
+    def calls(self) -> dict[str, str]:
+        """Python statements by library (SciPy, SymPy, rigidsym) that reproduce the data."""
+        return calls(self.reading)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Outcome:
-    """What is left after every row, and what it was held to."""
+    """The readings that fit every row, and the tolerance for that."""
 
-    matches: tuple[Match, ...]  # in the order of plainness; the nearest alone where none fits
+    answers: tuple[Answer, ...]  # in the order of plainness; only the nearest if none fits
     tolerance: Tolerance
-    scale: float  # the largest |Ω| of the rows that were looked at first
+    scale: float  # the largest |Ω| of the rows tried first
 
 
 def fit(
     source: Source, tolerance: float | None = None, progress: Progress | None = None
 ) -> Outcome:
-    """The readings that fit the samples or, where none does, the nearest.
+    """The readings that fit the samples or, if none does, the nearest.
 
     Raises SampleError for samples that are not finite or not rotations, after reading them all.
     """
@@ -68,7 +78,7 @@ def fit(
         tally.add(block)
         if progress:
             progress(block.done)
-    return Outcome(matches=tally.matches(source), tolerance=chosen, scale=scale)
+    return Outcome(answers=tally.answers(source), tolerance=chosen, scale=scale)
 
 
 def _good(source: Source, slack: float) -> Iterator[Block]:
@@ -86,7 +96,7 @@ def _good(source: Source, slack: float) -> Iterator[Block]:
 
 
 def _scale(block: Block) -> float:
-    """The largest |Ω|, or the largest rate where there is no Ω but zero."""
+    """The largest |Ω|, or the largest rate if all Ω are zero."""
     if block.omega is None or block.rates is None:
         return 1.0
     lengths = [float(np.linalg.norm(part, axis=1).max()) for part in (block.omega, block.rates)]
@@ -94,17 +104,17 @@ def _scale(block: Block) -> float:
 
 
 class _Candidates:
-    """Readings as a grid: those of the orientation, and for each of them those of Ω."""
+    """A grid of readings: of the orientation down, of Ω across."""
 
     def __init__(self, orientations: Sequence[Reading], velocities: Sequence[Velocity]) -> None:
         self.table = Table(orientations)
-        self.velocities = tuple(velocities)  # none where the data have no Ω
+        self.velocities = tuple(velocities)  # none if the data have no Ω
 
     def __len__(self) -> int:
         return len(self.table) * max(1, len(self.velocities))
 
     def grid(self) -> list[list[Reading]]:
-        """Rows of readings; one column where the data have no Ω."""
+        """Rows of readings; one column if the data have no Ω."""
         velocities = self.velocities or (None,)
         return [[replace(r, velocity=v) for v in velocities] for r in self.table.readings]
 
@@ -129,7 +139,7 @@ def _everything(layouts: tuple[bool | None, ...]) -> Table:
 def _narrowed(
     source: Source, block: Block, asked: float | None, scale: float
 ) -> tuple[Tolerance, list[Reading]]:
-    """The readings that fit a few rows, or the nearest alone, and the tolerance for the rest."""
+    """The readings that fit a few rows, or only the nearest, and the tolerance for the rest."""
     table = _everything(source.columns.layouts)
     angles = table.residuals(block.angles, block.orientation())
     readings = np.array(table.readings)
@@ -154,7 +164,7 @@ def _narrowed(
 def _with_velocities(
     orientations: Sequence[Reading], block: Block, scale: float, tolerance: float
 ) -> list[Reading]:
-    """Each reading of the orientation with each of Ω that fits."""
+    """Each reading of the orientation with every reading of Ω that fits."""
     if block.omega is None:
         return list(orientations)
     candidates = _Candidates(orientations, VELOCITIES)
@@ -173,7 +183,7 @@ def _nearest_velocity(orientations: Sequence[Reading], block: Block, scale: floa
 
 
 class _Tally:
-    """The worst of each candidate so far, over a grid of which some places are out."""
+    """The largest residuals so far of each candidate of a grid."""
 
     def __init__(self, readings: Sequence[Reading], tolerance: Tolerance, scale: float) -> None:
         orientations = list(dict.fromkeys(r.orientation for r in readings))
@@ -188,7 +198,7 @@ class _Tally:
         self._fitting, self._samples = np.zeros(shape, np.intp), 0
 
     def add(self, block: Block) -> None:
-        """Take these rows into account, a few at a time where there are many candidates."""
+        """Take these rows into account, a few at a time if there are many candidates."""
         at_once = max(1, _AT_ONCE // len(self._candidates))
         for start in range(0, len(block), at_once):
             self._add(block.at(slice(start, start + at_once)))
@@ -207,20 +217,20 @@ class _Tally:
         self._row = np.where(worse, block.rows[shares.argmax(axis=0)], self._row)
         self._share = np.maximum(self._share, shares.max(axis=0))
 
-    def matches(self, source: Source) -> tuple[Match, ...]:
-        """Those that fit every row, or the nearest alone."""
+    def answers(self, source: Source) -> tuple[Answer, ...]:
+        """The candidates that fit every row, or only the nearest."""
         found = [
-            (self._match(row, column, reading, source), float(self._share[row, column]))
+            (self._answer(row, column, reading, source), float(self._share[row, column]))
             for row, readings in enumerate(self._candidates.grid())
             for column, reading in enumerate(readings)
             if reading in self._readings
         ]
-        fitting = [match for match, _ in found if match.fits]
+        fitting = [answer for answer, _ in found if answer.fits]
         nearest, _ = min(found, key=lambda pair: (-pair[0].fitting, pair[1]))
-        return tuple(sorted(fitting, key=lambda m: m.reading.plainness())) or (nearest,)
+        return tuple(sorted(fitting, key=lambda a: a.reading.plainness())) or (nearest,)
 
-    def _match(self, row: int, column: int, reading: Reading, source: Source) -> Match:
-        return Match(
+    def _answer(self, row: int, column: int, reading: Reading, source: Source) -> Answer:
+        return Answer(
             reading=reading,
             residual=float(self._angle[row]),
             velocity_residual=float(self._velocity[row, column]) if reading.velocity else None,

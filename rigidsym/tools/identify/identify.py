@@ -1,31 +1,47 @@
-"""Which convention do these numbers follow? The way into this folder."""
+"""Which convention do these numbers follow? The entry to this folder."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from numpy.typing import ArrayLike
 
+from rigidsym.system.progress import Progress
 from rigidsym.tools.identify import report
-from rigidsym.tools.identify.fit import Match, Progress, fit
+from rigidsym.tools.identify.fit import Answer, fit
 from rigidsym.tools.identify.readings import ANGLE_NAMES, VELOCITIES, distinct
-from rigidsym.tools.identify.result import Answer, Findings
-from rigidsym.tools.identify.separate import separation
+from rigidsym.tools.identify.separate import Separation, separation
 from rigidsym.tools.identify.sources import Source, from_arrays, from_file
+from rigidsym.tools.identify.tolerance import Tolerance
 
 
-class Identification(Findings):
-    """The findings, with their two ways out: text and plain data."""
+@dataclass(frozen=True, kw_only=True)
+class Identification:
+    """Every reading that fits, the plainest first; if none does, the nearest."""
+
+    answers: tuple[Answer, ...]
+    nearest: Answer | None  # if nothing fits
+    tolerance: Tolerance
+    samples: int
+    tried: int  # readings that differ as functions of the data
+    names: tuple[str, ...]  # of the angle columns
+    converted: tuple[str, ...]  # columns whose unit was converted
+    has_velocity: bool  # rates and Ω were given
+    further: Separation | None  # None if one reading is left, and if nothing separates them
+
+    @property
+    def fits(self) -> bool:
+        return bool(self.answers)
 
     def text(self, *, everything: bool = False) -> str:
-        """What `rigidsym identify` shows; `everything` leaves nothing out."""
+        """The report of `rigidsym identify`; with `everything`, that of --all."""
         return report.text(self, everything=everything)
 
     def record(self) -> dict[str, Any]:
-        """What `rigidsym identify --json` shows."""
+        """The report of `rigidsym identify --json`, as plain data."""
         return report.record(self)
 
     def __str__(self) -> str:
@@ -42,15 +58,17 @@ def identify(
     names: Sequence[str] = ANGLE_NAMES,
     tolerance: float | None = None,
 ) -> Identification:
-    """Every convention in which these samples are right.
+    """Every convention that reproduces these samples.
 
-    `angles` (n, 3) or (3,) in whatever order and unit; `matrix` (n, 3, 3), or `quaternion`
+    `angles` (n, 3) or (3,) in any order and unit; `matrix` (n, 3, 3), or `quaternion`
     (n, 4), scalar first or last; `rates` (n, 3) of the angles together with `omega` (n, 3), the
     angular velocity. `names` are those of the angles, for the report. `tolerance` in radians
     (and as a share of the largest |Ω|); without it, what the digits of the data allow. A memory
-    map is read piece by piece.
+    map is read in chunks. `matrix` and `quaternion` may be a Rotation of SciPy.
 
-    That nothing fits is an answer: `fits` is false then, and `nearest` is the nearest reading.
+    If no plain reading fits, the axes of space and body are permuted and reversed (NED and ENU,
+    FRD and FLU), and constant misalignments are tried. If nothing fits, `fits` is false and
+    `nearest` is the nearest reading.
     Raises SampleError for samples that are not finite, not rotations, or of the wrong shape.
     """
     given = {
@@ -84,9 +102,9 @@ def identify_file(
 def identify_source(
     source: Source, *, tolerance: float | None = None, progress: Progress | None = None
 ) -> Identification:
-    """The same for anything that gives rows."""
+    """The same for any source of samples."""
     outcome = fit(source, tolerance, progress)
-    answers = tuple(map(_answer, outcome.matches))
+    answers = outcome.answers
     has_velocity = answers[0].reading.velocity is not None
     is_fit = answers[0].fits
     return Identification(
@@ -97,13 +115,10 @@ def identify_source(
         tried=len(list(distinct(source.columns.layouts)))
         * (len(VELOCITIES) if has_velocity else 1),
         names=source.columns.names,
+        converted=source.columns.converted,
         has_velocity=has_velocity,
         further=separation([answer.reading for answer in answers], outcome),
     )
-
-
-def _answer(match: Match) -> Answer:
-    return Answer(**{field.name: getattr(match, field.name) for field in fields(match)})
 
 
 def _count(layouts: Sequence[bool | None], has_velocity: bool) -> int:

@@ -1,7 +1,7 @@
 """Readings: what three angle columns, a matrix or quaternion, and an angular velocity may mean.
 
-Data alone, without NumPy: what a reading is, which readings are one function of the data in other
-words, and the list of those that are not.
+Only data, without NumPy: what a reading is, which readings are the same function of the data,
+and the list of different ones.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ _FACTORS = {"": 1.0, RATES_IN_DEGREES: pi / 180, RATES_IN_RADIANS: 180 / pi}
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Velocity:
-    """How three numbers are read as the angular velocity of the rotation R of the same reading."""
+    """One convention for three components of the angular velocity of R."""
 
     frame: Frame  # of the components
     is_opposite: bool = False  # −Ω: the velocity of the space axes as seen from the body
-    units: str = ""  # in words, where rates and Ω are not in one unit
+    units: str = ""  # in words, if rates and Ω differ in their unit
 
     @property
     def factor(self) -> float:
@@ -77,7 +77,7 @@ class Reading:
     Turn k is about the axis `sequence[k]`, by the angle `signs[k]` · column `columns[k]`; upper
     case turns about the turning axes (intrinsic), lower case about the fixed ones (extrinsic).
     The product R of the turns takes body to space components. The matrix of the data is R, or Rᵀ
-    where the reading is passive; the quaternion is that of R, or its conjugate.
+    if the reading is passive; the quaternion is that of R, or its conjugate.
     """
 
     sequence: str  # ZYX, zyx
@@ -99,7 +99,7 @@ class Reading:
 
     @property
     def scalar_words(self) -> str:
-        """Where the scalar of a quaternion stands; empty for a matrix."""
+        """The position of the scalar of a quaternion; empty for a matrix."""
         if self.scalar_last is None:
             return ""
         return "scalar last" if self.scalar_last else "scalar first"
@@ -120,11 +120,11 @@ class Reading:
 
     @property
     def orientation(self) -> Reading:
-        """The reading without that of Ω."""
+        """The reading without Ω."""
         return self if self.velocity is None else replace(self, velocity=None)
 
     def in_other_manner(self) -> Reading:
-        """The same R by turns about the other axes: intrinsic ZYX is extrinsic xyz backwards."""
+        """The same R with the other kind of axes: intrinsic ZYX is extrinsic xyz, reversed."""
         return replace(
             self,
             sequence=self.sequence[::-1].swapcase(),
@@ -133,7 +133,7 @@ class Reading:
         )
 
     def in_other_direction(self) -> Reading:
-        """The same data from Rᵀ, whose turns are those of R backwards by the opposite angles."""
+        """The same data from Rᵀ, which has the turns of R reversed, by the opposite angles."""
         first, second, third = self.signs
         return replace(
             self,
@@ -159,7 +159,7 @@ class Reading:
         )
 
     def intrinsic(self) -> Reading:
-        """The same R by turns about the turning axes, in the order in which they are multiplied."""
+        """The same R by turns about the turning axes, in the order of multiplication."""
         return self if self.is_intrinsic else self.in_other_manner()
 
     def active(self) -> Reading:
@@ -198,7 +198,7 @@ class Reading:
         return ", ".join(filter(None, parts))
 
     def brief(self, names: Sequence[str] = ANGLE_NAMES) -> str:
-        """What tells it from its aliases."""
+        """The parts in which it differs from its aliases."""
         velocity = [self.velocity.of_what] if self.velocity else []
         return ", ".join([*self._parts(names), *self.frames.words(), *velocity])
 
@@ -210,7 +210,7 @@ class Reading:
         )
 
     def product(self, names: Sequence[str] = ANGLE_NAMES) -> str:
-        """ "Rz(yaw) Ry(pitch) Rx(roll)", or its transpose where the reading is passive."""
+        """ "Rz(yaw) Ry(pitch) Rx(roll)", or its transpose if the reading is passive."""
         turns = self.intrinsic()
         angles = turns._angles(names)
         text = " ".join(

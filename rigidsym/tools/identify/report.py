@@ -1,23 +1,26 @@
-"""Findings for people, and as plain data for JSON."""
+"""An identification as text for people, and as plain data for JSON."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import degrees
 from textwrap import indent
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rigidsym.tools.identify.readings import Reading
-from rigidsym.tools.identify.result import Answer, Findings
 from rigidsym.tools.identify.separate import FurtherSample, Separation
+
+if TYPE_CHECKING:
+    from rigidsym.tools.identify.fit import Answer
+    from rigidsym.tools.identify.identify import Identification
 
 SCHEMA = "rigidsym.identification"
 SCHEMA_VERSION = 1
 _MOST_SHOWN = 6
-_ACCEPTABLE = 0.2  # radians; a nearest reading further off is no candidate
+_ACCEPTABLE = 0.2  # radians; no tolerance is suggested for a nearest reading further off
 
 
-def text(found: Findings, *, everything: bool = False) -> str:
+def text(found: Identification, *, everything: bool = False) -> str:
     """The text for a terminal, in 80 columns unless the names of the angles are long."""
     if found.nearest:
         lines = _no_fit(found, found.nearest)
@@ -28,7 +31,7 @@ def text(found: Findings, *, everything: bool = False) -> str:
     return "\n".join(lines)
 
 
-def _single(found: Findings, answer: Answer) -> Iterator[str]:
+def _single(found: Identification, answer: Answer) -> Iterator[str]:
     yield from _wrapped(answer.reading.words(found.names), "")
     same, *others = answer.aliases
     yield from _wrapped("= " + same.brief(found.names), "")
@@ -43,11 +46,13 @@ def _single(found: Findings, answer: Answer) -> Iterator[str]:
     yield from _calls(answer)
 
 
-def _facts(found: Findings, answer: Answer) -> Iterator[str]:
+def _facts(found: Identification, answer: Answer) -> Iterator[str]:
     is_matrix = answer.reading.scalar_last is None
     yield f"{'matrix =' if is_matrix else 'quaternion of'} {answer.reading.product(found.names)}"
     yield f"fits {_samples(found.samples)}: {_residual(answer)}"
     yield f"tolerance {_tolerance(found)}"
+    if found.converted:
+        yield f"converted to {answer.reading.unit}: {', '.join(found.converted)}"
 
 
 def _calls(answer: Answer) -> Iterator[str]:
@@ -58,7 +63,7 @@ def _calls(answer: Answer) -> Iterator[str]:
         yield indent(statements, "    ")
 
 
-def _several(found: Findings, *, everything: bool) -> Iterator[str]:
+def _several(found: Identification, *, everything: bool) -> Iterator[str]:
     count = len(found.answers)
     shown = found.answers if everything else found.answers[:_MOST_SHOWN]
     common = _common([answer.reading for answer in found.answers])
@@ -91,7 +96,7 @@ def _common(readings: Sequence[Reading]) -> str:
     return ", ".join(word for column in columns if len(column) == 1 for word in column if word)
 
 
-def _further(found: Findings, further: Separation | None) -> Iterator[str]:
+def _further(found: Identification, further: Separation | None) -> Iterator[str]:
     if further is None:
         yield "The tolerance is too large for any further sample to tell all of them apart."
         return
@@ -111,7 +116,7 @@ def _sample(names: Sequence[str], sample: FurtherSample) -> str:
     return said
 
 
-def _apart(found: Findings, further: Separation) -> str:
+def _apart(found: Identification, further: Separation) -> str:
     parts = []
     if _differ_in_orientation(found):
         parts.append(f"any two orientations are {degrees(further.difference):.2g}° or more apart")
@@ -120,11 +125,11 @@ def _apart(found: Findings, further: Separation) -> str:
     return " and ".join(parts)
 
 
-def _differ_in_orientation(found: Findings) -> bool:
+def _differ_in_orientation(found: Identification) -> bool:
     return len({answer.reading.orientation for answer in found.answers}) > 1
 
 
-def _no_fit(found: Findings, nearest: Answer) -> Iterator[str]:
+def _no_fit(found: Identification, nearest: Answer) -> Iterator[str]:
     yield f"No convention fits {_samples(found.samples)}: {found.tried} were tried,"
     yield "also with permuted or reversed axes and with misaligned frames."
     yield f"tolerance {_tolerance(found)}"
@@ -143,7 +148,7 @@ def _no_fit(found: Findings, nearest: Answer) -> Iterator[str]:
 
 
 def _above(value: float) -> str:
-    """A little more than a value, in two digits."""
+    """A value rounded up to two digits or so."""
     return f"{value * 1.05:.2g}"
 
 
@@ -156,7 +161,7 @@ def _residual(answer: Answer) -> str:
     return said
 
 
-def _tolerance(found: Findings) -> str:
+def _tolerance(found: Identification) -> str:
     tolerance = found.tolerance
     said = f"{tolerance.orientation:.2g} rad"
     if found.has_velocity:
@@ -180,7 +185,7 @@ def _wrapped(words: str, head: str, width: int = 80) -> Iterator[str]:
     yield line
 
 
-def record(found: Findings) -> dict[str, Any]:
+def record(found: Identification) -> dict[str, Any]:
     """Everything as dictionaries, lists, texts and numbers."""
     tolerance = found.tolerance
     return {

@@ -14,12 +14,12 @@ from rigidsym.data.text import MOST_SHOWN
 from rigidsym.errors import DataError
 from rigidsym.tools.identify.turns import Array, quaternion_of
 
-SLACK = 0.05  # how far M Mᵀ may be from 1, and |q| from 1, before the data are refused
+SLACK = 0.05  # how far M Mᵀ may be from 1, and |q| from 1, before data are refused
 _WIDTHS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
 
 
 class SampleError(DataError):
-    """Samples that cannot be read: all faults at once, each with its place."""
+    """Samples that cannot be read: all faults at once, each with its line or number."""
 
     def __init__(
         self, faults: Sequence[str], *, count: int | None = None, path: Path | None = None
@@ -39,16 +39,16 @@ class SampleError(DataError):
 
 
 class OptionError(SampleError):
-    """Samples among the options of a command that cannot be read, or none there."""
+    """Samples in the options of a command that cannot be read, or no samples."""
 
     exit_code: ClassVar[int] = 2
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Block:
-    """Some rows of the data as they came."""
+    """Some rows of the data, as given."""
 
-    rows: NDArray[np.intp]  # places in the data, (n,)
+    rows: NDArray[np.intp]  # their numbers in the data, (n,)
     angles: Array  # (n, 3)
     attitude: Array  # (n, 9): matrices row by row; (n, 4): quaternions
     rates: Array | None = None  # (n, 3), of the angles
@@ -64,7 +64,7 @@ class Block:
 
     @property
     def parts(self) -> dict[str, Array]:
-        """What there is, by name."""
+        """The parts of the data by name."""
         attitude = "matrix" if self.is_matrix else "quaternion"
         named = {"angles": self.angles, attitude: self.attitude}
         if self.rates is not None and self.omega is not None:
@@ -143,6 +143,6 @@ def _what_is_wrong(block: Block, k: int) -> str:
     if determinant < 0 and defect <= SLACK:
         return f"matrix: not a rotation but a reflection, its determinant is {determinant:.4g}"
     return (
-        f"matrix: not a rotation, an entry of M Mᵀ is {defect:.2g} off that of the unit matrix"
+        f"matrix: not a rotation, M Mᵀ differs from 1 by {defect:.2g} in an entry"
         f" (det M = {determinant:.4g})"
     )

@@ -1,4 +1,4 @@
-"""Further samples that tell apart the readings that are left: computed, and verified."""
+"""Further samples that tell the remaining readings apart: computed and verified."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ _DEGREES = (15, 20, 25, 35, 40, 50, 60, 65, 70, 80)
 _RADIANS = (0.2, 0.3, 0.4, 0.5, 0.7, 0.8, 1.0, 1.2, 1.3)
 _RATES = (1.0, 2.0, 3.0)
 _MAGNITUDES = (1.0, 10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 1e4, 1e5)
-_CLEAR = 3.0  # times the tolerance: two readings less than twice it apart might fit one sample
-_PAIRS = 8_000_000  # compared in the search at most, unless that leaves fewer than
-_FEWEST = 6  # candidates
+_CLEAR = 3.0  # tolerances; two readings less than two apart might fit one sample
+_PAIRS = 8_000_000  # compared in the search at most
+_FEWEST = 6  # candidates, even if that means more pairs
 _MOST_SAMPLES = 5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class FurtherSample:
-    """Numbers for the angle columns and, where Ω is asked for, for their rates."""
+    """Values for the angle columns and, if Ω is given, for their rates."""
 
     angles: Triple
     rates: Triple | None = None
@@ -44,7 +44,7 @@ class Separation:
 
 
 def separation(readings: Sequence[Reading], outcome: Outcome) -> Separation | None:
-    """The further samples, as few as can be found, that leave one of these readings.
+    """Further samples, as few as can be found, that leave one of these readings.
 
     None where one is left already, and where the tolerance is too wide for any sample.
     """
@@ -65,7 +65,7 @@ def separation(readings: Sequence[Reading], outcome: Outcome) -> Separation | No
 
 
 def _angles(orientations: Sequence[Reading], clear: float) -> tuple[list[Triple], float]:
-    """Angles at which the nearest two of the readings are far apart; more than once if need be."""
+    """Angles at which the closest two readings are far apart; several samples if needed."""
     candidates = _candidates(orientations)
     if len(orientations) == 1:
         return candidates[:1], pi
@@ -88,7 +88,7 @@ def _candidates(orientations: Sequence[Reading]) -> list[Triple]:
     in_radians = not any(reading.degrees for reading in orientations)
     triples = np.array(list(permutations(_RADIANS if in_radians else _DEGREES, 3)), float)
     count = max(_FEWEST, _PAIRS // len(orientations) ** 2)
-    # In an order of chance, but always the same one, so that a few of them are a fair choice.
+    # A random order, always the same one, so that the first few are a fair choice.
     some = np.random.default_rng(17).permutation(triples)[:count]
     return [(a, b, c) for a, b, c in some.tolist()]
 
@@ -101,7 +101,7 @@ def _closeness(quaternions: Array) -> Array:
 
 
 def _closest(known: Array, quaternions: Array) -> tuple[float, tuple[int, int]]:
-    """How close the closest two are even where they are furthest, and which they are."""
+    """How close the closest two readings remain over all samples, and which they are."""
     joint = np.minimum(known, _closeness(quaternions))
     place = int(joint.argmax())
     return float(joint.flat[place]), divmod(place, len(joint))
@@ -122,7 +122,7 @@ def _rates(
 
 
 def _velocities(readings: Sequence[Reading], angles: Triple) -> Array:
-    """Ω as each reading has it in the data, at _RATES; NaN where it is none of those left.
+    """Ω as each reading has it in the data, at _RATES; NaN for a reading that is excluded.
 
     (readings of the orientation, readings of Ω, 3)
     """

@@ -1,4 +1,4 @@
-"""How far data may be from a reading: what the rounding of the printed numbers explains.
+"""How far data may be from a reading: as far as the rounding of printed numbers explains.
 
 A matrix whose entries are each off by at most r is off by a rotation of at most 3 r, a quaternion
 by 4 r, and angles by the sum of their roundings; these are bounds, not estimates.
@@ -15,9 +15,9 @@ import numpy as np
 from rigidsym.tools.identify.samples import Block, SampleError
 from rigidsym.tools.identify.turns import Array
 
-FLOOR = 1e-6  # nothing is asked for below it, since data may have been in single precision
+FLOOR = 1e-6  # the least tolerance, since data may have been in single precision
 _EXACT = 1e-9  # a matrix this close to orthogonal was not rounded
-_MOST_FOR_ANGLES = 0.05  # radians; angles as coarse as that were rather given exactly
+_MOST_FOR_ANGLES = 0.05  # radians; angles as coarse as that are taken to be exact
 _SPAN = {"matrix": 3.0, "quaternion": 4.0}
 
 
@@ -25,8 +25,8 @@ _SPAN = {"matrix": 3.0, "quaternion": 4.0}
 class Tolerance:
     """Radians for orientations, by the unit of the angles; a share of the largest |Ω| for Ω."""
 
-    radians: float  # where a reading takes the angles for radians
-    degrees: float  # where it takes them for degrees; in radians too
+    radians: float  # if a reading takes the angles to be radians
+    degrees: float  # if it takes them to be degrees; in radians too
     velocity: float
     because: str  # in words
 
@@ -41,9 +41,9 @@ class Tolerance:
 def tolerances(
     asked: float | None, block: Block, coarseness: float, scale: float
 ) -> Iterator[Tolerance]:
-    """What to try, one after the other, until a reading fits.
+    """Tolerances to try, one after the other, until a reading fits.
 
-    Where the user asks for none: first the angles are taken to be exact, then to be rounded as
+    If the user asks for none, first the angles are taken to be exact, then to be rounded as
     they are printed. `scale` is the largest |Ω|.
     """
     if asked is not None:
@@ -75,7 +75,7 @@ def tolerances(
 
 
 def check_tolerance(asked: float | None) -> None:
-    """Raises SampleError for what is not a positive number."""
+    """Raises SampleError for a tolerance that is not between 0 and π."""
     if asked is not None and not 0 < asked < pi:
         raise SampleError([f"the tolerance is an angle between 0 and π radians, got {asked:g}"])
 

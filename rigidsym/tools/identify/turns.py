@@ -14,7 +14,7 @@ _AXES = "XYZ"
 
 
 class Table:
-    """Many readings at once, as arrays: every one is brought to active turns about turning axes."""
+    """Many readings as arrays; each is rewritten with active turns about turning axes."""
 
     def __init__(self, readings: Sequence[Reading]) -> None:
         self.readings = tuple(readings)
@@ -82,7 +82,7 @@ class Table:
 
 
 def _places(keys: Sequence[str]) -> dict[str, NDArray[np.intp]]:
-    """Where each key stands."""
+    """The positions of each key."""
     return {key: np.flatnonzero(np.array(keys) == key) for key in dict.fromkeys(keys)}
 
 

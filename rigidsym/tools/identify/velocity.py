@@ -16,7 +16,7 @@ _FRAMES = ("space", "body")
 
 @cache
 def _kernels(sequence: str) -> ModuleType:
-    # SymPy is loaded here, so that orientations alone are identified without it.
+    # Loaded here, so that identifying orientations does not need SymPy.
     from rigidsym.models.euler_angles import EulerAngles
     from rigidsym.motion import derive
 
@@ -50,7 +50,7 @@ def angular_velocities(readings: Sequence[Reading], angles: Array, rates: Array)
 
 
 def as_given(omega: Array, velocities: Sequence[Velocity]) -> Array:
-    """Ω as the data give it if each of these is how it is read: (..., 2, 3) to (..., v, 3)."""
+    """Ω as the data have it under each reading of Ω: (..., 2, 3) to (..., v, 3)."""
     frames = [_FRAMES.index(velocity.frame) for velocity in velocities]
     factors = np.array([[velocity.factor] for velocity in velocities])
     return np.asarray(omega[..., frames, :] * factors)
