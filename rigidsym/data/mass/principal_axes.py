@@ -28,9 +28,9 @@ class PrincipalAxes:
         if high - low <= slack:
             return "All principal moments are equal: every axis through the centre is principal."
         if middle - low <= slack:
-            return "The first two principal moments are equal: all axes normal to the third are principal."
+            return "The first two principal moments are equal, and all axes normal to the third principal."
         if high - middle <= slack:
-            return "The last two principal moments are equal: all axes normal to the first are principal."
+            return "The last two principal moments are equal, and all axes normal to the first principal."
         return ""
 
 
