@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from rigidsym.errors import BodyError
 
 Array = NDArray[np.float64]
+_EQUAL_PAIR = "The {} two principal moments are equal: all axes normal to the {} are principal."
 _EQUAL = 1e-9  # of the largest moment: closer moments count as equal
 
 
@@ -28,9 +29,9 @@ class PrincipalAxes:
         if high - low <= slack:
             return "All principal moments are equal: every axis through the centre is principal."
         if middle - low <= slack:
-            return "The first two principal moments are equal, and all axes normal to the third principal."
+            return _EQUAL_PAIR.format("first", "third")
         if high - middle <= slack:
-            return "The last two principal moments are equal, and all axes normal to the first principal."
+            return _EQUAL_PAIR.format("last", "first")
         return ""
 
 
