@@ -60,8 +60,9 @@ class UnicodePen(Pen):
 
     def indexed(self, base: Piece, index: Piece) -> Piece:
         """An index in small figures, or behind a low line."""
-        is_small = all(ord(c) in _BELOW for c in index.text)
-        below = index.text.translate(_BELOW) if is_small else f"_{index.text}"
+        close = index.text.replace(" ", "")
+        is_small = all(ord(c) in _BELOW for c in close)
+        below = close.translate(_BELOW) if is_small else f"_{index.text}"
         return self._atom(base.text + below)
 
     def number(self, digits: str) -> Piece:

@@ -123,6 +123,7 @@ class Found:
     proofs: tuple[Proof, ...] = ()
     vector_form: VectorForm | None = None
     definition: Formula | None = None  # if the step says better what it follows from
+    recursion: Formula | None = None  # over the turns, if the entries are names of its parts
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,6 +144,7 @@ class Step:
     because: str  # a sentence: how it follows from the steps before
     proofs: tuple[Proof, ...]
     vector_form: VectorForm | None = None  # where the coordinates form a vector
+    recursion: Formula | None = None  # shown for the entries, if these are names of its parts
     printer: StepPrinter | None = field(default=None, repr=False, compare=False)  # set by Motion
 
     def latex(self) -> str:

@@ -198,4 +198,5 @@ def _numbered(
             because=step.because,
             proofs=step.proofs,
             vector_form=step.vector_form,
+            recursion=step.recursion,
         )

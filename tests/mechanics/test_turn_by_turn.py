@@ -178,3 +178,12 @@ def test_turns_whose_axes_stay_in_a_plane_have_no_right_inverse():
     assert "inverse_rate_matrix_space" not in dict(flat.steps())
     full = TurnByTurn(rs.rotation_from("z(a) z(b) z(c) x(d) z(e)"))
     assert "inverse_rate_matrix_space" in dict(full.steps())
+
+
+def test_a_long_chain_is_shown_in_vector_form():
+    motion = rs.derive(chain(12))
+    shown = {step.quantity.name: step.text() for step in motion.steps}
+    assert "R = P₁₂, Pₖ = Pₖ₋₁ Tₖ" in shown["rotation_matrix"]
+    assert "Ω = u₁, uₖ = θ̇ₖ nₖ + Tₖ uₖ₊₁" in shown["angular_velocity_space"]
+    assert "W = (n₁, P₁ n₂, …, P₁₁ n₁₂)" in shown["rate_matrix_space"]
+    assert not motion.singularities.is_solved

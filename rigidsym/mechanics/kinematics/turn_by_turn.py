@@ -9,7 +9,8 @@ from types import MappingProxyType
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Bracket, Formula, Symbol
 from rigidsym.mechanics import claims
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.counterexamples import points
@@ -95,11 +96,16 @@ class TurnByTurn:
         symbol = COSINES if self.model.passive else ROTATION
         return Found(
             self._shown(self.recursion.partial[-1]),
-            "The turns are multiplied one after the other, from left to right: Pₖ = Pₖ₋₁ Tₖ"
-            + (", and R = Pₙ is transposed." if self.model.passive else " and R = Pₙ."),
+            "Turn k has the matrix Tₖ, the axis nₖ and the angle θₖ; the turns are multiplied one "
+            "after the other, from left to right"
+            + (", and the product is transposed." if self.model.passive else "."),
             (
                 self._holds(claims.orthogonal(symbol), *_TURNS),
                 self._holds(claims.proper(symbol), *_TURNS),
+            ),
+            recursion=formula(
+                r"#1, \quad \mathbf{P}_k = \mathbf{P}_{k-1}\,\mathbf{T}_k",
+                self._shown_formula(formula(rf"\mathbf{{P}}_{{{self.recursion.count}}}")),
             ),
         )
 
@@ -110,6 +116,7 @@ class TurnByTurn:
             self._shown(spin * self.recursion.partial[-1]),
             "The derivative is C(Ω) R" + (", transposed." if self.model.passive else "."),
             (self._holds(claims.stays_orthogonal(symbol), *_SPACE), self._is_operator()),
+            recursion=self._shown_formula(formula(r"\mathbf{C}(#1)\,#2", SPACE.omega, ROTATION)),
         )
 
     def spin_matrix(self) -> Found:
@@ -122,7 +129,10 @@ class TurnByTurn:
             operator = self._is_operator()
             because = "The derivative times the transpose is the operator of Ω."
         skew = self._holds(claims.skew(symbol), *(_BODY if self.model.passive else _SPACE))
-        return Found(spin, because, (skew, operator))
+        shown = formula(r"-\mathbf{C}(#1)", BODY.omega)
+        if not self.model.passive:
+            shown = formula(r"\mathbf{C}(#1)", SPACE.omega)
+        return Found(spin, because, (skew, operator), recursion=shown)
 
     def _is_operator(self) -> Proof:
         return self._holds(claims.is_operator(SPACE.omega, claims.spin_of(ROTATION)), *_SPACE)
@@ -130,17 +140,24 @@ class TurnByTurn:
     def angular_velocity_space(self) -> Found:
         return Found(
             self.recursion.omega_space[0],
-            "Each turn adds its rate about its own axis, and turns what the later turns add: "
-            "uₖ = θ̇ₖ nₖ + Tₖ uₖ₊₁ and Ω = u₁.",
+            "Each turn adds its rate about its own axis, and turns what the later turns add.",
             (self._is_operator(),),
+            recursion=formula(
+                r"\mathbf{u}_1, \quad "
+                r"\mathbf{u}_k = \dot{\theta}_k\,\mathbf{n}_k + \mathbf{T}_k\,\mathbf{u}_{k+1}"
+            ),
         )
 
     def angular_velocity_body(self) -> Found:
         claim = claims.rotates(ROTATION, BODY.omega, SPACE.omega)
         return Found(
             self.recursion.omega_body[-1],
-            "Along the axes of the body: wₖ = θ̇ₖ nₖ + Tₖᵀ wₖ₋₁ and Ω′ = wₙ.",
+            "Seen from the body each turn moves what the turns before it have added.",
             (self._holds(claim, *_SPACE, *_BODY),),
+            recursion=formula(
+                rf"\mathbf{{w}}_{{{self.recursion.count}}}, \quad \mathbf{{w}}_k = "
+                r"\dot{\theta}_k\,\mathbf{n}_k + \mathbf{T}_k^{\mathsf T}\,\mathbf{w}_{k-1}"
+            ),
         )
 
     def rate_matrix(self, frame: Frame) -> Found:
@@ -150,6 +167,7 @@ class TurnByTurn:
             self._rate_matrix(frame),
             "The columns of the rate matrix are the axes of the turns.",
             (self._holds(claim, *(_SPACE if frame is SPACE else _BODY), law),),
+            recursion=self._columns(frame),
         )
 
     def inverse(self, frame: Frame) -> Found | None:
@@ -166,6 +184,9 @@ class TurnByTurn:
             "q̇ is not unique, since there are more coordinates than dimensions; we choose the "
             "solution of least norm.",
             self._inverts(rows, claims.inverse_of(frame.matrix, self._inverse_symbol(frame))),
+            recursion=formula(
+                r"#2\left(#1\,#2\right)^{-1}", frame.matrix, claims.transpose_of(frame.matrix)
+            ),
         )
 
     def rates(self, frame: Frame) -> Found | None:
@@ -177,6 +198,7 @@ class TurnByTurn:
             self.recursion.least_rates(frame.name, rows, self._given[frame.name]),
             "The right inverse is applied to a given angular velocity.",
             self._inverts(rows, claim),
+            recursion=formula(r"#1\,#2", self._inverse_symbol(frame), frame.omega),
         )
 
     def acceleration(self, frame: Frame) -> Found:
@@ -185,14 +207,25 @@ class TurnByTurn:
             claim = claims.is_operator(ALPHA, claims.rate_of_whole(claims.spin_of(ROTATION)))
             return Found(
                 recursion.alpha_space[0],
-                "The recursion of Ω is differentiated: u̇ₖ = θ̈ₖ nₖ + θ̇ₖ nₖ × uₖ + Tₖ u̇ₖ₊₁.",
+                "The recursion of the angular velocity is differentiated.",
                 (self._holds(claim, *_SPACE, "alpha_space"), self._is_operator()),
+                recursion=formula(
+                    r"\dot{\mathbf{u}}_1, \quad "
+                    r"\dot{\mathbf{u}}_k = \ddot{\theta}_k\,\mathbf{n}_k + "
+                    r"\dot{\theta}_k\,\mathbf{n}_k\times\mathbf{u}_k + "
+                    r"\mathbf{T}_k\,\dot{\mathbf{u}}_{k+1}"
+                ),
             )
         claim = claims.rotates(ROTATION, ALPHA_BODY, ALPHA)
         return Found(
             recursion.alpha_body[-1],
-            "The recursion of Ω′ is differentiated: ẇₖ = θ̈ₖ nₖ − θ̇ₖ nₖ × wₖ + Tₖᵀ ẇₖ₋₁.",
+            "The recursion of its body components is differentiated.",
             (self._holds(claim, *_SPACE, *_BODY, "alpha_space", "alpha_body"),),
+            recursion=formula(
+                rf"\dot{{\mathbf{{w}}}}_{{{recursion.count}}}, \quad \dot{{\mathbf{{w}}}}_k = "
+                r"\ddot{\theta}_k\,\mathbf{n}_k - \dot{\theta}_k\,\mathbf{n}_k\times\mathbf{w}_k + "
+                r"\mathbf{T}_k^{\mathsf T}\,\dot{\mathbf{w}}_{k-1}"
+            ),
         )
 
     def singularities(self) -> Singularities:
@@ -202,7 +235,7 @@ class TurnByTurn:
         return Singularities(
             rank=3 if rows else min(2, len(self.model.coordinates)),
             measure="det W Wᵀ" if rows else "minors",
-            determinant=determinant,
+            determinant=None,  # a name of a recursion, which says nothing by itself
             minors=() if determinant is None else (sp.sqrt(determinant),),
             points=(),
             is_solved=False,
@@ -212,6 +245,27 @@ class TurnByTurn:
 
     def _shown(self, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
         return sp.ImmutableMatrix(matrix.T if self.model.passive else matrix)
+
+    def _shown_formula(self, matrix: Formula) -> Formula:
+        if not self.model.passive:
+            return matrix
+        whole = matrix if isinstance(matrix, Symbol) else Bracket(matrix)
+        return claims.transpose_of(whole)
+
+    def _columns(self, frame: Frame) -> Formula | None:
+        """(n₁, P₁ n₂, P₂ n₃, ...); None if an angle is not one coordinate by itself."""
+        if tuple(self.recursion.angles) != self.model.coordinates:
+            return None
+        last = self.recursion.count
+        columns = [r"\mathbf{n}_1", r"\mathbf{P}_1\,\mathbf{n}_2", r"\ldots"]
+        columns.append(rf"\mathbf{{P}}_{{{last - 1}}}\,\mathbf{{n}}_{{{last}}}")
+        if frame is BODY:
+            columns = [r"\mathbf{B}_2^{\mathsf T}\,\mathbf{n}_1", r"\ldots"]
+            columns += [rf"\mathbf{{B}}_{{{last}}}^{{\mathsf T}}\,\mathbf{{n}}_{{{last - 1}}}"]
+            columns += [rf"\mathbf{{n}}_{{{last}}}"]
+        after = r"" if frame is SPACE else r", \quad \mathbf{B}_k = \mathbf{T}_k\,\mathbf{B}_{k+1}"
+        row = " & ".join(columns)
+        return formula(rf"\begin{{pmatrix}} {row} \end{{pmatrix}}{after}")
 
     def _inverse_symbol(self, frame: Frame) -> Formula:
         return frame.inverse if len(self.model.coordinates) == 3 else frame.right_inverse

@@ -132,7 +132,9 @@ class _Steps:
     def _value(self, step: Step) -> Iterator[str]:
         names = entry_names(step, self.arguments)
         prefixes = self._prefixes(step)
-        if step.quantity.is_scalar:
+        if step.recursion is not None:
+            yield from self._scalar(prefixes[-1:], step.recursion)
+        elif step.quantity.is_scalar:
             yield from self._scalar(prefixes, formula_of(step.expression[0], self.letters))
         else:
             yield from self._matrix(prefixes, step.expression, names)

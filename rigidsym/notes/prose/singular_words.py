@@ -81,6 +81,11 @@ def failures(derivation: Derivation, found: Singularities) -> Iterator[Text]:
 
 def _zeros(found: Singularities, letters: Letters) -> Text:
     """Where the determinant vanishes, as far as that was decided."""
+    if found.determinant is None and not found.is_solved:
+        return (
+            "They fail where the axes of all turns lie in one plane; for so many turns these "
+            "orientations are not listed. The function singularity_margin is 0 there.",
+        )
     if found.determinant is None:
         return ("The rates follow without any divisor, so that they fail nowhere.",)
     points = [point for point in found.points if point.places]

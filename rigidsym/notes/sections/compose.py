@@ -273,9 +273,12 @@ def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
     """The numbered equation of a step."""
     quantity = step.quantity
     definition = () if not quantity.definition.text else (quantity.definition,)
+    is_matrix = not (quantity.is_scalar or step.recursion)
     return Equation(
-        sides=(quantity.symbol, *definition),
-        matrix=None if quantity.is_scalar else step.expression,
+        sides=(quantity.symbol, step.recursion)
+        if step.recursion
+        else (quantity.symbol, *definition),
+        matrix=step.expression if is_matrix else None,
         scalar=step.expression[0] if quantity.is_scalar else None,
         entries=entry_names(step, arguments),
         number=step.number,
