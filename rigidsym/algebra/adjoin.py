@@ -182,14 +182,15 @@ def roots_of(base: sp.Expr, degree: int) -> list[sp.Expr]:
 def is_uncertain(expression: sp.Expr, kind: Kind) -> bool:
     """Whether relations of a generator to the others may be missing.
 
-    √6 and √(x² + 1) may depend on what else there is, and so may the cosine of such a thing; a
-    function that the ring does not know depends on anything.
+    √6 and √(x² + 1) may depend on what else there is, and so may the cosine of such a thing, or
+    of a quotient; a function that the ring does not know depends on anything.
     """
     if kind in (Kind.RADICAL, Kind.OPAQUE):
         return True
     angle = expression.args[0] if kind in (Kind.SINE, Kind.COSINE) else sp.S.Zero
-    roots = any(not power.exp.is_Integer for power in angle.atoms(sp.Pow))
-    return roots or any(not is_time_function(f) for f in angle.atoms(sp.Function))
+    powers = (p for p in angle.atoms(sp.Pow) if not (p.exp.is_Integer and p.exp > 0))
+    functions = angle.atoms(sp.Function)
+    return any(powers) or any(not is_time_function(f) for f in functions)
 
 
 def is_highest(expression: sp.Expr, order: int) -> bool:

@@ -16,16 +16,87 @@ import sympy as sp
 from rigidsym.errors import AlgebraError
 
 Combination = dict[sp.Expr, sp.Rational]
+_NEARLY_ZERO = 1e-20  # beyond which a number is not zero, and its polynomial need not be found
 
 
 @lru_cache(maxsize=1024)
 def combination(argument: sp.Expr) -> Combination:
-    """{atom: rational coefficient} of an angle; the atom π carries a constant part."""
+    """{atom: rational coefficient} of an angle; the atom π carries a constant part.
+
+    Quotients that cancel and numbers that are zero in disguise are gone from it.
+    """
     terms = sp.expand(argument).as_coefficients_dict()
+    if any(map(_is_quotient, terms)):
+        terms = _cancelled(terms)
     for coefficient in terms.values():
         if not coefficient.is_Rational:
             raise not_exact(coefficient)
-    return {atom: coefficient for atom, coefficient in terms.items() if coefficient}
+    found = {atom: coefficient for atom, coefficient in terms.items() if coefficient}
+    return _without_zeros(found) if any(map(_has_root, found)) else found
+
+
+def reduced(angle: sp.Expr) -> sp.Expr:
+    """An angle without quotients that cancel and numbers that are zero; else as it is written."""
+    terms = sp.expand(angle).as_coefficients_dict()
+    if not any(_is_quotient(term) or _has_root(term) for term in terms):
+        return angle
+    found = combination(angle)
+    if found == {term: c for term, c in terms.items() if c}:
+        return angle
+    return sp.Add(*(coefficient * term for term, coefficient in found.items()))
+
+
+def is_sum_of(angle: sp.Expr, *parts: sp.Expr) -> bool:
+    """Whether an angle is made of the atoms of its parts."""
+    return set(combination(angle)) <= set().union(*map(combination, parts))
+
+
+def _is_quotient(term: sp.Expr) -> bool:
+    """Whether a term is divided by anything but a number."""
+    powers = (factor for factor in sp.Mul.make_args(term) if factor.is_Pow)
+    return any(p.exp.could_extract_minus_sign() and not p.base.is_number for p in powers)
+
+
+def _cancelled(terms: Combination) -> Combination:
+    """The terms with their quotients over one denominator, if that leaves fewer quotients."""
+    quotients = {term: c for term, c in terms.items() if _is_quotient(term)}
+    whole = sp.cancel(sp.Add(*(c * term for term, c in quotients.items())))
+    above, below = sp.fraction(whole)
+    again = sp.Add(*(term / below for term in sp.Add.make_args(sp.expand(above))))
+    fewer = again.as_coefficients_dict()
+    if sum(map(_is_quotient, fewer)) >= len(quotients):
+        return terms
+    rest = sp.Add(*(c * term for term, c in terms.items() if term not in quotients))
+    return sp.Add(rest, again).as_coefficients_dict()
+
+
+def _has_root(term: sp.Expr) -> bool:
+    return any(f.is_number and not f.is_Rational and f is not sp.pi for f in sp.Mul.make_args(term))
+
+
+def _without_zeros(terms: Combination) -> Combination:
+    """The terms without multiples of one thing by numbers that add up to zero."""
+    groups: dict[sp.Expr, Combination] = {}
+    for term, coefficient in terms.items():
+        number, rest = term.as_independent(*term.free_symbols, as_Add=False)
+        groups.setdefault(rest if term.free_symbols else sp.S.One, {})[term] = coefficient * (
+            number if term.free_symbols else term
+        )
+    kept = [group for group in groups.values() if not is_identically_zero(sp.Add(*group.values()))]
+    return {term: terms[term] for group in kept for term in group}
+
+
+def is_identically_zero(expression: sp.Expr) -> bool:
+    """Whether an expression vanishes by expansion or, of algebraic numbers, by its polynomial."""
+    if sp.expand(expression) == 0:
+        return True
+    if expression.has(sp.Function) and sp.expand(expression.rewrite(sp.exp)) == 0:
+        return True
+    if not expression.is_number or not expression.is_algebraic:
+        return False
+    return bool(
+        abs(sp.N(expression, 30)) < _NEARLY_ZERO and sp.minimal_polynomial(expression).is_Symbol
+    )
 
 
 def not_exact(number: sp.Float) -> AlgebraError:

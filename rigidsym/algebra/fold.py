@@ -13,6 +13,7 @@ from itertools import combinations
 
 import sympy as sp
 
+from rigidsym.algebra.angles import is_sum_of
 from rigidsym.algebra.ring import Monomial
 
 Angle = tuple[int, int]  # places of sine and cosine
@@ -42,6 +43,8 @@ def rules(angles: Sequence[Angle], expressions: Sequence[sp.Expr]) -> tuple[Rule
 
 def _of_two(a: Angle, b: Angle, expressions: Sequence[sp.Expr]) -> Iterator[Rule]:
     alpha, beta = expressions[a[0]].args[0], expressions[b[0]].args[0]
+    if not is_sum_of(alpha + beta, alpha, beta):
+        return  # the angles cancel in part, and the ring has other generators for their sum
     (s, c), (sine, cosine) = a, b
     plus, minus = (alpha, beta), (alpha, -beta)
     yield Rule((c, cosine), (s, sine), -1, sp.cos, plus)

@@ -20,8 +20,8 @@ from rigidsym.algebra.rational import Rationals
 from rigidsym.algebra.signs import Bounds, sign_within
 from rigidsym.errors import DerivationError, NotARotation
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.counterexamples import is_nonzero_somewhere
 from rigidsym.mechanics.derivation import Proof
+from rigidsym.mechanics.points.witness import Example, Witness, witness_for
 from rigidsym.models.rotation import Pullback
 from rigidsym.models.so3 import TIME
 
@@ -37,6 +37,8 @@ class Subject(Protocol):
     def constraints(self) -> tuple[sp.Expr, ...]: ...
     @property
     def pullback(self) -> Pullback | None: ...
+    @property
+    def example(self) -> Example: ...
 
 
 class Constants(NamedTuple):
@@ -46,6 +48,7 @@ class Constants(NamedTuple):
     constraints: tuple[sp.Expr, ...] = ()
     coordinates: tuple[sp.Expr, ...] = ()
     pullback: Pullback | None = None
+    example: Example = ()
 
 
 def identity(
@@ -61,8 +64,10 @@ class Prover:
     """Decides claims about one subject in its ring."""
 
     def __init__(self, subject: Subject, codec: Codec) -> None:
+        """Raises ModelError if there is no real configuration, so that nothing can be claimed."""
         self.subject = subject
         self.codec = codec
+        self.witness = self._witness()
 
     def vanishes(
         self, residual: RingMatrix, claim: Formula, *, divided_by: PolyElement | None = None
@@ -78,7 +83,7 @@ class Prover:
         left = self._decoded(residual)
         if self.subject.pullback is not None and self._pulled_back(left).is_zero():
             return self._unless_zero(divisors, claim)
-        if self._is_refuted(left):
+        if any(self._is_refuted(entry) for entry in residual.entries):
             raise DerivationError(
                 f"{self.subject.name}: {claim.text} is false; left over: {self._plain(left)}"
             )
@@ -144,9 +149,9 @@ class Prover:
 
     def _unless_zero(self, divisors: Iterable[PolyElement], claim: Formula) -> Proof:
         """Exact, unless a divisor may be zero everywhere; it is then what is left over."""
-        for divisor in () if self._is_decided else divisors:
-            left = self._decoded(RingMatrix.of(self.codec.ring, [[divisor]]))
-            if not self._is_refuted(left):
+        for divisor in divisors:
+            if not self._is_refuted(divisor):
+                left = self._decoded(RingMatrix.of(self.codec.ring, [[divisor]]))
                 return Proof(claim=claim, status="unproved", residual=left)
         return Proof(claim=claim, status="exact")
 
@@ -171,15 +176,22 @@ class Prover:
 
     @property
     def _is_decided(self) -> bool:
-        """Whether what does not reduce to zero is not zero."""
+        """Whether an element that does not reduce to zero is not zero."""
         return self.codec.ring.complete and not self.subject.constraints
 
-    def _is_refuted(self, left: sp.ImmutableMatrix) -> bool:
-        """Whether what is left is certainly not zero.
+    def _is_refuted(self, element: PolyElement) -> bool:
+        """Whether an element is certainly not zero.
 
         A ring that knows every relation can tell. If it does not, and under constraints, whose
-        ideal need not hold all that vanishes with them, a value at a point tells.
+        ideal need not hold all that vanishes with them, a value at a real point tells.
         """
-        return self._is_decided or any(
-            is_nonzero_somewhere(entry, self.subject.constraints) for entry in left if entry != 0
-        )
+        if not element:
+            return False
+        return self.witness is None or self.witness.is_nonzero(element)
+
+    def _witness(self) -> Witness | None:
+        """The ring at real configurations; None if the ring decides everything by itself."""
+        if self._is_decided:
+            return None
+        subject = self.subject
+        return witness_for(self.codec, subject.name, subject.constraints, subject.example)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.algebra.angles import is_identically_zero
 from rigidsym.errors import ModelError
 from rigidsym.models.rotation import Citation, RotationModel, Turn, product_of
 from rigidsym.models.so3 import AXES
@@ -70,17 +71,7 @@ def _coordinates(turns: Iterable[Turn]) -> tuple[sp.Expr, ...]:
 def _unit_axes(turns: Iterable[Turn]) -> tuple[sp.Expr, ...]:
     """x² + y² + z² − 1 for each axis that is not already known to be a unit vector."""
     conditions = (sum(part**2 for part in turn.direction) - 1 for turn in turns)
-    return tuple(dict.fromkeys(c for c in conditions if not _is_zero(c)))
-
-
-def _is_zero(expression: sp.Expr) -> bool:
-    """Whether an expression vanishes: of a number, its minimal polynomial decides."""
-    if sp.expand(expression) == 0:
-        return True
-    if not expression.is_number or abs(sp.N(expression, 30)) > 1e-20:
-        return False
-    x = sp.Dummy()
-    return bool(sp.minimal_polynomial(expression, x) == x)
+    return tuple(dict.fromkeys(c for c in conditions if not is_identically_zero(c)))
 
 
 def _in_words(turns: Sequence[Turn]) -> str:
@@ -109,7 +100,7 @@ def axis_turn(axis: Sequence[sp.Expr], angle: sp.Expr) -> Turn:
     """
     parts = tuple(sp.sympify(part, strict=True) for part in axis)
     square = sum(part**2 for part in parts)
-    if all(part.is_number for part in parts) and not _is_zero(square - 1):
+    if all(part.is_number for part in parts) and not is_identically_zero(square - 1):
         raise ModelError(
             f"the axis ({', '.join(map(str, parts))}) has the length {sp.sqrt(square)}; expected a "
             "unit vector"

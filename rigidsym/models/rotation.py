@@ -12,6 +12,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
+from rigidsym.algebra.angles import reduced
 from rigidsym.errors import ModelError
 from rigidsym.models.so3 import AXES, TIME, elementary, rodrigues, symbolic
 
@@ -48,7 +49,7 @@ class Turn:
     """
 
     axis: str  # x, y, z, or how the axis is printed
-    angle: sp.Expr  # radians
+    angle: sp.Expr  # radians; quotients in it that cancel are gone
     components: tuple[sp.Expr, ...] = ()  # of the axis, where it is not a coordinate axis
 
     def __post_init__(self) -> None:
@@ -57,6 +58,7 @@ class Turn:
             raise ModelError(f"{self.axis!r} is not an axis: expected x, y, z or components")
         if self.components and len(self.components) != 3:
             raise ModelError(f"an axis has three components, got {len(self.components)}")
+        object.__setattr__(self, "angle", reduced(sp.sympify(self.angle)))
 
     @property
     def direction(self) -> tuple[sp.Expr, ...]:
@@ -124,6 +126,7 @@ class RotationModel:
     passive: bool = False
     pullback: Pullback | None = None  # where the coordinates are bound, in place of constraints
     vector: tuple[sp.Expr, ...] = ()  # the three coordinates that are components of one vector
+    example: tuple[tuple[sp.Expr, sp.Expr], ...] = ()  # (symbol, value): a real point, if known
     request: Mapping[str, Any] = field(
         default_factory=dict, hash=False
     )  # what asks for it in a file

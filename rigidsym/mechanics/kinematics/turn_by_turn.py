@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property
+from operator import mul
 from types import MappingProxyType
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.algebra.real_values import Evaluation
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Bracket, Formula, Symbol
 from rigidsym.mechanics import claims
 from rigidsym.mechanics.arguments import arguments_of
-from rigidsym.mechanics.counterexamples import points
 from rigidsym.mechanics.derivation import Definition, Found, Proof, Singularities
 from rigidsym.mechanics.kinematics.recursion import OrthogonalRows, Recursion
 from rigidsym.mechanics.kinematics.recursion_proofs import (
@@ -22,6 +24,7 @@ from rigidsym.mechanics.kinematics.recursion_proofs import (
     residuals,
     rows_residuals,
 )
+from rigidsym.mechanics.points.configuration import configurations
 from rigidsym.mechanics.prove import Prover, identity
 from rigidsym.mechanics.quantities.kinematics import (
     ALPHA,
@@ -37,8 +40,6 @@ from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import hat
 
 _CLOSED_FORM = 3  # turns whose inverse rates and singular places textbooks write out
-_DIGITS = 50
-_CLEARLY = sp.Float(10, _DIGITS) ** -20  # above this a determinant is not zero
 
 
 def is_shorter(model: RotationModel) -> bool:
@@ -288,26 +289,30 @@ class TurnByTurn:
 
     @cached_property
     def _is_regular(self) -> bool:
-        """Whether det W Wᵀ is clearly not zero at some point, in numbers of 50 digits."""
-        if len(self.model.coordinates) < 3:
+        """Whether det W Wᵀ is proved not to be zero at some point."""
+        model = self.model
+        if len(model.coordinates) < 3:
             return False
-        symbols = [*self.model.coordinates, *self.model.constants]
-        return any(
-            abs(self._determinant_at(point)) > _CLEARLY
-            for point in points(symbols, self.model.constraints)
-        )
+        parts = tuple(e for turn in model.turns for e in (turn.angle, *turn.direction))
+        found = configurations(model.name, model.constraints, parts, model.example)
+        return any(0 not in self._determinant(each.intervals(parts)) for each in found)
 
-    def _determinant_at(self, point: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
-        """det W Wᵀ at one point, from the turns themselves."""
-        columns = {q: sp.zeros(3, 1) for q in self.model.coordinates}
-        before = sp.eye(3)
+    def _determinant(self, work: Evaluation) -> Any:
+        """Bounds on det W Wᵀ at one point, from the turns themselves."""
+        columns = {q: [work.number(0)] * 3 for q in self.model.coordinates}
+        before = [[work.number(int(i == j)) for j in range(3)] for i in range(3)]
         for turn in self.model.turns:
-            axis = before * sp.Matrix(turn.direction).xreplace(point).evalf(_DIGITS)
+            axis = [sum(map(mul, row, map(work, turn.direction))) for row in before]
             for q in turn.angle.atoms(AppliedUndef):
-                columns[q] += axis * sp.diff(turn.angle, q).xreplace(point).evalf(_DIGITS)
-            before = before * turn.matrix.xreplace(point).evalf(_DIGITS)
-        rates = sp.Matrix.hstack(*columns.values())
-        return (rates * rates.T).det()
+                slope = work(sp.diff(turn.angle, q))
+                columns[q] = [a + slope * b for a, b in zip(columns[q], axis, strict=True)]
+            turned = list(
+                zip(*([work(e) for e in row] for row in turn.matrix.tolist()), strict=True)
+            )
+            before = [[sum(map(mul, row, column)) for column in turned] for row in before]
+        rows = list(zip(*columns.values(), strict=True))
+        (a, b, c), (_, d, e), (_, _, f) = ([sum(map(mul, r, s)) for s in rows] for r in rows)
+        return a * (d * f - e * e) - b * (b * f - e * c) + c * (b * e - d * c)
 
     def _inverts(self, rows: OrthogonalRows, claim: Formula) -> tuple[Proof, ...]:
         """W Uᵀ D⁻¹ L⁻¹ = G L⁻ᵀ D⁻¹ L⁻¹, which is 1 if G = L D Lᵀ."""

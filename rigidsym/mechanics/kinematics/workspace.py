@@ -16,6 +16,7 @@ from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.kinematics import composition
 from rigidsym.mechanics.kinematics.composition import Factor, hat, unhat
 from rigidsym.mechanics.kinematics.rates import Inverse, bound_on_rates, right_inverse
+from rigidsym.mechanics.points.configuration import configurations
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.models.so3 import TIME
 
@@ -37,6 +38,8 @@ class Values:
         """`numbers`: roots that the ring shall hold beside what the model asks for."""
         self.model = model
         self.body = body
+        if model.constraints:  # before the ring, which contradictory ones would make endless
+            configurations(model.name, model.constraints, (), model.example)
         self.arguments = {argument.name: argument for argument in arguments_of(model, body)}
         # an energy holds no accelerations, and where constraints relate them to rates none may be
         # taken for an energy

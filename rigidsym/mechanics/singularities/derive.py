@@ -15,10 +15,12 @@ from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.ring import Ring
 from rigidsym.algebra.shorten import shortest
 from rigidsym.algebra.stumpff import at_zero, rewriter_for
+from rigidsym.errors import ModelError
 from rigidsym.mechanics.derivation import Measure, Singularities, Singularity
 from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.points.configuration import configurations
 from rigidsym.mechanics.singularities.rate_map import rate_map_of
-from rigidsym.mechanics.singularities.zeros import Zero, matrix_at, solver_for
+from rigidsym.mechanics.singularities.zeros import Zero, matrix_at, solver_for, substituted
 
 
 def singularities_of(values: Values) -> Singularities:
@@ -50,6 +52,7 @@ class _Study:
 
     def __init__(self, values: Values) -> None:
         self.present = presenter_for(values.codec)
+        self.model = values.model
         self.codec: Codec = values.codec
         self.coordinates = values.arguments["q"].symbols
         self.map = rate_map_of(values)
@@ -104,8 +107,12 @@ class _Study:
         if not rank or is_never_less:
             return [], True
         zeros, is_solved = self.solver.common(minors)
-        points = []
+        points: list[Singularity] = []
         for more in zeros:
+            is_allowed = self._is_allowed((*zero, *more))
+            if not is_allowed:
+                is_solved = is_solved and is_allowed is False
+                continue
             there = matrix_at(matrix, more)
             full, smaller = _rank_and_minors(there, rank - 1)
             points.append(self._point((*zero, *more), there, full))
@@ -113,6 +120,26 @@ class _Study:
             points.extend(further)
             is_solved = is_solved and is_known
         return points, is_solved
+
+    def _is_allowed(self, zero: Zero) -> bool | None:
+        """Whether the conditions on the coordinates can hold at a zero; None if nothing tells.
+
+        Nothing is told of points at which the conditions touch and leave more rates free.
+        """
+        if not self.model.constraints:
+            return True
+        relations = (substituted(relation, zero) for relation in self.codec.ring.relations)
+        if any(relation.is_ground and relation for relation in relations):
+            return False
+        bound = self.map.bound
+        if bound is not None and _rank_and_minors(matrix_at(bound, zero))[0] < self.bound_rank:
+            return None
+        places = tuple(root.place.coordinate - root.place.value for root in zero)
+        try:
+            configurations(self.model.name, (*self.model.constraints, *places), ())
+        except ModelError:
+            return None
+        return True
 
     def _is_never_zero(self, minors: Sequence[PolyElement]) -> bool:
         """Whether the sum of the squares of several minors tells that one is not zero."""

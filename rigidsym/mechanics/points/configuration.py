@@ -1,0 +1,334 @@
+"""A real configuration: a point of the coordinates at which claims are checked.
+
+Coordinates and constants are real. What is proved of them is empty if no real values satisfy the
+conditions, or if a root or a quotient has no real value anywhere, and so a point is found before
+anything is derived. Newton's method moves random points onto the conditions. That a solution lies
+there is then proved: exactly for rational values and fractions of π, or else by Krawczyk's test
+in intervals (R. Krawczyk, Computing 4 (1969); R. Moore, SIAM J. Numer. Anal. 14 (1977)).
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import islice
+from typing import Any
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from rigidsym.algebra.angles import is_identically_zero
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.linear_numbers import inverse, pivots, solved
+from rigidsym.algebra.real_values import Evaluation, NotReal, Unknown
+from rigidsym.errors import AlgebraError, ModelError
+from rigidsym.models.so3 import TIME
+
+DIGITS = 50
+MORE_DIGITS = 400  # if fewer do not decide
+_GUARD = 20  # digits that evaluations may lose
+_SCALES = ("1", "1", "1", "-1", "-1", "1/10", "10", "-10", "1/100", "100")  # of random points
+_STEPS = 90  # of Newton's method, which is slow at double roots
+_LONGEST_STEP = 10  # times the size of the point
+_FASTEST = 10**6  # a rate that is larger comes from constraints that touch
+_NEARLY = 1e-20  # of equations at a double root, which is approached slowly
+_LARGEST_DENOMINATOR = 1000  # of exact points that are tried
+_ATOMS = (sp.Symbol, sp.Derivative, AppliedUndef)
+Numbers = dict[sp.Expr, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Configuration:
+    """Real values of coordinates, rates and constants; unbound ones follow from the seed."""
+
+    values: Mapping[sp.Expr, Any]  # of what the conditions hold: exact, or with many digits
+    radii: Mapping[sp.Expr, Any]  # bounds on the distance of the true values, if not exact
+    digits: int
+    seed: int
+
+    def numbers(self, expressions: Sequence[sp.Expr]) -> Evaluation:
+        """The values of expressions to so many digits."""
+        return Evaluation(self._point(expressions), digits=self.digits + _GUARD)
+
+    def intervals(self, expressions: Sequence[sp.Expr]) -> Evaluation:
+        """Proved bounds on the values of expressions."""
+        point = self._point(expressions)
+        work = Evaluation({}, digits=self.digits + _GUARD, intervals=True)
+        for atom, value in point.items():
+            middle, radius = work.number(value), self.radii.get(atom)
+            work.set(atom, middle if radius is None else work.around(middle, radius))
+        return work
+
+    def _point(self, expressions: Sequence[sp.Expr]) -> Numbers:
+        return {**_random_point(atoms_of(expressions), self.seed), **self.values}
+
+
+def atoms_of(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
+    """Symbols, functions of time and their derivatives, in alphabetical order."""
+    found = set().union(*(e.atoms(*_ATOMS) for e in expressions)) - {TIME}
+    return sorted(found, key=str)
+
+
+def _random_point(atoms: Sequence[sp.Expr], seed: int) -> Numbers:
+    """A rational number for each atom, the same for its name and the seed wherever it occurs."""
+    scale = sp.Rational(_SCALES[seed % len(_SCALES)])
+    return {
+        atom: scale * sp.Rational(random.Random(f"{seed} {atom}").randint(101, 999), 1000)
+        for atom in atoms
+    }
+
+
+@lru_cache(maxsize=128)
+def configurations(
+    name: str,
+    constraints: tuple[sp.Expr, ...],
+    parts: tuple[sp.Expr, ...],
+    example: tuple[tuple[sp.Expr, sp.Expr], ...] = (),
+    digits: int = DIGITS,
+    count: int = 1,
+) -> tuple[Configuration, ...]:
+    """Up to `count` points at which all constraints vanish and all parts are real.
+
+    Raises ModelError, with the reason, if there is no such point among those that are tried.
+    """
+    search = _Search(constraints, parts, dict(example), digits)
+    found = tuple(islice(search.found(), count))
+    if found:
+        return found
+    if search.is_undecided and digits < MORE_DIGITS:
+        return configurations(name, constraints, parts, example, MORE_DIGITS, count)
+    raise ModelError(f"{name}: {search.reason()}")
+
+
+class _Search:
+    """One search for points; remembers why points failed."""
+
+    def __init__(
+        self,
+        constraints: Sequence[sp.Expr],
+        parts: Sequence[sp.Expr],
+        example: Mapping[sp.Expr, sp.Expr],
+        digits: int,
+    ) -> None:
+        self.constraints = [c for c in constraints if not is_identically_zero(c)]
+        self.parts, self.example, self.digits = parts, example, digits
+        self.atoms = atoms_of([*self.constraints, *parts])
+        self._aids: list[sp.Expr] = []  # arguments of roots, to be squares: they help the search
+        self._not_real: NotReal | None = None
+        self._unproved = False
+
+    def found(self) -> Iterator[Configuration]:
+        for seed in range(len(_SCALES) * (2 if self.parts else 1)):
+            try:
+                configuration = self._at(seed)
+                if configuration is not None:
+                    yield configuration
+            except NotReal as error:
+                self._not_real = error
+                if error.is_sign and error.part not in self._aids and len(self._aids) < 3:
+                    self._aids.append(error.part)
+
+    @property
+    def is_undecided(self) -> bool:
+        """Whether more digits may tell that a divisor is not zero."""
+        return self._not_real is not None and self._not_real.reason == "division by"
+
+    def reason(self) -> str:
+        """Why no point was found."""
+        conditions = ", ".join(f"{_plain(c)} = 0" for c in self.constraints)
+        if self._unproved:
+            return (
+                f"a point that satisfies {conditions} was found to {self.digits} digits, but not "
+                "proved to exist; give exact values of one as `example`"
+            )
+        if self._not_real is not None:
+            return (
+                f"no real values were found: {self._not_real.reason} "
+                f"{_plain(self._not_real.part)}; expected expressions that are real and defined "
+                "for some values"
+            )
+        return (
+            f"no real values were found that satisfy {conditions}; expected conditions that hold "
+            "for some values"
+        )
+
+    def _at(self, seed: int) -> Configuration | None:
+        """The configuration that a random point leads to; None if none was reached."""
+        point = _random_point(self.atoms, seed)
+        point |= {atom: value for atom, value in self.example.items() if atom in point}
+        reached: Numbers | None = None
+        values: Numbers = {}
+        radii: Numbers = {}
+        if self.constraints or self._aids:
+            reached = self._moved_onto(point)
+            if reached is None:
+                return None
+            values = reached
+        if self.constraints:
+            assert reached is not None
+            located = self._exact(reached) or self._enclosed(reached)
+            if located is None:
+                self._unproved = True
+                return None
+            values, radii = located
+            values, radii = self._with_rates(values, radii, seed)
+        configuration = Configuration(values, radii, self.digits, seed)
+        values_of_parts(configuration.intervals(self.parts), self.parts)
+        self._not_real = None
+        return configuration
+
+    def _moved_onto(self, point: Numbers) -> Numbers | None:
+        """The point, moved until the constraints vanish; None if that fails."""
+        aids = [(part - sp.Dummy(f"s{k}") ** 2) for k, part in enumerate(self._aids)]
+        slack = {s: sp.Rational(1, 2) for aid in aids for s in aid.atoms(sp.Dummy)}
+        bound = atoms_of([*self.constraints, *aids])
+        moved = newton([*self.constraints, *aids], bound, {**point, **slack}, self.digits)
+        if moved is None:
+            return None
+        return {atom: moved[atom] for atom in bound if atom not in slack}
+
+    def _exact(self, reached: Numbers) -> tuple[Numbers, Numbers] | None:
+        """The values as rational numbers or fractions of π, if these satisfy the constraints."""
+        values = {atom: _simplest(reached[atom]) for atom in atoms_of(self.constraints)}
+        if any(value is None for value in values.values()):
+            return None
+        exact = {atom: value for atom, value in values.items() if value is not None}
+        if all(is_identically_zero(c.xreplace(exact)) for c in self.constraints):
+            return exact, {}
+        return None
+
+    def _enclosed(self, reached: Numbers) -> tuple[Numbers, Numbers] | None:
+        """The values with radii within which Krawczyk's test proves a solution."""
+        bound = atoms_of(self.constraints)
+        work = Evaluation(reached, digits=self.digits + _GUARD)
+        slopes = [[sp.diff(c, atom) for atom in bound] for c in self.constraints]
+        rows, columns = pivots([[work(entry) for entry in row] for row in slopes], work)
+        rest = [c for k, c in enumerate(self.constraints) if k not in rows]
+        kept = [self.constraints[k] for k in rows]
+        if not rows or not _follow(rest, kept):
+            return None
+        radius = work.number(10) ** (-(self.digits // 2))
+        unknowns = [bound[k] for k in columns]
+        thin = Evaluation(reached, digits=self.digits + _GUARD, intervals=True)
+        wide = Evaluation(reached, digits=self.digits + _GUARD, intervals=True)
+        for atom in unknowns:
+            wide.set(atom, wide.around(wide.number(reached[atom]), radius))
+        back = inverse([[work(slopes[r][c]) for c in columns] for r in rows], work)
+        back = [[thin.number(entry) for entry in row] for row in back]
+        values = [thin(c) for c in kept]
+        jacobian = [[wide(slopes[r][c]) for c in columns] for r in rows]
+        size = range(len(unknowns))
+        around_zero = thin.around(thin.number(0), radius)
+        for i in size:
+            moved = -sum(back[i][k] * values[k] for k in size)
+            for j in size:
+                entry = int(i == j) - sum(back[i][k] * jacobian[k][j] for k in size)
+                moved += entry * around_zero
+            if not (moved.a > -radius and moved.b < radius):
+                return None
+        return dict(reached), dict.fromkeys(unknowns, radius)
+
+    def _with_rates(self, values: Numbers, radii: Numbers, seed: int) -> tuple[Numbers, Numbers]:
+        """The same with rates and accelerations that keep to the constraints.
+
+        At rest all of them do; so it is where constraints touch, as (u − 1)² = 0 does.
+        """
+        radius = sp.Rational(1, 10 ** (self.digits // 2))
+        equations = self.constraints
+        found, unknown = dict(values), dict(radii)
+        for _ in range(2):
+            equations = [sp.diff(c, TIME) for c in equations]
+            rates = [atom for atom in atoms_of(equations) if atom not in found]
+            start = found | _random_point(rates, seed)
+            moved = newton(equations, rates, start, self.digits) if rates else start
+            if moved is None or any(abs(moved[rate]) > _FASTEST for rate in rates):
+                return self._at_rest(values), radii
+            found |= {rate: moved[rate] for rate in rates}
+            unknown |= dict.fromkeys(rates, radius)
+        return found, unknown
+
+    def _at_rest(self, values: Numbers) -> Numbers:
+        rates = atoms_of([sp.diff(c, TIME, order) for c in self.constraints for order in (1, 2)])
+        return {**dict.fromkeys(rates, sp.S.Zero), **values}
+
+
+def values_of_parts(work: Evaluation, parts: Sequence[sp.Expr]) -> list[Any]:
+    """The values of expressions; a function of which none is known has one at random.
+
+    Raises NotReal for an expression that is not real.
+    """
+    values = []
+    for part in parts:
+        try:
+            values.append(work(part))
+        except Unknown:
+            work.set(part, work.number(_random_point([part], 0)[part]))
+            values.append(work(part))
+    return values
+
+
+def newton(
+    equations: Sequence[sp.Expr], unknowns: Sequence[sp.Expr], start: Numbers, digits: int
+) -> Numbers | None:
+    """A zero of the equations by steps of least length; None if they do not lead to one.
+
+    Raises NotReal at a point where an equation has no real value.
+    """
+    slopes = [[sp.diff(e, u) for u in unknowns] for e in equations]
+    point = dict(start)
+    best = size = None
+    for _ in range(_STEPS):
+        work = Evaluation(point, digits=digits + _GUARD)
+        values = [work(e) for e in equations]
+        size = max(map(abs, values))
+        if size < work.number(10) ** (-digits):
+            return {atom: work(atom) for atom in point}
+        best = size if best is None else min(best, size)
+        if not size < 1000 * (1 + best):
+            return None
+        jacobian = [[work(entry) for entry in row] for row in slopes]
+        weights = solved(jacobian, values, work)
+        if weights is None:
+            return None
+        steps = [
+            sum(w * row[k] for w, row in zip(weights, jacobian, strict=True))
+            for k in range(len(unknowns))
+        ]
+        most = _LONGEST_STEP * (1 + max(abs(work(unknown)) for unknown in unknowns))
+        shorter = min(1, most / max(most, *map(abs, steps)))
+        point |= {u: work(u) - shorter * step for u, step in zip(unknowns, steps, strict=True)}
+    return point if size is not None and size < _NEARLY else None
+
+
+def _simplest(value: Any) -> sp.Expr | None:
+    """The rational number, or the fraction of π, that a value seems to be."""
+    for unit, most in ((sp.S.One, _LARGEST_DENOMINATOR), (sp.pi, 12)):
+        exact = sp.Rational(str(value / _float(unit, value))).limit_denominator(most)
+        if abs(value - _float(exact * unit, value)) < 1e-12:
+            return exact * unit
+    return None
+
+
+def _float(number: sp.Expr, like: Any) -> Any:
+    return like.context.mpf(str(sp.N(number, 60)))
+
+
+def _follow(rest: Sequence[sp.Expr], kept: Sequence[sp.Expr]) -> bool:
+    """Whether constraints vanish wherever others do: decided in the ring of these."""
+    if not rest:
+        return True
+    try:
+        codec = codec_for(rest, constraints=kept, order=0)
+        return not any(codec.encode(c) for c in rest)
+    except AlgebraError:
+        return False
+
+
+def _plain(expression: sp.Expr) -> str:
+    """An expression with the plain names of functions of time."""
+    names = {
+        f: sp.Symbol(f.func.__name__) for f in expression.atoms(AppliedUndef) if f.args == (TIME,)
+    }
+    return str(expression.xreplace(names))
