@@ -3,22 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from operator import add
+from typing import Any
 
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.ring import Ring
 
 Row = tuple[PolyElement, ...]
+Origin = tuple[str, tuple[Any, ...]]  # "@", "+", "-", "T" or "*", and what it was applied to
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RingMatrix:
-    """Rows of ring elements in normal form."""
+    """Rows of ring elements in normal form.
+
+    `origin` tells how the matrix was made of others, so that values can be worked out anew.
+    """
 
     ring: Ring
     rows: tuple[Row, ...]
+    origin: Origin | None = field(default=None, repr=False)
 
     @classmethod
     def of(cls, ring: Ring, rows: Iterable[Sequence[PolyElement]]) -> RingMatrix:
@@ -43,7 +49,7 @@ class RingMatrix:
 
     @property
     def T(self) -> RingMatrix:
-        return RingMatrix(self.ring, tuple(zip(*self.rows, strict=True)))
+        return RingMatrix(self.ring, tuple(zip(*self.rows, strict=True)), ("T", (self,)))
 
     @property
     def entries(self) -> Row:
@@ -60,6 +66,7 @@ class RingMatrix:
             tuple(
                 tuple(dot(zip(row, column, strict=True)) for column in columns) for row in self.rows
             ),
+            ("@", (self, other)),
         )
 
     def gram(self) -> RingMatrix:
@@ -70,21 +77,27 @@ class RingMatrix:
         ]
         places = range(len(half))
         return RingMatrix(
-            self.ring, tuple(tuple(half[max(i, j)][min(i, j)] for j in places) for i in places)
+            self.ring,
+            tuple(tuple(half[max(i, j)][min(i, j)] for j in places) for i in places),
+            ("@", (self, self.T)),
         )
 
     def __add__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(add, other)
+        return self._entrywise(add, other, "+")
 
     def __sub__(self, other: RingMatrix) -> RingMatrix:
-        return self._entrywise(self.ring.difference, other)
+        return self._entrywise(self.ring.difference, other, "-")
 
     def _entrywise(
-        self, operation: Callable[[PolyElement, PolyElement], PolyElement], other: RingMatrix
+        self,
+        operation: Callable[[PolyElement, PolyElement], PolyElement],
+        other: RingMatrix,
+        sign: str,
     ) -> RingMatrix:
         """Sums and differences of normal forms are normal forms."""
         pairs = zip(self.rows, other.rows, strict=True)
-        return RingMatrix(self.ring, tuple(tuple(map(operation, *rows)) for rows in pairs))
+        rows = tuple(tuple(map(operation, *entries)) for entries in pairs)
+        return RingMatrix(self.ring, rows, (sign, (self, other)))
 
     def map(self, function: Callable[[PolyElement], PolyElement]) -> RingMatrix:
         return RingMatrix.of(self.ring, [[function(entry) for entry in row] for row in self.rows])
@@ -92,7 +105,9 @@ class RingMatrix:
     def scale(self, factor: PolyElement) -> RingMatrix:
         dot = self.ring.dot
         return RingMatrix(
-            self.ring, tuple(tuple(dot(((entry, factor),)) for entry in row) for row in self.rows)
+            self.ring,
+            tuple(tuple(dot(((entry, factor),)) for entry in row) for row in self.rows),
+            ("*", (self, factor)),
         )
 
     def dt(self) -> RingMatrix:

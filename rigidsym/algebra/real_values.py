@@ -119,7 +119,23 @@ class Evaluation:
             return abs(self(e.args[0]))
         if type(e) in _IN_SINES:
             return self(_IN_SINES[type(e)](e.args[0]))
+        if isinstance(e, sp.atan2):
+            return self(self._quarter(*e.args))
         return self._function(e)
+
+    def _quarter(self, y: sp.Expr, x: sp.Expr) -> sp.Expr:
+        """atan2 by the arc tangent of a quotient that stays finite."""
+        if self._is_positive(x):
+            return sp.atan(y / x)
+        if self._is_positive(y):
+            return sp.pi / 2 - sp.atan(x / y)
+        if self._is_positive(-y):
+            return -sp.pi / 2 - sp.atan(x / y)
+        raise NotReal("no direction is known of", sp.Tuple(x, y))
+
+    def _is_positive(self, e: sp.Expr) -> bool:
+        value = self(e)
+        return bool((value.a if self.is_interval else value) > 0)
 
     def _exponential(self, exponent: sp.Expr) -> Any:
         return self.context.exp(self._moderate(self(exponent), sp.exp(exponent)))
@@ -158,7 +174,7 @@ class Evaluation:
 
     def _positive(self, part: sp.Expr, reason: str) -> Any:
         value = self(part)
-        if not (value.a if self.is_interval else value) > 0:
+        if not self._is_positive(part):
             raise NotReal(f"{reason} a number that is not positive,", part)
         return value
 

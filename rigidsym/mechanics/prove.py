@@ -21,13 +21,13 @@ from rigidsym.algebra.signs import Bounds, sign_within
 from rigidsym.errors import DerivationError, NotARotation
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof
-from rigidsym.mechanics.points.witness import Example, Witness, witness_for
+from rigidsym.mechanics.points.witness import Check, Example, Witness, check_for, witness_for
 from rigidsym.models.rotation import Pullback
 from rigidsym.models.so3 import TIME
 
 
 class Subject(Protocol):
-    """What claims are about: a RotationModel, or `Constants`."""
+    """What claims are about: a RotationModel, or `Conditions`."""
 
     @property
     def name(self) -> str: ...
@@ -41,8 +41,8 @@ class Subject(Protocol):
     def example(self) -> Example: ...
 
 
-class Constants(NamedTuple):
-    """A subject at rest: a body, whose symbols are bound by conditions at most."""
+class Conditions(NamedTuple):
+    """A subject that is no rotation: a body, say, whose symbols are bound by conditions at most."""
 
     name: str
     constraints: tuple[sp.Expr, ...] = ()
@@ -57,7 +57,7 @@ def identity(
     """The proof that a matrix of rational functions of a body's constants is zero."""
     field = Rationals(left, conditions)
     quotients = [field.read(entry) for entry in left]
-    return Prover(Constants(name, tuple(conditions)), field.codec).cancel(quotients, claim)
+    return Prover(Conditions(name, tuple(conditions)), field.codec).cancel(quotients, claim)
 
 
 class Prover:
@@ -79,6 +79,7 @@ class Prover:
         """
         divisors = () if divided_by is None else (divided_by,)
         if self._reduces_to_zero(residual):
+            self._compare(residual, claim)
             return self._unless_zero(divisors, claim)
         left = self._decoded(residual)
         if self.subject.pullback is not None and self._pulled_back(left).is_zero():
@@ -127,6 +128,18 @@ class Prover:
 
     def _reduces_to_zero(self, residual: RingMatrix) -> bool:
         return all(self.codec.ring.is_zero(entry) for entry in residual.entries)
+
+    def _compare(self, residual: RingMatrix, claim: Formula) -> None:
+        """Evaluate what reduced to zero at a real point, from its factors, to 50 digits."""
+        if self.subject.pullback is None and self._check.disagrees(residual):
+            raise DerivationError(
+                f"{self.subject.name}: {claim.text} is proved, and yet is false at a point; this "
+                "is a defect of rigidsym, please report it"
+            )
+
+    @cached_property
+    def _check(self) -> Check:
+        return check_for(self.codec, self.witness)
 
     def _pulled_back(self, left: sp.ImmutableMatrix) -> RingMatrix:
         """What is left, in the ring of the functions that stand for the coordinates."""

@@ -24,7 +24,7 @@ from rigidsym.mechanics.derivation import Derivation, Proof, Statement, Step
 from rigidsym.mechanics.kinematics.composition import hat, unhat
 from rigidsym.mechanics.lecture import bases, momenta, rigid_body
 from rigidsym.mechanics.particles import IN_BODY, MASS, Sum
-from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.prove import Conditions, Prover
 from rigidsym.models.quaternions import UnitQuaternion
 from rigidsym.models.so3 import TIME, time_function
 
@@ -65,7 +65,7 @@ class _Theory:
             [*moving, *_rates(moving), *fixed, *model.matrix], constraints=constraints, order=1
         )
         self.ring = self.codec.ring
-        self.prover = Prover(model, self.codec)
+        self.prover = Prover(Conditions("lecture", constraints, tuple(moving)), self.codec)
         self.R = self._matrix(model.matrix)
         self.R_dot = self.R.dt()
         self.x, self.x_dot = self._column(_PLACE), self._column(_rates(_PLACE))

@@ -23,7 +23,7 @@ from rigidsym.algebra.rational import Rationals
 from rigidsym.errors import BodyError
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Proof
-from rigidsym.mechanics.prove import Constants, Prover
+from rigidsym.mechanics.prove import Conditions, Prover
 from rigidsym.models.distribution import (
     Composite,
     Distribution,
@@ -186,7 +186,7 @@ class _Integrals:
 
     def __init__(self, codec: Codec, solid: Solid) -> None:
         self.codec, self.ring, self.solid = codec, codec.ring, solid
-        self.prove = Prover(Constants(solid.title), codec)
+        self.prove = Prover(Conditions(solid.title), codec)
         self._each = [Integrator(codec, variable) for variable in solid.coordinates]
         self._left: list[PolyElement] = []  # ∂F/∂u − f of every integral
 

@@ -118,6 +118,7 @@ class _Search:
         self._aids: list[sp.Expr] = []  # arguments of roots, to be squares: they help the search
         self._not_real: NotReal | None = None
         self._unproved = False
+        self._unknown = ""
 
     def found(self) -> Iterator[Configuration]:
         for seed in range(len(_SCALES) * (2 if self.parts else 1)):
@@ -125,6 +126,8 @@ class _Search:
                 configuration = self._at(seed)
                 if configuration is not None:
                     yield configuration
+            except Unknown as error:
+                self._unknown = str(error)
             except NotReal as error:
                 self._not_real = error
                 if error.is_sign and error.part not in self._aids and len(self._aids) < 3:
@@ -143,6 +146,8 @@ class _Search:
                 f"a point that satisfies {conditions} was found to {self.digits} digits, but not "
                 "proved to exist; give exact values of one as `example`"
             )
+        if self._unknown:
+            return f"{self._unknown}, so that no values are known to satisfy {conditions}"
         if self._not_real is not None:
             return (
                 f"no real values were found: {self._not_real.reason} "

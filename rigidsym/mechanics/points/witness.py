@@ -8,15 +8,17 @@ element with such a value is not zero.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property, lru_cache
+from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.real_values import Evaluation, NotReal
+from rigidsym.algebra.ring import Monomial
 from rigidsym.mechanics.points.configuration import (
     DIGITS,
     MORE_DIGITS,
@@ -25,7 +27,10 @@ from rigidsym.mechanics.points.configuration import (
     values_of_parts,
 )
 
+_BITS = 240  # behind the point of the numbers of a check
+_SMALL_BITS = 166  # a number below 2^−166, some 10^−50, is zero
 _POINTS = 3  # at which a claim may be refuted
+Rows = list[list[Any]]
 Example = tuple[tuple[sp.Expr, sp.Expr], ...]
 
 
@@ -49,7 +54,6 @@ class Witness:
         self._generators = tuple(gen.expression for gen in codec.ring.generators)
         self._search = name, constraints, example
         self._first = self._configurations(DIGITS, 1)
-        self._numbers: dict[PolyElement, Any] = {}
 
     def _configurations(self, digits: int, count: int) -> tuple[Configuration, ...]:
         """Points at which the generators are real; those of the constraints, if they are."""
@@ -76,17 +80,94 @@ class Witness:
                     return True
         return False
 
-    @cached_property
-    def _work(self) -> tuple[Evaluation, list[Any]]:
-        work = self._first[0].numbers(self._generators)
-        return work, values_of_parts(work, self._generators)
+    @property
+    def configuration(self) -> Configuration:
+        return self._first[0]
 
-    def value(self, element: PolyElement) -> Any:
-        """The value of an element at the first configuration, to 50 digits."""
-        if element not in self._numbers:
-            work, values = self._work
-            self._numbers[element] = value_of(element, values, work)
-        return self._numbers[element]
+
+@lru_cache(maxsize=64)
+def check_for(codec: Codec, witness: Witness | None) -> Check:
+    """The check of a ring, at the configuration of its witness; anywhere if it has none."""
+    anywhere = Configuration({}, {}, DIGITS, 0)
+    return Check(codec, anywhere if witness is None else witness.configuration)
+
+
+class Check:
+    """Claims evaluated at one configuration, product by product, without the ring's reduction.
+
+    Numbers are whole multiples of 2^−240, which is fast; a disagreement is put to intervals.
+    """
+
+    def __init__(self, codec: Codec, configuration: Configuration) -> None:
+        self._generators = tuple(gen.expression for gen in codec.ring.generators)
+        self._configuration = configuration
+        work = configuration.numbers(self._generators)
+        values = values_of_parts(work, self._generators)
+        self._values = [int(work.context.ldexp(value, _BITS)) for value in values]
+        self._monomials: dict[Monomial, int] = {}
+        self._known: dict[RingMatrix, Rows] = {}
+
+    def disagrees(self, residual: RingMatrix) -> bool:
+        """Whether a matrix that the ring takes for zero is certainly not zero here."""
+        small = 1 << (_BITS - _SMALL_BITS)
+        rows = self._rows(residual, self._known, self._element, lambda a, b: (a * b) >> _BITS)
+        self._known.clear()
+        if all(-small < entry < small for row in rows for entry in row):
+            return False
+        work = self._configuration.intervals(self._generators)
+        values = values_of_parts(work, self._generators)
+        bounds = self._rows(residual, {}, lambda e: value_of(e, values, work), lambda a, b: a * b)
+        return any(0 not in work.number(entry) for row in bounds for entry in row)
+
+    def _rows(
+        self,
+        matrix: RingMatrix,
+        known: dict[RingMatrix, Rows],
+        element: Callable[[PolyElement], Any],
+        times: Callable[[Any, Any], Any],
+    ) -> Rows:
+        """The values of a matrix, from those of the matrices that it was made of."""
+        if matrix in known:
+            return known[matrix]
+        if matrix.origin is None:
+            found = [[element(entry) for entry in row] for row in matrix.rows]
+        else:
+            sign, (first, *others) = matrix.origin
+            rows = self._rows(first, known, element, times)
+            if sign == "T":
+                found = [list(row) for row in zip(*rows, strict=True)]
+            elif sign == "*":
+                factor = element(others[0])
+                found = [[times(entry, factor) for entry in row] for row in rows]
+            else:
+                found = _combined(sign, rows, self._rows(others[0], known, element, times), times)
+        known[matrix] = found
+        return found
+
+    def _element(self, element: PolyElement) -> int:
+        total = 0
+        for monomial, coefficient in element.items():
+            value = self._monomials.get(monomial)
+            if value is None:
+                value = self._monomials[monomial] = self._monomial(monomial)
+            total += value * int(coefficient.numerator) // int(coefficient.denominator)
+        return total
+
+    def _monomial(self, monomial: Monomial) -> int:
+        value = 1 << _BITS
+        for place, power in enumerate(monomial):
+            for _ in range(power):
+                value = (value * self._values[place]) >> _BITS
+        return value
+
+
+def _combined(sign: str, first: Rows, second: Rows, times: Callable[[Any, Any], Any]) -> Rows:
+    if sign == "@":
+        columns = list(zip(*second, strict=True))
+        return [[sum(map(times, row, column)) for column in columns] for row in first]
+    factor = 1 if sign == "+" else -1
+    pairs = zip(first, second, strict=True)
+    return [[a + factor * b for a, b in zip(*rows, strict=True)] for rows in pairs]
 
 
 def value_of(element: PolyElement, values: Sequence[Any], work: Evaluation) -> Any:

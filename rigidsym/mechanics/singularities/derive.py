@@ -126,14 +126,14 @@ class _Study:
 
         Nothing is told of points at which the conditions touch and leave more rates free.
         """
-        if not self.model.constraints:
-            return True
         relations = (substituted(relation, zero) for relation in self.codec.ring.relations)
         if any(relation.is_ground and relation for relation in relations):
             return False
         bound = self.map.bound
         if bound is not None and _rank_and_minors(matrix_at(bound, zero))[0] < self.bound_rank:
             return None
+        if not any(c.has(root.place.coordinate) for c in self.model.constraints for root in zero):
+            return True
         places = tuple(root.place.coordinate - root.place.value for root in zero)
         try:
             configurations(self.model.name, (*self.model.constraints, *places), ())
