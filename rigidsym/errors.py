@@ -64,6 +64,10 @@ class DerivationError(RigidsymError):
     """A claim of the derivation that is false; the message shows what is left over."""
 
 
+class Defect(RigidsymError):
+    """A claim that is proved and yet false at a point: a mistake in rigidsym, not of its user."""
+
+
 class QuantityError(RigidsymError):
     """A quantity that the derivation does not hold; the message names those it does."""
 

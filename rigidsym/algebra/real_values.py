@@ -46,7 +46,11 @@ class NotReal(ValueError):
 
 
 class Unknown(ValueError):
-    """An expression that no value is known of."""
+    """A part of an expression of which no value is known."""
+
+    def __init__(self, part: sp.Expr) -> None:
+        super().__init__(f"no value is known of {part}")
+        self.part = part
 
 
 @cache
@@ -181,14 +185,14 @@ class Evaluation:
     def _function(self, e: sp.Expr) -> Any:
         name = e.func.__name__
         if isinstance(e, AppliedUndef) or not isinstance(e, sp.Function) or len(e.args) != 1:
-            raise Unknown(f"no value is known of {e}")
+            raise Unknown(e)
         value = self(e.args[0])
         if name in _ENTIRE:
             return getattr(self.context, name)(self._moderate(value, e))
         own = _context(self.context.dps + 10, False)
         function = getattr(own, name, None)
         if function is None or (self.is_interval and name not in _MONOTONE):
-            raise Unknown(f"no value is known of {e}")
+            raise Unknown(e)
         ends = (value.a.a, value.b.b) if self.is_interval else (value, value)
         found = [function(own.mpf(end)) for end in ends]
         if any(isinstance(f, own.mpc) or not own.isfinite(f) for f in found):

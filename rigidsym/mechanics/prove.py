@@ -18,7 +18,7 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.rational import Rationals
 from rigidsym.algebra.signs import Bounds, sign_within
-from rigidsym.errors import DerivationError, NotARotation
+from rigidsym.errors import Defect, DerivationError, NotARotation
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.mechanics.points.witness import Check, Example, Witness, check_for, witness_for
@@ -130,9 +130,12 @@ class Prover:
         return all(self.codec.ring.is_zero(entry) for entry in residual.entries)
 
     def _compare(self, residual: RingMatrix, claim: Formula) -> None:
-        """Evaluate what reduced to zero at a real point, from its factors, to 50 digits."""
+        """Evaluate a residual that reduced to zero at a real point, from its factors, to 50 digits.
+
+        Raises Defect if the values disagree.
+        """
         if self.subject.pullback is None and self._check.disagrees(residual):
-            raise DerivationError(
+            raise Defect(
                 f"{self.subject.name}: {claim.text} is proved, and yet is false at a point; this "
                 "is a defect of rigidsym, please report it"
             )

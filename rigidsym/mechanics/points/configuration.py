@@ -74,10 +74,9 @@ def atoms_of(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
 def _random_point(atoms: Sequence[sp.Expr], seed: int) -> Numbers:
     """A rational number for each atom, the same for its name and the seed wherever it occurs."""
     scale = sp.Rational(_SCALES[seed % len(_SCALES)])
-    return {
-        atom: scale * sp.Rational(random.Random(f"{seed} {atom}").randint(101, 999), 1000)
-        for atom in atoms
-    }
+    drawn = (random.Random(f"{seed} {atom}").randint(101, 999) for atom in atoms)
+    numbers = (scale * sp.Rational(number, 1000) for number in drawn)
+    return {TIME: sp.Rational(1, 3), **dict(zip(atoms, numbers, strict=True))}
 
 
 @lru_cache(maxsize=128)
@@ -266,11 +265,12 @@ def values_of_parts(work: Evaluation, parts: Sequence[sp.Expr]) -> list[Any]:
     """
     values = []
     for part in parts:
-        try:
-            values.append(work(part))
-        except Unknown:
-            work.set(part, work.number(_random_point([part], 0)[part]))
-            values.append(work(part))
+        while True:
+            try:
+                values.append(work(part))
+                break
+            except Unknown as error:
+                work.set(error.part, work.number(_random_point([error.part], 0)[error.part]))
     return values
 
 
