@@ -16,7 +16,8 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import Ring
 from rigidsym.errors import AlgebraError, Defect, ModelError, NotARotation
-from rigidsym.mechanics.derivation import Derivation, Markup
+from rigidsym.formula.reader import formula
+from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.points.configuration import configurations
 from rigidsym.mechanics.prove import Conditions, Prover
@@ -29,7 +30,7 @@ phi, psi, chi, theta = map(time_function, ("phi", "psi", "chi", "theta"))
 k, m, u, w = sp.symbols("k m u w")
 ABOUT_Z = elementary("z", phi)
 NOWHERE = "no real values|not proved to exist|no value is known"
-CLAIM = Markup("0", "0 = 0")
+CLAIM = formula("0 = 0")
 
 ZEROS = {  # numbers that are zero and do not look so
     "a square root of a square": sqrt(5 + 2 * sqrt(6)) - sqrt(2) - sqrt(3),
