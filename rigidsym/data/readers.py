@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import mmap
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any
+from warnings import catch_warnings
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +18,18 @@ from rigidsym.data.text import TextReader
 from rigidsym.errors import DataError, MissingExtra
 
 _MAGIC = b"\x93NUMPY"
+_DAMAGED = (  # what NumPy raises for the header of a damaged file
+    ArithmeticError,
+    EOFError,
+    LookupError,
+    MemoryError,
+    OSError,
+    RecursionError,
+    SyntaxError,
+    TokenError,
+    TypeError,
+    ValueError,
+)
 _FORGET = 32 << 20  # bytes after which pages that were read are given back
 
 
@@ -44,9 +59,11 @@ def npy_reader(path: Path) -> ArrayReader:
         found = "another kind of file" if begins else "an empty file"
         raise DataError(f"{path}: not an NPY file of numbers, but {found}")
     try:
-        array: NDArray[Any] = np.load(path, mmap_mode="r", allow_pickle=False)
-    except (ValueError, EOFError) as error:
-        raise DataError(f"{path}: not an NPY file of numbers ({error})") from None
+        with catch_warnings(action="ignore"):
+            array: NDArray[Any] = np.load(path, mmap_mode="r", allow_pickle=False)
+    except _DAMAGED:
+        size = path.stat().st_size
+        raise DataError(f"{path}: not an NPY file of numbers, or damaged ({size} bytes)") from None
     try:
         reader = ArrayReader(array)
     except DataError as error:
@@ -167,12 +184,11 @@ class ParquetReader:
             from pyarrow.parquet import ParquetFile
         except ImportError:
             raise MissingExtra("Parquet", "parquet") from None
-        try:
-            self._file = ParquetFile(path, memory_map=True)
-        except arrow.ArrowException as error:
-            raise DataError(f"{path}: not a Parquet file ({error})") from None
         self.source = str(path)
-        schema = self._file.schema_arrow
+        self._failures = (arrow.ArrowException, OSError)
+        with self._reported():
+            self._file = ParquetFile(path, memory_map=True)
+            schema = self._file.schema_arrow
         self._names: tuple[str, ...] = tuple(schema.names)
         self.names: tuple[str, ...] | None = self._names
         self.width = len(self._names)
@@ -194,7 +210,12 @@ class ParquetReader:
             raise DataError(f"{self.source}: no numbers in the columns {', '.join(wrong)}")
         count, start = self._file.metadata.num_rows, 0
         chosen = [self._names[place] for place in dict.fromkeys([*columns, *kept])]
-        for batch in self._file.iter_batches(batch_size=rows, columns=chosen):
+        batches = self._file.iter_batches(batch_size=rows, columns=chosen)
+        while True:
+            with self._reported():
+                batch = next(batches, None)
+            if batch is None:
+                return
             end = start + batch.num_rows
             read = {name: batch.column(name).to_numpy(zero_copy_only=False) for name in chosen}
             table = np.empty((batch.num_rows, len(columns)), self.dtype)
@@ -203,6 +224,14 @@ class ParquetReader:
             passed = tuple(read[self._names[column]] for column in kept)
             yield Chunk(table, np.arange(start, end), end / count, passed)
             start = end
+
+    @contextmanager
+    def _reported(self) -> Iterator[None]:
+        """Failures of pyarrow, as DataError."""
+        try:
+            yield
+        except self._failures:
+            raise DataError(f"{self.source}: not a Parquet file, or a damaged one") from None
 
     def spread(self, columns: Sequence[int], rows: int) -> Chunk:
         """As `TableReader.spread`: its first rows."""

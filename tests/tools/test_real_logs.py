@@ -345,3 +345,21 @@ def test_a_position_is_not_taken_for_a_part_of_the_quaternion(motion, tmp_path):
     path = text(tmp_path / "log.csv", "q0,q1,q2,q3,x,y,z", "1,0,0,0,5,6,7")
     evaluation(motion, ("from_quaternion",), path, tmp_path / "r.npy").run()
     assert not np.load(tmp_path / "r.npy").any()
+
+
+def test_identify_reads_parquet_and_structured_npy(tmp_path):
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    names = ["yaw_deg", "pitch_deg", "roll_deg", *(f"r{i}{j}" for i in "123" for j in "123")]
+    table = np.hstack([ANGLES, MATRIX])
+    columns = {name: table[:, k] for k, name in enumerate(names)}
+    parquet.write_table(
+        pyarrow.table(columns | {"note": ["a", "b", "c"]}), tmp_path / "log.parquet"
+    )
+    structured = np.rec.fromarrays(table.T, names=",".join(names)).view(np.ndarray)
+    np.save(tmp_path / "log.npy", structured)
+    for name in ("log.parquet", "log.npy"):
+        found = identify_file(tmp_path / name)
+        assert found.names == ("yaw", "pitch", "roll")
+        assert [answer.reading.sequence for answer in found.answers] == ["ZYX"]

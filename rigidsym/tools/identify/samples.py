@@ -100,6 +100,7 @@ class Block:
         return np.asarray(self.attitude / np.linalg.norm(self.attitude, axis=1, keepdims=True))
 
 
+@np.errstate(all="ignore")  # numbers that overflow here are far from a rotation
 def check(
     block: Block, place: Callable[[int], str], slack: float = SLACK
 ) -> tuple[Block, list[str], int]:
