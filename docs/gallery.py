@@ -65,21 +65,23 @@ class Item:
             [
                 f"{'#' * level} {escaped(self.title)}",
                 f'<div class="entry">{figure}{formula}</div>',
-                self._links(motion.name),
+                self._links(self.folder(motion)),
             ]
         )
 
+    def folder(self, motion: rs.Motion) -> str:
+        return f"{motion.name}_{self.solid}" if self.solid else motion.name
+
     def _links(self, name: str) -> str:
-        files = sorted((BUILT / name).glob(f"{name}*")) if (BUILT / name).is_dir() else []
-        shown = [f for f in files if f.suffix in {".html", ".pdf", ".py", ".c", ".mjs"}]
-        links = [f'<a href="../gallery/{name}/{f.name}">{f.name}</a>' for f in shown]
+        files = sorted((BUILT / name).iterdir()) if (BUILT / name).is_dir() else []
+        links = [f'<a href="gallery/{name}/{f.name}">{f.name}</a>' for f in files]
         return f"<p>{' '.join(links)}</p>" if links else ""
 
     def write(self, out: Path, *, pdf: bool) -> str:
         from rigidsym.notes.formats.pdf import typeset
 
         motion = self.derive()
-        folder = out / motion.name
+        folder = out / self.folder(motion)
         folder.mkdir(parents=True, exist_ok=True)
         note = motion.note()
         (folder / f"{motion.name}.html").write_text(note.html(), encoding="utf-8")
@@ -90,7 +92,7 @@ class Item:
                 (folder / name).write_text(text, encoding="utf-8")
         if pdf:
             (folder / f"{motion.name}.pdf").write_bytes(typeset(note.latex()).pdf)
-        return motion.name
+        return self.folder(motion)
 
 
 def escaped(title: str) -> str:
