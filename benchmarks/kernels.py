@@ -173,7 +173,7 @@ Part = tuple[Sequence[Table], Sequence[Figure]]
 
 
 def report(outcomes: Sequence[Outcome], parts: Sequence[Part] = ()) -> Report:
-    """Times, ratios and figures; the first table is the README's."""
+    """Times, ratios and figures; the first table is that of the documentation."""
     tables = [_table(outcomes), _ratios(outcomes), _bandwidths(outcomes)]
     figures = [*_figures(outcomes)]
     for more, found in parts:
@@ -187,7 +187,7 @@ def report(outcomes: Sequence[Outcome], parts: Sequence[Part] = ()) -> Report:
         tables=tuple(tables),
         figures=(*figures, *figures_of_parts(absent)),
         notes=tuple(notes),
-        readme=tables[0],
+        documented=tables[0],
     )
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from benchmarks.measure import Settings
     from benchmarks.report import Report
 
-README = Path(__file__).resolve().parent.parent / "README.md"
+MEASURED = Path(__file__).resolve().parent.parent / "docs" / "reference" / "measured.md"
 NAMES = (
     "derivation",
     "form",
@@ -49,10 +49,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"\n\n{reports[name].text()}", flush=True)
     if len(reports) > 1:
         print(f"\n\n{summary(reports)}")
-    if given.readme:
+    if given.docs:
         for name, report in reports.items():
-            if report.readme is not None:
-                write_readme(README, name, report.readme.markdown())
+            if report.documented is not None:
+                write_table(MEASURED, name, report.documented.markdown())
     if given.json:
         plain = {name: asdict(report) for name, report in reports.items()}
         whole = {"schema": 1, "machine": machine(), "benchmarks": plain}
@@ -60,7 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def write_readme(path: Path, name: str, text: str) -> None:
+def write_table(path: Path, name: str, text: str) -> None:
     """Put a table between the marks of a benchmark; raises ValueError where there are none."""
     marks = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->\n"
     before, begin, rest = path.read_text(encoding="utf-8").partition(marks[0])
@@ -100,7 +100,9 @@ def _parser() -> argparse.ArgumentParser:
         ("--samples", usual.samples, "orientations of each kind whose errors are taken"),
     ):
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)
-    parser.add_argument("--readme", action="store_true", help="put the tables into README.md")
+    parser.add_argument(
+        "--docs", action="store_true", help="put the tables into docs/reference/measured.md"
+    )
     parser.add_argument("--fresh", action="store_true", help="survey SymPy's forms anew (minutes)")
     return parser
 

@@ -201,16 +201,16 @@ def test_every_target_has_files_and_templates():
 
 
 def test_a_table_goes_between_its_marks(tmp_path):
-    path = tmp_path / "README.md"
+    path = tmp_path / "measured.md"
     path.write_text("a\n<!-- kernels: begin -->\nold\n<!-- kernels: end -->\nb\n", "utf-8")
     table = Table("Title", (Column("what"), Column("ns", ".1f")), (("x", 1.0), ("y", None)))
-    run.write_readme(path, "kernels", table.markdown())
+    run.write_table(path, "kernels", table.markdown())
     assert path.read_text("utf-8") == (
         "a\n<!-- kernels: begin -->\n| what | ns |\n| --- | --- |\n| x | 1.0 |\n| y |  |\n"
         "<!-- kernels: end -->\nb\n"
     )
     with pytest.raises(ValueError, match="no lines <!-- accuracy: begin -->"):
-        run.write_readme(path, "accuracy", "")
+        run.write_table(path, "accuracy", "")
 
 
 # accuracy
