@@ -19,7 +19,6 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from rigidsym.notes.formats.mathml import mathml
 
 import rigidsym as rs
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
@@ -27,6 +26,7 @@ from rigidsym.models.solids import SHAPES
 
 BUILT = Path(__file__).parents[1] / "build" / "gallery" / "gallery"
 CHAINS = ("z(phi) x(theta) z(psi) y(delta)", "[1,1,0](beta)", "z(phi) [1,2,2](theta) x(psi)")
+_FORMULA = re.compile(r"<math.*?</math>", re.DOTALL)
 _FIGURE = re.compile(r"<svg.*?</svg>", re.DOTALL)
 _IDENTIFIER = re.compile(r"figure-\d+")
 
@@ -54,12 +54,13 @@ class Item:
     def entry(self, level: int = 3) -> str:
         """A heading, the figure and the formula, in Markdown with HTML inside."""
         motion = self.derive()
-        latex = motion.latex(self.key).replace(r"\cr", r"\\")
-        figures = [] if self.solid else _FIGURE.findall(motion.note().html())[:1]
-        figure = "".join(figures).replace("\n", " ")
+        note = motion.note().html()
+        figures = [] if self.solid else _FIGURE.findall(note)[:1]
         name = re.sub(r"\W+", "-", f"{self.rotation}-{self.solid}").strip("-")
-        figure = _IDENTIFIER.sub(f"figure-{name}", figure)
-        formula = one_line(mathml(latex, latex, is_display=True))
+        figure = _IDENTIFIER.sub(f"figure-{name}", one_line("".join(figures)))
+        _, _, after = note.partition(f'<div class="equation" id="{self.key}"')
+        formulas = _FORMULA.findall(after.partition('<a class="number"')[0])
+        formula = one_line("<br>".join(formulas))
         formula = f'<div class="formula" tabindex="0">{formula}</div>'
         return "\n\n".join(
             [
