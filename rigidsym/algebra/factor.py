@@ -19,19 +19,19 @@ Weights = Mapping[int, int]  # place of a generator -> operations that one use o
 
 
 @dataclass(frozen=True, slots=True)
-class Product:
+class FactoredTerm:
     """coefficient · generators^powers · (sum of the factors in `bracket`, where there is one)."""
 
     coefficient: Fraction
     powers: Monomial
-    bracket: tuple[Product, ...] = ()
+    bracket: tuple[FactoredTerm, ...] = ()
 
 
-def collect(terms: Terms, weights: Weights) -> tuple[Product, ...]:
+def collect(terms: Terms, weights: Weights) -> tuple[FactoredTerm, ...]:
     """The terms as a sum of products with common factors taken out."""
     factor = _best_factor(terms, weights) if len(terms) > 1 else None
     if factor is None:
-        return tuple(Product(coefficient, powers) for powers, coefficient in terms.items())
+        return tuple(FactoredTerm(coefficient, powers) for powers, coefficient in terms.items())
     place, sign = factor
     inside = {m: c for m, c in terms.items() if m[place] * sign > 0}
     outside = {m: c for m, c in terms.items() if m[place] * sign <= 0}
@@ -56,7 +56,7 @@ def _best_factor(terms: Terms, weights: Weights) -> tuple[int, int] | None:
     return best if best and savings[best] else None
 
 
-def _take_out(terms: Terms, weights: Weights) -> Product:
+def _take_out(terms: Terms, weights: Weights) -> FactoredTerm:
     """All that the terms have in common, times what is left of them."""
     common = reduce(_common_powers, terms)
     number = _content(terms.values())
@@ -64,7 +64,7 @@ def _take_out(terms: Terms, weights: Weights) -> Product:
         tuple(a - b for a, b in zip(monomial, common, strict=True)): coefficient / number
         for monomial, coefficient in terms.items()
     }
-    return Product(number, common, collect(rest, weights))
+    return FactoredTerm(number, common, collect(rest, weights))
 
 
 def _common_powers(first: Monomial, second: Monomial) -> Monomial:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rigidsym.algebra.real_values import Evaluation
+from rigidsym.algebra.real_values import RealValues
 
 Matrix = Sequence[Sequence[Any]]
 _DAMPING = 1e-40  # of normal equations: dependent rows then do no harm
 
 
-def solved(jacobian: Matrix, values: Sequence[Any], work: Evaluation) -> list[Any] | None:
+def solved(jacobian: Matrix, values: Sequence[Any], work: RealValues) -> list[Any] | None:
     """λ with (J Jᵀ + ε 1) λ = values, so that Jᵀ λ is the shortest step; None if J vanishes."""
     gram = [[sum(a * b for a, b in zip(r, s, strict=True)) for s in jacobian] for r in jacobian]
     size = max(gram[k][k] for k in range(len(gram)))
@@ -23,7 +23,7 @@ def solved(jacobian: Matrix, values: Sequence[Any], work: Evaluation) -> list[An
     return [sum(a * v for a, v in zip(row, values, strict=True)) for row in columns]
 
 
-def inverse(matrix: Matrix, work: Evaluation) -> list[list[Any]]:
+def inverse(matrix: Matrix, work: RealValues) -> list[list[Any]]:
     """The inverse of a regular matrix, by elimination with the largest pivots."""
     count = len(matrix)
     rows = [
@@ -40,7 +40,7 @@ def inverse(matrix: Matrix, work: Evaluation) -> list[list[Any]]:
     return [row[count:] for row in rows]
 
 
-def pivots(matrix: Matrix, work: Evaluation) -> tuple[list[int], list[int]]:
+def pivots(matrix: Matrix, work: RealValues) -> tuple[list[int], list[int]]:
     """Rows and columns of a regular part of the full rank, as far as digits tell."""
     rest = [list(row) for row in matrix]
     size = max((abs(entry) for row in rest for entry in row), default=work.number(0))

@@ -18,7 +18,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
-from rigidsym.algebra.factor import Product, collect
+from rigidsym.algebra.factor import FactoredTerm, collect
 from rigidsym.algebra.fold import Rule, folded, rules
 from rigidsym.algebra.matrix import RingMatrix, Row
 from rigidsym.algebra.quotient import Quotient
@@ -51,7 +51,7 @@ class Presenter:
             if expression.is_Pow and expression.exp == -1 and self._is_plain_sum(expression.base)
         }
         self._matrices: dict[tuple[tuple[Row, ...], PolyElement], sp.ImmutableMatrix] = {}
-        self._products: dict[tuple[Monomial, tuple[Product, ...]], sp.Expr] = {}
+        self._products: dict[tuple[Monomial, tuple[FactoredTerm, ...]], sp.Expr] = {}
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
 
     def matrix(
@@ -132,10 +132,10 @@ class Presenter:
             fractions = {monomial: value / scale for monomial, value in fractions.items()}
         return self._sum(collect(folded(fractions, self._sums), self._weights))
 
-    def _sum(self, products: Sequence[Product]) -> sp.Expr:
+    def _sum(self, products: Sequence[FactoredTerm]) -> sp.Expr:
         return sp.Add(*(self._product(product) for product in products))
 
-    def _product(self, product: Product) -> sp.Expr:
+    def _product(self, product: FactoredTerm) -> sp.Expr:
         key = product.powers, product.bracket
         factors = self._products.get(key)
         if factors is None:
@@ -145,7 +145,7 @@ class Presenter:
             return factors
         return sp.Rational(number.numerator, number.denominator) * factors
 
-    def _multiplied(self, given: Monomial, bracket: Sequence[Product]) -> sp.Expr:
+    def _multiplied(self, given: Monomial, bracket: Sequence[FactoredTerm]) -> sp.Expr:
         powers = list(given)
         factors = self._ratios(powers)
         factors += [self._power(place, power) for place, power in enumerate(powers) if power]

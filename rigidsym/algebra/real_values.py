@@ -61,7 +61,7 @@ def _context(digits: int, intervals: bool) -> Any:
     return context
 
 
-class Evaluation:
+class RealValues:
     """The values of expressions at one point, each worked out once.
 
     With `intervals` the values enclose the true ones, and a part that may be zero below a fraction

@@ -140,7 +140,7 @@ def _of_body(
     whole = rigid_body(body)
     if forces is not None:
         whole = forces.with_parameters(whole, model)
-    values = Values(model, whole)
+    values = Values(model, whole, also=energy.OF_PARTICLES)
     found = dict(mass.steps(values, [n for n in INERTIA_QUANTITIES if not only or n in only]))
     absent = [name for name in INERTIA_QUANTITIES if name in only and name not in found]
     if absent:

@@ -24,7 +24,7 @@ IN_BODY = sp.symbols("a_i b_i c_i")  # components of x′ᵢ, at rest in the bod
 SYMBOLS = (MASS, *IN_BODY)
 
 
-class Sum:
+class ParticleSums:
     """Σᵢ over one ring: the sums that are `known`, by their summands."""
 
     def __init__(
@@ -68,7 +68,7 @@ def _monomial(codec: Codec, summand: sp.Expr) -> Monomial:
     return monomial
 
 
-def sums_of_body(codec: Codec, mass: sp.Expr, inertia: sp.ImmutableMatrix) -> Sum:
+def sums_of_body(codec: Codec, mass: sp.Expr, inertia: sp.ImmutableMatrix) -> ParticleSums:
     """The sums of a body's particles about its centre of mass, in body components.
 
     Σ m = M, Σ m x′ = 0, and Σ m x′ x′ᵀ = ½ tr(I′) 1 − I′, which is what I′ says of the body.
@@ -77,7 +77,7 @@ def sums_of_body(codec: Codec, mass: sp.Expr, inertia: sp.ImmutableMatrix) -> Su
     known: dict[sp.Expr, sp.Expr] = {MASS: mass, **{MASS * part: sp.S.Zero for part in IN_BODY}}
     for j, first in enumerate(IN_BODY):
         known |= {MASS * first * IN_BODY[k]: second[j, k] for k in range(j, 3)}
-    return Sum(codec, SYMBOLS, known)
+    return ParticleSums(codec, SYMBOLS, known)
 
 
 def vector(codec: Codec, components: Sequence[sp.Expr]) -> RingMatrix:

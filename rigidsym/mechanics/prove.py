@@ -18,10 +18,10 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.rational import Rationals
 from rigidsym.algebra.signs import Bounds, sign_within
+from rigidsym.algebra.witness import Check, Example, Witness, check_for, witness_for
 from rigidsym.errors import Defect, DerivationError, NotARotation
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof
-from rigidsym.mechanics.points.witness import Check, Example, Witness, check_for, witness_for
 from rigidsym.models.rotation import Pullback
 from rigidsym.models.so3 import TIME
 

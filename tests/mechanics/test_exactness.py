@@ -13,13 +13,13 @@ from sympy import Abs, Rational, acos, asin, atan, cos, cosh, exp, log, pi, sin,
 import rigidsym as rs
 from rigidsym.algebra.angles import combination
 from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import Ring
 from rigidsym.errors import AlgebraError, Defect, ModelError, NotARotation
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
-from rigidsym.mechanics.points.configuration import configurations
 from rigidsym.mechanics.prove import Conditions, Prover
 from rigidsym.models.chain import chain
 from rigidsym.models.rotation import RotationModel, Turn

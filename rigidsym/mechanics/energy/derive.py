@@ -24,6 +24,8 @@ from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import energy as claims
 
+OF_PARTICLES = particles.SYMBOLS  # that the ring of energies has to hold
+
 
 def steps(values: Values, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
     """(name, what was found) of the energies and momenta that are wanted."""
@@ -48,7 +50,7 @@ class _Energy:
     # Particles: x = R x′ for a place x′ at rest in the body, r = r_C + x.
 
     @cached_property
-    def _sum(self) -> particles.Sum:
+    def _sum(self) -> particles.ParticleSums:
         return particles.sums_of_body(self.codec, self.body.mass, self.body.inertia)
 
     @cached_property

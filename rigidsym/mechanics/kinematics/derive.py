@@ -13,7 +13,6 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics import claims
 from rigidsym.mechanics.derivation import Found, Proof
 from rigidsym.mechanics.kinematics import composition
 from rigidsym.mechanics.kinematics.composition import hat
@@ -21,6 +20,7 @@ from rigidsym.mechanics.kinematics.rates import Inverse
 from rigidsym.mechanics.kinematics.vector_forms import applied_form, matrix_form, vector_form
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.quantities import claims
 from rigidsym.mechanics.quantities.kinematics import (
     ALPHA,
     ALPHA_BODY,

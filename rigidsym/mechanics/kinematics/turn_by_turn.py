@@ -11,10 +11,10 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.real_values import Evaluation
+from rigidsym.algebra.configuration import configurations
+from rigidsym.algebra.real_values import RealValues
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Bracket, Formula, Symbol
-from rigidsym.mechanics import claims
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.derivation import Definition, Found, Proof, Singularities
 from rigidsym.mechanics.kinematics.recursion import OrthogonalRows, Recursion
@@ -24,8 +24,8 @@ from rigidsym.mechanics.kinematics.recursion_proofs import (
     residuals,
     rows_residuals,
 )
-from rigidsym.mechanics.points.configuration import configurations
 from rigidsym.mechanics.prove import Prover, identity
+from rigidsym.mechanics.quantities import claims
 from rigidsym.mechanics.quantities.kinematics import (
     ALPHA,
     ALPHA_BODY,
@@ -297,7 +297,7 @@ class TurnByTurn:
         found = configurations(model.name, model.constraints, parts, model.example)
         return any(0 not in self._determinant(each.intervals(parts)) for each in found)
 
-    def _determinant(self, work: Evaluation) -> Any:
+    def _determinant(self, work: RealValues) -> Any:
         """Bounds on det W Wᵀ at one point, from the turns themselves."""
         columns = {q: [work.number(0)] * 3 for q in self.model.coordinates}
         before = [[work.number(int(i == j)) for j in range(3)] for i in range(3)]

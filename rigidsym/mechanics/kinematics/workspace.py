@@ -10,13 +10,12 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.mechanics import particles
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.kinematics import composition
 from rigidsym.mechanics.kinematics.composition import Factor, hat, unhat
 from rigidsym.mechanics.kinematics.rates import Inverse, bound_on_rates, right_inverse
-from rigidsym.mechanics.points.configuration import configurations
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.models.so3 import TIME
 
@@ -33,9 +32,9 @@ class Values:
         self,
         model: RotationModel,
         body: RigidBody | None = None,
-        numbers: Iterable[sp.Expr] = (),
+        also: Iterable[sp.Expr] = (),
     ) -> None:
-        """`numbers`: roots that the ring shall hold beside what the model asks for."""
+        """`also`: expressions for the ring to hold beside those of the model and the body."""
         self.model = model
         self.body = body
         if model.constraints:  # before the ring, which contradictory ones would make endless
@@ -48,8 +47,8 @@ class Values:
         # a ring that holds the turns holds their product, and they are shorter to read
         held = [e for turn in model.turns for e in turn.matrix.flat()] or [*model.matrix]
         if body is not None:
-            held += [body.mass, *body.inertia, sp.Rational(1, 2), *particles.SYMBOLS]
-        held += numbers
+            held += [body.mass, *body.inertia, sp.Rational(1, 2)]
+        held += also
         order = 1 if body else 2
         self.codec = codec_for([*inputs, *held], constraints=model.constraints, order=order)
         self.ring = self.codec.ring

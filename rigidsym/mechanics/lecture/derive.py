@@ -23,7 +23,7 @@ from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation, Proof, Statement, Step
 from rigidsym.mechanics.kinematics.composition import hat, unhat
 from rigidsym.mechanics.lecture import bases, momenta, rigid_body
-from rigidsym.mechanics.particles import IN_BODY, MASS, Sum
+from rigidsym.mechanics.particles import IN_BODY, MASS, ParticleSums
 from rigidsym.mechanics.prove import Conditions, Prover
 from rigidsym.models.quaternions import UnitQuaternion
 from rigidsym.models.so3 import TIME, time_function
@@ -77,9 +77,9 @@ class _Theory:
         self.m, self.M = self.codec.encode(MASS), self.codec.encode(_WHOLE)
         own = [MASS, *_PLACE, *_rates(_PLACE)]
         nothing = {MASS * part: sp.S.Zero for part in own[1:]}
-        self.sum = Sum(self.codec, own, {MASS: _WHOLE, **nothing})
+        self.sum = ParticleSums(self.codec, own, {MASS: _WHOLE, **nothing})
         pairs = zip(own[1:], [*_CENTRE, *_rates(_CENTRE)], strict=True)
-        self.sum_of_places = Sum(
+        self.sum_of_places = ParticleSums(
             self.codec, own, {MASS: _WHOLE, **{MASS * part: _WHOLE * mean for part, mean in pairs}}
         )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.claims import transpose_of
+from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.mechanics.quantities.kinematics import ALPHA_BODY, BODY, RATES
 from rigidsym.mechanics.quantities.mass import INERTIA

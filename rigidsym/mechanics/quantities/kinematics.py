@@ -13,8 +13,8 @@ from types import MappingProxyType
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.claims import rate_of, spin_of, transpose_of
 from rigidsym.mechanics.derivation import Quantity
+from rigidsym.mechanics.quantities.claims import rate_of, spin_of, transpose_of
 from rigidsym.mechanics.quantities.table import read_table
 from rigidsym.models.rotation import Citation
 

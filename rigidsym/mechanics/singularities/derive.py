@@ -10,6 +10,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
+from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.matrix import RingMatrix, Row, cross
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.ring import Ring
@@ -18,7 +19,6 @@ from rigidsym.algebra.stumpff import at_zero, rewriter_for
 from rigidsym.errors import ModelError
 from rigidsym.mechanics.derivation import Measure, Singularities, Singularity
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.points.configuration import configurations
 from rigidsym.mechanics.singularities.rate_map import rate_map_of
 from rigidsym.mechanics.singularities.zeros import Zero, matrix_at, solver_for, substituted
 
@@ -36,7 +36,7 @@ def singularities_of(values: Values) -> Singularities:
     found = study.singularities()
     if found.is_solved or not study.solver.missing:
         return found
-    wider = Values(values.model, numbers=study.solver.missing)
+    wider = Values(values.model, also=study.solver.missing)
     return _Study(wider).singularities()
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Symbol, equal, joined, row
-from rigidsym.mechanics.claims import rate_of, spin_of
+from rigidsym.mechanics.quantities.claims import rate_of, spin_of
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, ROTATION, SPACE
 from rigidsym.models.rotation import Turn, lecture
 from rigidsym.notes.document.document import Cited, Equation, NoteBlock, Paragraph, Text, words

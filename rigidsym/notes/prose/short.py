@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula, row
-from rigidsym.mechanics.claims import rate_of, transpose_of
 from rigidsym.mechanics.derivation import Derivation, Step
+from rigidsym.mechanics.quantities.claims import rate_of, transpose_of
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE, Frame
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.formula.letters import Letters

@@ -10,7 +10,6 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula, Numeral, Symbol, equal
-from rigidsym.mechanics.claims import transpose_of
 from rigidsym.mechanics.derivation import (
     Derivation,
     Measure,
@@ -18,6 +17,7 @@ from rigidsym.mechanics.derivation import (
     Singularities,
     Singularity,
 )
+from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
 from rigidsym.notes.document.document import Text, listed, words
 from rigidsym.notes.formula.letters import Letters, letters_of

@@ -12,8 +12,8 @@ import sympy as sp
 
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.tree import equal, row
-from rigidsym.mechanics.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
+from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES

@@ -19,12 +19,12 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.algebra.adjoin import TIME
 from rigidsym.algebra.angles import is_identically_zero
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.linear_numbers import inverse, pivots, solved
-from rigidsym.algebra.real_values import Evaluation, NotReal, Unknown
+from rigidsym.algebra.real_values import NotReal, RealValues, Unknown
 from rigidsym.errors import AlgebraError, ModelError
-from rigidsym.models.so3 import TIME
 
 DIGITS = 50
 MORE_DIGITS = 400  # if fewer do not decide
@@ -48,14 +48,14 @@ class Configuration:
     digits: int
     seed: int
 
-    def numbers(self, expressions: Sequence[sp.Expr]) -> Evaluation:
+    def numbers(self, expressions: Sequence[sp.Expr]) -> RealValues:
         """The values of expressions to so many digits."""
-        return Evaluation(self._point(expressions), digits=self.digits + _GUARD)
+        return RealValues(self._point(expressions), digits=self.digits + _GUARD)
 
-    def intervals(self, expressions: Sequence[sp.Expr]) -> Evaluation:
+    def intervals(self, expressions: Sequence[sp.Expr]) -> RealValues:
         """Proved bounds on the values of expressions."""
         point = self._point(expressions)
-        work = Evaluation({}, digits=self.digits + _GUARD, intervals=True)
+        work = RealValues({}, digits=self.digits + _GUARD, intervals=True)
         for atom, value in point.items():
             middle, radius = work.number(value), self.radii.get(atom)
             work.set(atom, middle if radius is None else work.around(middle, radius))
@@ -206,7 +206,7 @@ class _Search:
     def _enclosed(self, reached: Numbers) -> tuple[Numbers, Numbers] | None:
         """The values with radii within which Krawczyk's test proves a solution."""
         bound = atoms_of(self.constraints)
-        work = Evaluation(reached, digits=self.digits + _GUARD)
+        work = RealValues(reached, digits=self.digits + _GUARD)
         slopes = [[sp.diff(c, atom) for atom in bound] for c in self.constraints]
         rows, columns = pivots([[work(entry) for entry in row] for row in slopes], work)
         rest = [c for k, c in enumerate(self.constraints) if k not in rows]
@@ -215,8 +215,8 @@ class _Search:
             return None
         radius = work.number(10) ** (-(self.digits // 2))
         unknowns = [bound[k] for k in columns]
-        thin = Evaluation(reached, digits=self.digits + _GUARD, intervals=True)
-        wide = Evaluation(reached, digits=self.digits + _GUARD, intervals=True)
+        thin = RealValues(reached, digits=self.digits + _GUARD, intervals=True)
+        wide = RealValues(reached, digits=self.digits + _GUARD, intervals=True)
         for atom in unknowns:
             wide.set(atom, wide.around(wide.number(reached[atom]), radius))
         back = inverse([[work(slopes[r][c]) for c in columns] for r in rows], work)
@@ -258,7 +258,7 @@ class _Search:
         return {**dict.fromkeys(rates, sp.S.Zero), **values}
 
 
-def values_of_parts(work: Evaluation, parts: Sequence[sp.Expr]) -> list[Any]:
+def values_of_parts(work: RealValues, parts: Sequence[sp.Expr]) -> list[Any]:
     """The values of expressions; a function of which none is known has one at random.
 
     Raises NotReal for an expression that is not real.
@@ -285,7 +285,7 @@ def newton(
     point = dict(start)
     best = size = None
     for _ in range(_STEPS):
-        work = Evaluation(point, digits=digits + _GUARD)
+        work = RealValues(point, digits=digits + _GUARD)
         values = [work(e) for e in equations]
         size = max(map(abs, values))
         if size < work.number(10) ** (-digits):

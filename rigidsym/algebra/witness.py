@@ -16,16 +16,16 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
-from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.real_values import Evaluation, NotReal
-from rigidsym.algebra.ring import Monomial
-from rigidsym.mechanics.points.configuration import (
+from rigidsym.algebra.configuration import (
     DIGITS,
     MORE_DIGITS,
     Configuration,
     configurations,
     values_of_parts,
 )
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.real_values import NotReal, RealValues
+from rigidsym.algebra.ring import Monomial
 
 _BITS = 240  # behind the point of the numbers of a check
 _SMALL_BITS = 166  # a number below 2^−166, some 10^−50, is zero
@@ -170,7 +170,7 @@ def _combined(sign: str, first: Rows, second: Rows, times: Callable[[Any, Any], 
     return [[a + factor * b for a, b in zip(*rows, strict=True)] for rows in pairs]
 
 
-def value_of(element: PolyElement, values: Sequence[Any], work: Evaluation) -> Any:
+def value_of(element: PolyElement, values: Sequence[Any], work: RealValues) -> Any:
     """An element with numbers or intervals in the place of its generators."""
     total = work.number(0)
     for monomial, coefficient in element.items():
