@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 from jinja2 import (
     FunctionLoader,
     StrictUndefined,
+    Template,
     TemplateError,
     TemplateNotFound,
     TemplateSyntaxError,
@@ -22,12 +23,30 @@ from jinja2.sandbox import SandboxedEnvironment
 from rigidsym.errors import TemplateFault
 
 Find = Callable[[str], tuple[str, str]]  # name -> text, file
+_LONGEST = 20_000_000  # characters that one template may print
+_PADDING = frozenset({"center", "ljust", "rjust", "zfill", "expandtabs", "format", "format_map"})
+_PADDING |= {"replace", "join", "translate"}  # methods of text whose result may be of any length
+_REMOVED = ("batch", "center", "format", "indent", "pprint", "replace", "slice", "wordwrap")
+
+
+class _BoundedTemplate(Template):
+    """A template whose output is bounded."""
+
+    def render(self, *arguments: Any, **names: Any) -> str:
+        length, chunks = 0, []
+        for chunk in self.generate(*arguments, **names):
+            length += len(chunk)
+            if length > _LONGEST:
+                raise TemplateFault(f"{self.filename}: it prints more than {_LONGEST} characters")
+            chunks.append(chunk)
+        return "".join(chunks)
 
 
 class SandboxedTemplates(SandboxedEnvironment):
     """Templates found by a function; every fault in one is a TemplateFault."""
 
-    intercepted_binops = frozenset({"*", "**"})  # a short template could fill the memory
+    intercepted_binops = frozenset({"*", "**", "%"})  # a short template could fill the memory
+    template_class = _BoundedTemplate
 
     def __init__(self, find: Find, **options: Any) -> None:
         self._files: set[str] = set()
@@ -40,14 +59,26 @@ class SandboxedTemplates(SandboxedEnvironment):
             "lstrip_blocks": True,
         }
         super().__init__(**(settings | options))
+        for name in _REMOVED:
+            del self.filters[name]
+        for name in ("lipsum", "joiner", "cycler"):
+            self.globals.pop(name, None)
+
+    def wrap_str_format(self, value: Any) -> None:
+        """No formatting in place of `str.format`, which `is_safe_attribute` refuses."""
+
+    def is_safe_attribute(self, obj: Any, attr: str, value: Any) -> bool:
+        """Refuse methods of text that could fill the memory."""
+        is_padding = isinstance(obj, str) and attr in _PADDING
+        return not is_padding and super().is_safe_attribute(obj, attr, value)
 
     def _load(self, find: Find, name: str) -> tuple[str, str, None] | None:
         try:
             text, file = find(name)
-        except FileNotFoundError:
-            return None
-        except UnicodeDecodeError as error:
-            raise TemplateFault(f"{name} is not text in UTF-8: {error.reason}") from error
+        except (FileNotFoundError, ValueError) as error:
+            if isinstance(error, UnicodeDecodeError):
+                raise TemplateFault(f"{name} is not text in UTF-8: {error.reason}") from error
+            return None  # also for a name with NUL
         self._files.add(file)
         return text, file, None
 

@@ -58,6 +58,13 @@ def test_an_own_template_may_include_others(tmp_path: Path):
         ("{{ title() }}", 1, "'str' object is not callable"),
         ("{% for i in range(999999) %}{% endfor %}", 1, "Range too big"),
         ("{{ 9**9**9**9 }}", 1, "templates place text; ** is not for them"),
+        ("{% include 'a\x00b' %}", 1, "no template a\\x00b"),
+        ("{{ 'a'.center(9999999999) }}", 1, "unsafe"),
+        ("{{ 'a'.replace('a', title) }}", 1, "unsafe"),
+        ("{{ '%9999999999d' % 1 }}", 1, "templates place text; % is not for them"),
+        ("{{ 'a'|center(9999999999) }}", 1, "No filter named 'center'"),
+        ("{{ '{:9999999999}'.format(1) }}", 1, "unsafe"),
+        ("{{ lipsum(n=999999) }}", 1, "'lipsum' is undefined"),
         ("{{ 'a' * 9999999999 }}", 1, "templates place text; * is not for them"),
     ],
 )
@@ -66,6 +73,13 @@ def test_a_fault_is_named_with_its_template_and_line(tmp_path: Path, template, l
         html_with(tmp_path, template)
     assert str(caught.value).startswith(f"{tmp_path / 'note.html.jinja'}, line {line}: ")
     assert said in str(caught.value)
+
+
+def test_the_output_of_a_template_is_bounded(tmp_path: Path):
+    loop = "{% for a in range(999) %}"
+    text = loop * 3 + "xxxxxxxxxx" + "{% endfor %}" * 3
+    with pytest.raises(TemplateFault, match="it prints more than 20000000 characters"):
+        html_with(tmp_path, text)
 
 
 def test_a_fault_in_an_included_template_is_named_there(tmp_path: Path):
