@@ -66,6 +66,17 @@ def schema() -> Schema:
             "additionalProperties": _parameter(),
         },
         "body": _body(),
+        "dynamics": obj(
+            "What acts on the body, which turns about a fixed point.",
+            {
+                "potential": text('potential energy V(q), in joules: "m*g*l*cos(theta)"'),
+                "forces": {
+                    "type": "object",
+                    "description": "generalised forces by coordinate, which may depend on rates",
+                    "additionalProperties": {"type": "string"},
+                },
+            },
+        ),
         "notation": _notation(),
         "output": _output(),
     }

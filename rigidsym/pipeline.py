@@ -135,7 +135,14 @@ def motion_of(spec: DerivationSpec) -> Motion:
         raise ModelError(f"{spec.name} has {len(spec.models)} rotations; expected one")
     (model,) = spec.models
     body = integrated(spec).body
-    motion = derive(model, only=spec.quantities, body=body, theory=spec.theory)
+    motion = derive(
+        model,
+        only=spec.quantities,
+        body=body,
+        potential=spec.potential,
+        forces=dict(spec.forces),
+        theory=spec.theory,
+    )
     notation = cast("Notation | None", spec.notation) or DEFAULT
     return replace(motion, name=spec.name, title=spec.title or motion.title, notation=notation)
 

@@ -102,6 +102,7 @@ class FirstIntegral:
     """A quantity that is constant along every motion, with the proof that it is."""
 
     name: str  # "energy", "momentum_phi"
+    symbol: Formula  # E, p_φ
     expression: sp.Expr  # in the coordinates and their rates
     proof: Proof
 

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rigidsym.errors import Fault, KernelError, ModelError, SpecError
+from rigidsym.errors import ExpressionError, Fault, KernelError, ModelError, SpecError
 from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.models.forces import forces_on
 from rigidsym.models.rotation import RotationModel
 from rigidsym.spec.body_table import read_body
 from rigidsym.spec.derivation_spec import Body, DerivationSpec, fault_of_name, fault_of_title
@@ -21,8 +22,10 @@ from rigidsym.system import resources
 from rigidsym.text.names import offer
 
 A_PAIR_OF_FRAMES = 'two names such as ["inertial", "spacecraft"]'
-_FILE = ("title", "theory", "rotation", "parameters", "body", "notation", "output")
-_RECORD = ("name", "title", "theory", "rotations", "parameters", "body", "notation")
+_OF_BOTH = ("title", "theory", "parameters", "body", "dynamics", "notation")
+_FILE = (*_OF_BOTH, "rotation", "output")
+_RECORD = (*_OF_BOTH, "name", "rotations")
+_DYNAMICS = ("potential", "forces")
 _FORMER = ("measured",)  # in old records: errors that were printed with the kernels
 _OUTPUT = ("quantities", "kernels", "note", "conversions", "derivatives")
 
@@ -96,7 +99,7 @@ class _Reader:
     def hints(self) -> dict[str, str]:
         return {
             **dict.fromkeys((*self.words.choices, "frames"), "it belongs in [notation]"),
-            "potential": f"not supported yet (known: {', '.join(_FILE)})",
+            **dict.fromkeys(_DYNAMICS, "it belongs in [dynamics]"),
             **dict.fromkeys(_FILE, "it belongs at the top of the file, outside the tables"),
             **dict.fromkeys(KEYS, "it belongs in [rotation]"),
             **dict.fromkeys(_OUTPUT, "it belongs in [output]"),
@@ -117,6 +120,7 @@ class _Reader:
             "title": _read_title(table),
             "body": _read_body(table, name, folder),
             "theory": _read_theory(table, models),
+            **_read_dynamics(table, models),
             "notation": self.notation(table),
             **(self.output(output) if output else {}),
         }
@@ -191,6 +195,26 @@ def _read_theory(table: Table, models: Sequence[RotationModel]) -> bool:
     if is_wanted and any(model.passive for model in models):
         table.fault("the theory is written for active rotations; remove passive", "theory")
     return is_wanted
+
+
+def _read_dynamics(table: Table, models: Sequence[RotationModel]) -> dict[str, Any]:
+    """The potential and the forces of [dynamics], each read once with the names of every model."""
+    dynamics = table.table("dynamics")
+    if dynamics is None:
+        return {}
+    dynamics.refuse_others(_DYNAMICS)
+    if table.value("body") is None:
+        table.fault("forces act on a body; expected [body] as well", "dynamics")
+    inner = dynamics.table("forces")
+    potential = dynamics.text("potential")
+    forces = {key: inner.text(key) or "0" for key in inner.data} if inner else {}
+    for model in models:
+        for at, given in (("potential", (potential or "0", {})), ("forces", ("0", forces))):
+            try:
+                forces_on(model, *given)
+            except (ModelError, ExpressionError) as error:
+                dynamics.fault(str(error), at)
+    return {"potential": potential or "0", "forces": tuple(forces.items())}
 
 
 def _read_body(table: Table, name: str, folder: Path | None) -> Body | None:

@@ -37,6 +37,8 @@ class DerivationSpec:
     title: str | None = None  # None: the rotation's own
     models: tuple[RotationModel, ...]
     body: Body | None = None
+    potential: str | None = None  # V(q) as text; None: no equations of motion
+    forces: tuple[tuple[str, str], ...] = ()  # generalised forces, as texts by coordinate
     theory: bool = False  # whether the theory for every body and rotation comes first
     quantities: tuple[str, ...] = ()  # empty: all
     kernels: tuple[str, ...] = ("numpy",)
@@ -76,6 +78,7 @@ class DerivationSpec:
         """
         optional: dict[str, Any] = {
             "theory": self.theory,
+            "dynamics": self._dynamics_data(),
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),
             "notation": self._notation_data(),
@@ -90,6 +93,10 @@ class DerivationSpec:
             **(self.body.request if self.body else {}),
             **{key: value for key, value in optional.items() if value},
         }
+
+    def _dynamics_data(self) -> dict[str, Any]:
+        forces = {"forces": dict(self.forces)} if self.forces else {}
+        return {} if self.potential is None else {"potential": self.potential, **forces}
 
     def _notation_data(self) -> dict[str, Any]:
         if self.notation is None or self.notation == type(self.notation)():

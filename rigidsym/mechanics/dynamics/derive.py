@@ -162,6 +162,7 @@ class Motion:
         if not any(work.forces):
             yield FirstIntegral(
                 name="energy",
+                symbol=claims.ENERGY,
                 expression=self.kinetic + work.potential,
                 proof=self.prove.vanishes(self._energy_rate, claims.ENERGY_IS_CONSTANT),
             )
@@ -172,6 +173,7 @@ class Motion:
                 if slope.is_zero():
                     yield FirstIntegral(
                         name=f"momentum_{q.func.__name__}",
+                        symbol=self.arguments["momenta"].notation[k],
                         expression=momenta[k],
                         proof=self.prove.vanishes(slope, claims.momentum_is_constant(k + 1)),
                     )

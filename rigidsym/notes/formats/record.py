@@ -57,6 +57,14 @@ def record(
         **({"theory": _theory(derivation)} if derivation.theory else {}),
         "arguments": [_argument(argument) for argument in derivation.arguments],
         "quantities": [_step(step, names) for step in derivation.steps],
+        "first_integrals": [
+            {
+                "name": integral.name,
+                "expression": _plain(integral.expression, names),
+                "proof": _proof(integral.proof, names),
+            }
+            for integral in derivation.first_integrals
+        ],
         "definitions": [
             {"name": d.symbol.name, "expression": _plain(d.expression, names)}
             for d in derivation.definitions

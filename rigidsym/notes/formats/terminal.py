@@ -214,6 +214,7 @@ class _Screen(_Steps):
         for step in self.derivation.steps:
             yield ""
             yield from self.step(step)
+        yield from self._first_integrals()
         yield from self._singularities()
         yield from self._numbers()
         yield from self._conversions()
@@ -259,6 +260,16 @@ class _Screen(_Steps):
             yield ""
             yield self.style("In numbers", "heading")
         yield from (_INDENT + line for line in lines)
+
+    def _first_integrals(self) -> Iterator[str]:
+        """What is constant along every motion, if equations of motion were asked for."""
+        found = self.derivation.first_integrals
+        if found:
+            yield ""
+            yield self.style("Constant along every motion (first integrals)", "heading")
+        for integral in found:
+            prefix = f"{self.pen.write(integral.symbol).text} = "
+            yield from self._scalar([prefix], formula_of(integral.expression, self.letters))
 
     def _singularities(self) -> Iterator[str]:
         found = self.derivation.singularities

@@ -32,4 +32,7 @@ _OF_THE_THEORY = {
     "momentum_of_rotation",
     "angular_velocity_of_the_rotation",
 }
-RESULTS = frozenset(_OF_ROTATIONS | _OF_BODIES | _OF_THE_THEORY)  # names of their equations
+_OF_MOTION = {"lagrangian", "accelerations", "angular_acceleration_from_torque"}
+RESULTS = frozenset(
+    _OF_ROTATIONS | _OF_BODIES | _OF_THE_THEORY | _OF_MOTION
+)  # names of their equations

@@ -14,6 +14,7 @@ from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.tree import equal, row
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
+from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
@@ -114,6 +115,7 @@ class Composer:
             "The body": self._body(),
             "The kinetic energy": self._steps(ENERGIES),
             "The angular momentum": self._steps(MOMENTA),
+            "The equations of motion": self._motion(),
             "What was proved": self._proofs(),
             "Symbols": iter([symbols(self.derivation, self.letters)]),
             "Functions": self._functions(),
@@ -129,6 +131,18 @@ class Composer:
 
             yield from blocks_of_body(self.derivation, self.letters)
             yield from self._steps(tuple(INERTIA_QUANTITIES))
+
+    def _motion(self) -> Iterator[NoteBlock]:
+        """Lagrange's and Euler's equations, and what is constant along every motion."""
+        yield from self._steps(tuple(DYNAMICS_QUANTITIES))
+        integrals = self.derivation.first_integrals
+        if integrals:
+            yield Paragraph(
+                ("These quantities are constant along every motion (first integrals):",)
+            )
+        for integral in integrals:
+            value = formula_of(integral.expression, self.letters)
+            yield Equation(sides=(integral.symbol, value))
 
     def _convention(self) -> Iterator[NoteBlock]:
         return (Paragraph(text) for text in convention(self.derivation, self.letters.notation))
