@@ -26,7 +26,7 @@ from rigidsym.models.so3 import AXES, time_function
 from rigidsym.text.expression import names_in, parse_expression, parse_turns
 from rigidsym.text.names import check_name
 
-LONGEST = 1000  # characters of a sequence or of turns
+LONGEST = 900  # characters of a sequence or of turns
 _AT_REST = re.compile(r".*\D0")  # a name that ends in 0: alpha0, b_0; not a_10
 _AXES_OF_DIGITS = str.maketrans("123", "XYZ")
 _ALIASES = {"mrp": "modified_rodrigues", "quat": "quaternion", "rotvec": "rotation_vector"}

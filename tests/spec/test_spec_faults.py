@@ -112,9 +112,9 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
             f"line 2: rotation.sequence: expected {SEQUENCE}, got a table",
         ),
         (
-            f'[rotation]\nsequence = "{"z" * 201}"',
+            f'[rotation]\nsequence = "{"z" * 901}"',
             'line 2: rotation.sequence: expected a sequence such as "ZXZ", turns such as '
-            '"z(phi) x(theta)", or a name, got 201 characters',
+            '"z(phi) x(theta)", or a name, got 901 characters',
         ),
         (
             '[rotation]\nsequence = "z(phi_dot) x(a) z(b)"',
@@ -181,8 +181,7 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
         ),
         (
             f"{ZXZ}[potential]",
-            "line 3: potential: unknown key; not supported yet "
-            "(known: title, theory, rotation, parameters, body, notation, output)",
+            "line 3: potential: unknown key; it belongs in [dynamics]",
         ),
         (
             "a = 1\nb = \nc = 2",
@@ -321,3 +320,12 @@ json_values = st.recursive(
 )
 def test_any_data_is_read_or_refused(data):
     is_read_or_refused(read_record, data)
+
+
+def test_faults_of_dynamics_are_placed():
+    text = '[rotation]\nsequence = "ZXZ"\n[dynamics]\npotential = "m*("\nforces = { chi = "1" }\n'
+    assert faults(text) == [
+        "line 3: dynamics: forces act on a body; expected [body] as well",
+        "line 4: dynamics.potential: expected a number, a name or (, found the end",
+        "line 5: dynamics.forces: a force on chi, which is none of phi, theta, psi",
+    ]
