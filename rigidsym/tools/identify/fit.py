@@ -13,7 +13,7 @@ from rigidsym.data.text import MOST_SHOWN
 from rigidsym.system.progress import Progress
 from rigidsym.tools.identify.align import aligned
 from rigidsym.tools.identify.calls import calls
-from rigidsym.tools.identify.readings import VELOCITIES, Reading, Velocity, distinct
+from rigidsym.tools.identify.readings import VELOCITIES, Reading, distinct
 from rigidsym.tools.identify.samples import SLACK, Block, SampleError, check
 from rigidsym.tools.identify.sources import Source
 from rigidsym.tools.identify.tolerance import Tolerance, check_tolerance, tolerances
@@ -104,31 +104,26 @@ def _scale(block: Block) -> float:
 
 
 class _Candidates:
-    """A grid of readings: of the orientation down, of Ω across."""
+    """Readings whose orientations, and whose Ω, are each computed once."""
 
-    def __init__(self, orientations: Sequence[Reading], velocities: Sequence[Velocity]) -> None:
-        self.table = Table(orientations)
-        self.velocities = tuple(velocities)  # none if the data have no Ω
+    def __init__(self, readings: Sequence[Reading]) -> None:
+        self.readings = tuple(readings)
+        orientations = list(dict.fromkeys(reading.orientation for reading in readings))
+        velocities = list(dict.fromkeys(r.velocity for r in readings if r.velocity))
+        self._table, self._velocities = Table(orientations), velocities
+        numbers = {reading: number for number, reading in enumerate(orientations)}
+        self._orientation = np.array([numbers[reading.orientation] for reading in readings])
+        self._velocity = [velocities.index(r.velocity) for r in readings if r.velocity]
 
-    def __len__(self) -> int:
-        return len(self.table) * max(1, len(self.velocities))
-
-    def grid(self) -> list[list[Reading]]:
-        """Rows of readings; one column if the data have no Ω."""
-        velocities = self.velocities or (None,)
-        return [[replace(r, velocity=v) for v in velocities] for r in self.table.readings]
-
-    def angles(self, block: Block) -> Array:
-        """Between each reading and the data, in radians: (n, readings of the orientation)."""
-        return self.table.residuals(block.angles, block.orientation())
-
-    def velocity_residuals(self, block: Block, scale: float) -> Array:
-        """|difference of Ω| over the scale: (n, readings of the orientation, readings of Ω)."""
+    def residuals(self, block: Block, scale: float) -> tuple[Array, Array]:
+        """Angles to the data in radians, and |difference of Ω| over the scale: (n, readings)."""
+        angles = self._table.residuals(block.angles, block.orientation())[:, self._orientation]
         if block.rates is None or block.omega is None:
-            return np.zeros((len(block), len(self.table), 1))
-        omega = angular_velocities(self.table.readings, block.angles, block.rates)
-        difference = as_given(omega, self.velocities) - block.omega[:, None, None]
-        return np.asarray(np.linalg.norm(difference, axis=-1) / scale)
+            return angles, np.zeros_like(angles)
+        omega = angular_velocities(self._table.readings, block.angles, block.rates)
+        difference = as_given(omega, self._velocities) - block.omega[:, None, None]
+        off = np.linalg.norm(difference, axis=-1) / scale
+        return angles, off[:, self._orientation, self._velocity]
 
 
 @cache
@@ -158,58 +153,42 @@ def _narrowed(
             if found:
                 return tolerance, found
         left = [readings[np.lexsort((angles.max(axis=0), off.sum(axis=0)))[0]]]
-    return tolerance, _nearest_velocity(left, block, scale)
+    return tolerance, _with_velocities(left[:1], block, scale, None)
 
 
 def _with_velocities(
-    orientations: Sequence[Reading], block: Block, scale: float, tolerance: float
+    orientations: Sequence[Reading], block: Block, scale: float, tolerance: float | None
 ) -> list[Reading]:
-    """Each reading of the orientation with every reading of Ω that fits."""
+    """Each reading of the orientation with every reading of Ω that fits, or with the nearest."""
     if block.omega is None:
         return list(orientations)
-    candidates = _Candidates(orientations, VELOCITIES)
-    fits = candidates.velocity_residuals(block, scale).max(axis=0) <= tolerance
-    grid = candidates.grid()
-    return [grid[row][column] for row, column in np.argwhere(fits)]
-
-
-def _nearest_velocity(orientations: Sequence[Reading], block: Block, scale: float) -> list[Reading]:
-    if block.omega is None:
-        return [orientations[0]]
-    candidates = _Candidates(orientations, VELOCITIES)
-    worst = candidates.velocity_residuals(block, scale).max(axis=0)
-    row, column = np.unravel_index(worst.argmin(), worst.shape)
-    return [candidates.grid()[row][column]]
+    candidates = _Candidates([replace(r, velocity=v) for r in orientations for v in VELOCITIES])
+    worst = candidates.residuals(block, scale)[1].max(axis=0)
+    chosen = np.flatnonzero(worst <= tolerance) if tolerance is not None else [worst.argmin()]
+    return [candidates.readings[k] for k in chosen]
 
 
 class _Tally:
-    """The largest residuals so far of each candidate of a grid."""
+    """The largest residuals so far of each candidate."""
 
     def __init__(self, readings: Sequence[Reading], tolerance: Tolerance, scale: float) -> None:
-        orientations = list(dict.fromkeys(r.orientation for r in readings))
-        velocities = list(dict.fromkeys(r.velocity for r in readings if r.velocity))
-        self._candidates = _Candidates(orientations, velocities)
-        self._readings = frozenset(readings)
-        self._allowed = tolerance.of(np.array([r.degrees for r in orientations]))
+        self._candidates = _Candidates(readings)
+        self._allowed = tolerance.of(np.array([reading.degrees for reading in readings]))
         self._allowed_velocity, self._scale = tolerance.velocity, scale
-        shape = (len(orientations), max(1, len(velocities)))
-        self._angle, self._velocity = np.zeros(len(orientations)), np.zeros(shape)
-        self._share, self._row = np.full(shape, -1.0), np.zeros(shape, np.intp)
-        self._fitting, self._samples = np.zeros(shape, np.intp), 0
+        self._angle, self._velocity = np.zeros((2, len(readings)))
+        self._share, self._row = np.full(len(readings), -1.0), np.zeros(len(readings), np.intp)
+        self._fitting, self._samples = np.zeros(len(readings), np.intp), 0
 
     def add(self, block: Block) -> None:
         """Take these rows into account, a few at a time if there are many candidates."""
-        at_once = max(1, _AT_ONCE // len(self._candidates))
+        at_once = max(1, _AT_ONCE // len(self._share))
         for start in range(0, len(block), at_once):
             self._add(block.at(slice(start, start + at_once)))
         self._samples += len(block)
 
     def _add(self, block: Block) -> None:
-        angles = self._candidates.angles(block)
-        velocities = self._candidates.velocity_residuals(block, self._scale)
-        shares = np.maximum(
-            (angles / self._allowed)[..., None], velocities / self._allowed_velocity
-        )
+        angles, velocities = self._candidates.residuals(block, self._scale)
+        shares = np.maximum(angles / self._allowed, velocities / self._allowed_velocity)
         self._fitting += (shares <= 1).sum(axis=0)
         self._angle = np.maximum(self._angle, angles.max(axis=0))
         self._velocity = np.maximum(self._velocity, velocities.max(axis=0))
@@ -219,22 +198,20 @@ class _Tally:
 
     def answers(self, source: Source) -> tuple[Answer, ...]:
         """The candidates that fit every row, or only the nearest."""
-        found = [
-            (self._answer(row, column, reading, source), float(self._share[row, column]))
-            for row, readings in enumerate(self._candidates.grid())
-            for column, reading in enumerate(readings)
-            if reading in self._readings
-        ]
-        fitting = [answer for answer, _ in found if answer.fits]
-        nearest, _ = min(found, key=lambda pair: (-pair[0].fitting, pair[1]))
-        return tuple(sorted(fitting, key=lambda a: a.reading.plainness())) or (nearest,)
+        fitting = np.flatnonzero(self._fitting == self._samples)
+        if not len(fitting):
+            fitting = np.lexsort((self._share, -self._fitting))[:1]
+        places = {row: source.place(row) for row in set(self._row[fitting].tolist())}
+        answers = (self._answer(k, places[int(self._row[k])]) for k in fitting.tolist())
+        return tuple(sorted(answers, key=lambda answer: answer.reading.plainness()))
 
-    def _answer(self, row: int, column: int, reading: Reading, source: Source) -> Answer:
+    def _answer(self, number: int, worst: str) -> Answer:
+        reading = self._candidates.readings[number]
         return Answer(
             reading=reading,
-            residual=float(self._angle[row]),
-            velocity_residual=float(self._velocity[row, column]) if reading.velocity else None,
-            worst=source.place(int(self._row[row, column])),
-            fitting=int(self._fitting[row, column]),
+            residual=float(self._angle[number]),
+            velocity_residual=float(self._velocity[number]) if reading.velocity else None,
+            worst=worst,
+            fitting=int(self._fitting[number]),
             samples=self._samples,
         )
