@@ -70,7 +70,7 @@ def as_sine_cosine(expression: sp.Expr) -> tuple[sp.Expr, sp.Expr] | None:
     return parts[0](argument) if parts[0] else sp.S.One, parts[1](argument)
 
 
-class Request:
+class GeneratorSet:
     """Generators found so far: `kinds` in order of discovery, and the angles among them."""
 
     def __init__(self, order: int) -> None:

@@ -10,8 +10,8 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.adjoin import (
+    GeneratorSet,
     Kind,
-    Request,
     as_sine_cosine,
     is_highest,
     is_uncertain,
@@ -37,16 +37,16 @@ def codec_for(
     Raises AlgebraError for an expression that no ring of this kind can hold.
     """
     held_to = tuple(sp.sympify(constraint, strict=True) for constraint in constraints)
-    request = Request(order)
+    needed = GeneratorSet(order)
     for expression in dict.fromkeys((*expressions, *held_to)):
-        request.collect(sp.sympify(expression, strict=True))
-    request.close()
+        needed.collect(sp.sympify(expression, strict=True))
+    needed.close()
     return _shared(
-        tuple(request.generators()),
-        tuple(request.fractions.items()),
+        tuple(needed.generators()),
+        tuple(needed.fractions.items()),
         held_to,
         order,
-        request.needs_fractions or bool(held_to),
+        needed.needs_fractions or bool(held_to),
     )
 
 

@@ -1,4 +1,4 @@
-"""The entire functions c_k of n² behind rotation vectors, and their derived series.
+"""The Stumpff functions c_k of n², on which rotation vectors rest, and their derived series.
 
 c₀ = cos n, c₁ = sin n/n, c₂ = (1 − cos n)/n², c₃ = (n − sin n)/n³, and on by
 c_{k+2} = (c_k(0) − c_k)/n². Their closed forms are 0/0 at n = 0 and lose digits near it; from

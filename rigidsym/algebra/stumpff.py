@@ -1,8 +1,8 @@
 """Quotients with removable singularities at n = 0, n = √(v·v), written without them.
 
-What has sin n, cos n and 1/n in it, and yet no singularity at n = 0, is a polynomial in the entire
-functions c_k(n) of `series.py` and in the other generators; the form found is put back into the
-ring, and must be equal there.
+An expression in sin n, cos n and 1/n without a singularity at n = 0 is a polynomial in the Stumpff
+functions c_k of `series.py` and in the other generators. The form found is put back into the ring,
+and must be equal there.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ Orders = tuple[int, ...]  # of the functions c_k in one product, in order
 Parts = dict[tuple[Orders, int], PolyElement]  # (functions, power of 1/n²): what stands before
 
 
-class Entire(sp.Function):
-    """c_k of n², unevaluated: Entire(k, n²)."""
+class Stumpff(sp.Function):
+    """The Stumpff function c_k of n², unevaluated: Stumpff(k, n²)."""
 
     nargs = 2
 
 
 def at_zero(form: sp.Expr) -> sp.Expr:
-    """A form in `Entire` where the functions of time, and so n, are zero."""
-    flat = form.replace(Entire, lambda order, _: sp.Rational(*_start(int(order))))
+    """A form in Stumpff functions at zero coordinates, where n = 0."""
+    flat = form.replace(Stumpff, lambda order, _: sp.Rational(*_start(int(order))))
     return flat.xreplace(dict.fromkeys(flat.atoms(AppliedUndef), sp.S.Zero))
 
 
@@ -96,7 +96,7 @@ class Rewriter:
         self.codec = codec
         self._norm = norm
         angle = norm.ratio * norm.expression
-        self._functions = [Entire(k, angle**2) for k in range(_HIGHEST + 1)]
+        self._functions = [Stumpff(k, angle**2) for k in range(_HIGHEST + 1)]
         self._closed = {f: closed_form(k, angle) for k, f in enumerate(self._functions)}
         self._symbols = [sp.Dummy(f"c{k}") for k in range(_HIGHEST + 1)]
         special = {norm.sine, norm.cosine, *norm.powers}
@@ -105,7 +105,7 @@ class Rewriter:
         self._wholes: dict[PolyElement, sp.Expr | None] = {}
 
     def rewritten(self, expression: sp.Expr) -> sp.Expr | None:
-        """The expression in terms of `Entire`, proved equal; None where a singularity stays.
+        """The expression in terms of `Stumpff`, proved equal; None where a singularity stays.
 
         What stands below a fraction bar may still vanish, but not at n = 0 for all v.
         """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, Protocol, Self
@@ -214,17 +215,32 @@ class Place:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Singularity:
-    """Where the rate matrix loses rank, and what is lost there.
+    """An orientation at which the rate matrix loses rank, and what is lost there.
 
-    Rates are those that keep to the conditions on the coordinates, where there are any.
+    Only rates that satisfy the conditions on the coordinates count.
     """
 
-    places: tuple[Place, ...]  # all at once; none where the rank is too low everywhere
+    places: tuple[Place, ...]  # all at once; none if the rank is too low everywhere
     rank: int
-    lost_space: sp.ImmutableMatrix | None  # no q̇ gives Ω along this direction; (3, 1)
-    lost_body: sp.ImmutableMatrix | None  # the same direction in body components
-    undetermined: sp.ImmutableMatrix  # columns that span the q̇ that turn nothing, (n, k)
-    reached: sp.ImmutableMatrix | None = None  # the direction of all Ω, where the rank is 1; (3, 1)
+    lost_axis_space: sp.ImmutableMatrix | None  # no q̇ gives Ω along this direction; (3, 1)
+    lost_axis_body: sp.ImmutableMatrix | None  # the same direction in body components
+    null_rates: sp.ImmutableMatrix  # columns that span the q̇ with Ω = 0, (n, k)
+    reachable_axis: sp.ImmutableMatrix | None = None  # of all Ω, if the rank is 1; (3, 1)
+
+    def __getattr__(self, name: str) -> Any:
+        """The attributes by their former names, with a DeprecationWarning."""
+        if name not in _FORMER_NAMES:
+            raise AttributeError(name)
+        warnings.warn(f"{name} is now {_FORMER_NAMES[name]}", DeprecationWarning, stacklevel=2)
+        return getattr(self, _FORMER_NAMES[name])
+
+
+_FORMER_NAMES = {
+    "lost_space": "lost_axis_space",
+    "lost_body": "lost_axis_body",
+    "undetermined": "null_rates",
+    "reached": "reachable_axis",
+}
 
 
 Measure = Literal["det W", "det [W, J]", "det W Wᵀ", "det Wᵀ W", "minors"]

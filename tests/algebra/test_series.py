@@ -14,7 +14,7 @@ from helpers.witness import mp
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.halves import halved
 from rigidsym.algebra.series import FIRST_SERIES, closed_form, series_of, taylor
-from rigidsym.algebra.stumpff import Entire, at_zero, rewriter_of
+from rigidsym.algebra.stumpff import Stumpff, at_zero, rewriter_of
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import time_function
 from rigidsym.motion import derive
@@ -111,15 +111,15 @@ def rewritten(expression: sp.Expr) -> sp.Expr | None:
 @pytest.mark.parametrize(
     ("expression", "form"),
     [
-        (sp.sin(NORM) / NORM, Entire(1, NORM**2)),
-        ((1 - sp.cos(NORM)) / NORM**2, Entire(2, NORM**2)),
-        ((NORM - sp.sin(NORM)) / NORM**3, Entire(3, NORM**2)),
-        (X + sp.cos(NORM), X + Entire(0, NORM**2)),
+        (sp.sin(NORM) / NORM, Stumpff(1, NORM**2)),
+        ((1 - sp.cos(NORM)) / NORM**2, Stumpff(2, NORM**2)),
+        ((NORM - sp.sin(NORM)) / NORM**3, Stumpff(3, NORM**2)),
+        (X + sp.cos(NORM), X + Stumpff(0, NORM**2)),
         (
             (sp.sin(NORM) - NORM * sp.cos(NORM)) / NORM**3,
-            Entire(2, NORM**2) - Entire(3, NORM**2),
+            Stumpff(2, NORM**2) - Stumpff(3, NORM**2),
         ),
-        (NORM * sp.sin(NORM) / (1 - sp.cos(NORM)), Entire(1, NORM**2) / Entire(2, NORM**2)),
+        (NORM * sp.sin(NORM) / (1 - sp.cos(NORM)), Stumpff(1, NORM**2) / Stumpff(2, NORM**2)),
     ],
     ids=str,
 )
@@ -136,7 +136,7 @@ def test_what_is_singular_stays_so(expression):
 
 
 def test_forms_at_zero():
-    assert at_zero(2 * Entire(2, NORM**2) + X) == 1
+    assert at_zero(2 * Stumpff(2, NORM**2) + X) == 1
 
 
 def test_every_quantity_of_the_rotation_vector_is_regular_at_zero():
@@ -154,9 +154,9 @@ def test_half_of_a_length_has_its_own_functions():
     """The quaternion of a rotation vector: sin(n/2)/n = ½ c₁(n²/4)."""
     rewriter = rewriter_of([sp.sin(NORM / 2) / NORM, X])
     quarter = (NORM / 2) ** 2
-    assert rewriter.rewritten(X * sp.sin(NORM / 2) / NORM) == X * Entire(1, quarter) / 2
+    assert rewriter.rewritten(X * sp.sin(NORM / 2) / NORM) == X * Stumpff(1, quarter) / 2
     form = rewriter.rewritten((1 - sp.cos(NORM)) / NORM**2)
-    assert form.atoms(Entire) <= {Entire(k, quarter) for k in range(5)}
+    assert form.atoms(Stumpff) <= {Stumpff(k, quarter) for k in range(5)}
     assert at_zero(form) == sp.Rational(1, 2)
 
 

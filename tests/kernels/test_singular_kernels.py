@@ -259,7 +259,7 @@ def test_whole_turns_are_said_in_words():
     assert found.is_solved
     (place,) = point.places
     assert (place.coordinate, place.value, point.rank) == (found.length, 2 * sp.pi, 1)
-    assert list(point.reached) == list(motion.model.coordinates)
+    assert list(point.reachable_axis) == list(motion.model.coordinates)
     text = " ".join(motion.note().latex().split())
     assert "$n = 2 \\pi k$ with $k = 1, 2, \\ldots$, and nowhere else; at $n = 0$" in text
     assert "rates turn the body about ($v_{1}$, $v_{2}$, $v_{3}$) alone." in text

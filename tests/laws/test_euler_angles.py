@@ -84,8 +84,8 @@ def test_rank_at_the_stated_angles_is_the_stated_rank(m: Moving):
 def test_lost_direction_is_out_of_reach_in_both_frames(m: Moving):
     for singular, values in singular_points(m):
         R = evaluate(m.motion.rotation_matrix, values)
-        lost = evaluate(singular.lost_space, values)
-        lost_body = evaluate(singular.lost_body, values)
+        lost = evaluate(singular.lost_axis_space, values)
+        lost_body = evaluate(singular.lost_axis_body, values)
         assert mp.norm(lost) > 1e-9
         assert agree((R if m.is_passive else R.T) * lost, lost_body)
         for frame, direction in (("space", lost), ("body", lost_body)):
@@ -95,7 +95,7 @@ def test_lost_direction_is_out_of_reach_in_both_frames(m: Moving):
 @every_point
 def test_undetermined_rates_turn_nothing(m: Moving):
     for singular, values in singular_points(m):
-        idle = evaluate(singular.undetermined, values)
+        idle = evaluate(singular.null_rates, values)
         assert mp.norm(idle) > 1e-9
         for frame in FRAMES:
             assert agree(rate_matrix(m, frame, values) * idle, mp.zeros(3, 1))

@@ -141,8 +141,8 @@ def test_only_the_sum_of_the_outer_angles_matters_where_theta_vanishes():
     for point, value in ((at_zero, 0), (at_pi, sp.pi)):
         (place,) = point.places
         assert (place.coordinate, place.value, point.rank) == (theta, value, 2)
-    assert at_zero.undetermined == sp.Matrix([1, 0, -1])
-    assert at_pi.undetermined == sp.Matrix([1, 0, 1])
+    assert at_zero.null_rates == sp.Matrix([1, 0, -1])
+    assert at_pi.null_rates == sp.Matrix([1, 0, 1])
     assert MOTION.singularities.is_solved
     alpha = sp.Symbol("alpha")
     level = MOTION.rotation_matrix.subs(theta, 0)

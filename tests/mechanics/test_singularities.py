@@ -145,20 +145,22 @@ def test_at_the_points_the_rank_and_the_directions_are_the_stated_ones(text):
         q = at(text, point, k=k, seed=k)
         matrix, basis = rate_matrix(text, q), allowed(text, q)
         assert rank(matrix) == point.rank
-        idle = numbers(point.undetermined, text, q)
+        idle = numbers(point.null_rates, text, q)
         assert rank(idle) == basis.shape[1] - point.rank
         np.testing.assert_allclose(basis @ (basis.T @ idle), idle, atol=1e-9)
         np.testing.assert_allclose(matrix @ basis.T @ idle, 0, atol=1e-9)
-        if point.lost_space is not None:
-            lost = numbers(point.lost_space, text, q)
+        if point.lost_axis_space is not None:
+            lost = numbers(point.lost_axis_space, text, q)
             assert np.linalg.norm(lost) > 1e-3
             np.testing.assert_allclose(lost.T @ matrix, 0, atol=1e-9)
             R = numbers(motion.rotation_matrix, text, q)
             turned = R if motion.model.passive else R.T
-            np.testing.assert_allclose(turned @ lost, numbers(point.lost_body, text, q), atol=1e-9)
-        if point.reached is not None:
+            np.testing.assert_allclose(
+                turned @ lost, numbers(point.lost_axis_body, text, q), atol=1e-9
+            )
+        if point.reachable_axis is not None:
             assert point.rank == 1
-            reached = numbers(point.reached, text, q)
+            reached = numbers(point.reachable_axis, text, q)
             assert rank(np.hstack([matrix, reached])) == 1
 
 
@@ -323,3 +325,10 @@ def test_at_the_points_rates_are_nan_and_never_huge(text, dtype):
 def test_rates_of_more_or_fewer_turns_can_be_asked_for_alone(text):
     alone = derive(rotation_from(text), only=("rate_matrix_body",))
     assert alone.singularities == motion_of(text).singularities
+
+
+def test_former_names_of_what_is_lost_still_work_and_warn():
+    point = derive("ZXZ").singularities.points[0]
+    for old, new in (("lost_space", "lost_axis_space"), ("undetermined", "null_rates")):
+        with pytest.warns(DeprecationWarning, match=f"{old} is now {new}"):
+            assert getattr(point, old) == getattr(point, new)

@@ -227,8 +227,8 @@ class TestSingularAngles:
         """After a whole turn sin θ/2 vanishes again, where other rates turn nothing."""
         found = self.singular(("z", phi), ("x", theta / 2), ("z", psi))
         assert self.places(found) == {(0, 4 * pi, 2), (2 * pi, 4 * pi, 2)}
-        assert found.points[0].undetermined == sp.Matrix([1, 0, -1])
-        assert found.points[1].undetermined == sp.Matrix([1, 0, 1])
+        assert found.points[0].null_rates == sp.Matrix([1, 0, -1])
+        assert found.points[1].null_rates == sp.Matrix([1, 0, 1])
 
     @pytest.mark.parametrize(("axes", "offset"), [("zxz", 0), ("xyz", 3 * pi / 2)])
     def test_thirds_have_three_times_the_period(self, axes, offset):

@@ -263,7 +263,7 @@ def test_what_idle_rates_leave_determined():
         place = Place(coordinate=at, value=sp.S.Zero, period=2 * sp.pi)
         columns = sp.ImmutableMatrix(sp.Matrix([idle]).T)
         found = Singularity(
-            places=(place,), rank=2, lost_space=None, lost_body=None, undetermined=columns
+            places=(place,), rank=2, lost_axis_space=None, lost_axis_body=None, null_rates=columns
         )
         return determined(found, q, rates)
 

@@ -2,7 +2,7 @@
 
 Tangents and their like become sines over cosines, the sine and the cosine of an angle are taken
 once, and what the outputs of a kernel have in common is computed once. Where n = √(v·v) leaves a
-removable singularity, it is written in the entire functions of n²; where 1 ± cos θ divides, in
+removable singularity, it is written in Stumpff functions of n²; where 1 ± cos θ divides, in
 θ/2; and divisors that can vanish are guarded. Nothing else is changed: put back into each other,
 the assignments are the derivation's own expression.
 """
@@ -17,7 +17,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.halves import halved
-from rigidsym.algebra.stumpff import Entire, at_zero, rewriter_of
+from rigidsym.algebra.stumpff import Stumpff, at_zero, rewriter_of
 from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.derivatives import Derivative
 from rigidsym.kernels.lowering.guard import guarded
@@ -314,7 +314,7 @@ def _symbol(measure: Measure) -> str:
 def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rational, str]:
     """The number that scales the margin to at most 1, and what the margin is in words.
 
-    A product of sines, cosines and entire functions is largest where each of them is; of anything
+    A product of sines, cosines and Stumpff functions is largest where each of them is; of anything
     else the determinant is taken as it is.
     """
     about = "how far the rates are from failing"
@@ -322,9 +322,9 @@ def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rationa
         return sp.S.One, f"{about}, the product of the singular values of W; 0 where they do"
     number, rest = minors[0].as_coeff_Mul()
     factors = [factor.as_base_exp()[0] for factor in sp.Mul.make_args(rest)]
-    if not all(isinstance(factor, sp.sin | sp.cos | Entire) for factor in factors):
+    if not all(isinstance(factor, sp.sin | sp.cos | Stumpff) for factor in factors):
         return sp.S.One, f"{about}; 0 where they do"
-    value = at_zero(rest) if rest.has(Entire) else sp.S.One
+    value = at_zero(rest) if rest.has(Stumpff) else sp.S.One
     scale = abs(number) * (value if value.is_Rational and value else 1)
     return scale, f"{about}; 1 at most, 0 where they do"
 

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from rigidsym.algebra.stumpff import Entire
+from rigidsym.algebra.stumpff import Stumpff
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.cse import CHOICE, Factors, Graph, Weighted
 from rigidsym.mechanics.conversions.values import Epsilon, Where
@@ -80,7 +80,7 @@ class Reader:
             return self._factored(self.graph.sum(map(self.weighted, expression.args)))
         if expression.is_Pow and (2 * expression.exp).is_Integer:
             return self._power(expression.base, expression.exp)
-        if isinstance(expression, Entire):
+        if isinstance(expression, Stumpff):
             order, square = expression.args
             return Fraction(1), (self.graph.call(f"c{order}", self.weighted(square)),)
         if isinstance(expression, sp.Abs):

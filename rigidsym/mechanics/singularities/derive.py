@@ -153,10 +153,10 @@ class _Study:
         return Singularity(
             places=tuple(root.place for root in zero),
             rank=rank,
-            lost_space=space,
-            lost_body=body,
-            undetermined=self.present.matrix(_kernel(there, full)),
-            reached=self._in_space_and_body(line, zero)[0],
+            lost_axis_space=space,
+            lost_axis_body=body,
+            null_rates=self.present.matrix(_kernel(there, full)),
+            reachable_axis=self._in_space_and_body(line, zero)[0],
         )
 
     def _line(self, there: RingMatrix) -> RingMatrix:

@@ -207,10 +207,10 @@ def _point(point: Singularity, names: Names) -> dict[str, Any]:
     return {
         "at": [_place(place, names) for place in point.places],
         "rank": point.rank,
-        "lost_direction_space": _vector(point.lost_space, names),
-        "lost_direction_body": _vector(point.lost_body, names),
-        "undetermined_rates": [_vector(idle, names) for idle in _columns(point.undetermined)],
-        "reached_direction_space": _vector(point.reached, names),
+        "lost_direction_space": _vector(point.lost_axis_space, names),
+        "lost_direction_body": _vector(point.lost_axis_body, names),
+        "undetermined_rates": [_vector(idle, names) for idle in _columns(point.null_rates)],
+        "reached_direction_space": _vector(point.reachable_axis, names),
     }
 
 

@@ -183,7 +183,7 @@ def singular(point: Singularity, derivation: Derivation) -> Text:
 
 
 def _determined(point: Singularity, derivation: Derivation, letters: Letters) -> Text:
-    idle = point.undetermined
+    idle = point.null_rates
     coordinates = derivation.argument("q").symbols
     if not all(entry.is_number for entry in idle):
         moved = [q for q, row in zip(coordinates, idle.tolist(), strict=True) if any(row)]
@@ -207,16 +207,16 @@ def determined(
     They are those of the coordinates where such rates stay at the point: R is then the same all
     along. Where they leave it, only rates are determined, and the combinations are those of rates.
     """
-    if not all(entry.is_Rational for entry in point.undetermined):
+    if not all(entry.is_Rational for entry in point.null_rates):
         return []
     fixed = {place.coordinate for place in point.places}
     leaves = any(
         any(row)
-        for q, row in zip(coordinates, point.undetermined.tolist(), strict=True)
+        for q, row in zip(coordinates, point.null_rates.tolist(), strict=True)
         if q in fixed
     )
     named = rates if leaves else coordinates
-    kept = sp.Matrix(point.undetermined.T).nullspace()
+    kept = sp.Matrix(point.null_rates.T).nullspace()
     found = (sp.Add(*(n * q for n, q in zip(_whole(row), named, strict=True))) for row in kept)
     return [combination for combination in found if combination not in fixed]
 
@@ -229,14 +229,15 @@ def _whole(row: sp.MatrixBase) -> list[sp.Expr]:
 
 
 def _lost(point: Singularity, letters: Letters) -> Text:
-    if point.reached is not None:
-        return (", and rates turn the body about ", *vector(point.reached, letters), " alone")
-    if point.lost_space is None or point.lost_body is None:
+    if point.reachable_axis is not None:
+        axis = vector(point.reachable_axis, letters)
+        return (", and rates turn the body about ", *axis, " alone")
+    if point.lost_axis_space is None or point.lost_axis_body is None:
         return ()
     return (
         ", and no rates turn the body about ",
-        *vector(point.lost_space, letters),
+        *vector(point.lost_axis_space, letters),
         " in space, that is ",
-        *vector(point.lost_body, letters),
+        *vector(point.lost_axis_body, letters),
         " in the body",
     )
