@@ -7,9 +7,10 @@ points, in rational numbers. π/2 is cut in parts so short that n times each is 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from math import cos, factorial, pi
 
 _TERMS = 16  # of the power series that is interpolated: the next is below 1e-35
@@ -40,9 +41,9 @@ class Reduction:
 def reduction(digits: int) -> Reduction:
     """The reduction for 53 bits (double) or 24 (float)."""
     turns, parts, terms = {53: (21, 2, 6), 24: (13, 3, 3)}[digits]
-    eighth = _nearest_root() * _MARGIN
+    eighth = quarter_of_pi() * _MARGIN
     top = eighth * eighth
-    sine, cosine = _interpolated(3, terms, top), _interpolated(4, terms, top)
+    sine, cosine = (interpolated(partial(_series, first), terms, top) for first in (3, 4))
     return Reduction(
         digits=digits,
         turns=turns,
@@ -81,7 +82,7 @@ def _arctangent(inverse: int, one: int) -> int:
     return total
 
 
-def _nearest_root() -> Fraction:
+def quarter_of_pi() -> Fraction:
     return Fraction(_pi_times_two_to(200), 4 << 200)
 
 
@@ -106,10 +107,12 @@ def _cut(value: Fraction, bits: int) -> Fraction:
     return Fraction(int(value * scale)) / scale
 
 
-def _interpolated(first: int, terms: int, top: Fraction) -> tuple[Fraction, ...]:
-    """The polynomial through Σ ± z^k/(2k + first)! in Chebyshev's points of (0, top)."""
+def interpolated(
+    function: Callable[[Fraction], Fraction], terms: int, top: Fraction
+) -> tuple[Fraction, ...]:
+    """The polynomial through a function in Chebyshev's points of (0, top), lowest power first."""
     points = [top * (1 + Fraction(cos(pi * (2 * k + 1) / (2 * terms)))) / 2 for k in range(terms)]
-    table = [_series(first, z) for z in points]
+    table = list(map(function, points))
     for width in range(1, terms):  # Newton's divided differences
         for k in range(terms - 1, width - 1, -1):
             table[k] = (table[k] - table[k - 1]) / (points[k] - points[k - width])

@@ -96,7 +96,7 @@ def _three(values: NamedValues, rule: TurnChain, parts: Vector, axes: Sequence[V
     plus, minus, far, near = _halves(values, parts, axes[0], axes[2])
     by_sum, by_difference = halves_between(axes, plus, 1), halves_between(axes, minus, -1)
     swing = values.let("swing", 2 * sp.atan2(near, far))
-    middle, base, beyond = middle_of_triangle(values, axes, swing)
+    middle, base, beyond = middle_of_triangle(values, axes, swing, is_across=rule.is_across)
     if not rule.has_two_sets:
         fixed, free = (by_difference, by_sum) if rule.mirror > 0 else (by_sum, by_difference)
         length = far if rule.mirror > 0 else near
@@ -109,11 +109,13 @@ def _three(values: NamedValues, rule: TurnChain, parts: Vector, axes: Sequence[V
     difference = _outer(values, "half_difference", by_difference, turned)
     if rule.mirror:
         total, difference, apart = _alike(values, rule.mirror, (near, far), (total, difference))
-        beyond = values.let("beyond", Where(apart > beyond, apart, beyond))
+        beyond = values.let("beyond", Where(apart > beyond, apart, beyond)) if beyond else apart
     else:
         total, difference = at_poles(values, (near, far), (total, difference))
-    total = values.let("half_sum", Where(beyond > values.reach, sp.nan, total))
-    middle = values.let("middle", Where(beyond > values.reach, sp.nan, middle))
+    if beyond:
+        is_beyond = beyond > values.reach
+        total = values.let("half_sum", Where(is_beyond, sp.nan, total))
+        middle = values.let("middle", Where(is_beyond, sp.nan, middle))
     first, last = outer_angles(values, total, difference)
     return (first, middle) if rule.mirror else (first, middle, last)
 

@@ -104,26 +104,32 @@ def flat_angle(values: NamedValues, first: Vector, middle: Vector, last: Vector)
 
 
 def middle_of_triangle(
-    values: NamedValues, axes: Sequence[Vector], swing: sp.Expr
+    values: NamedValues, axes: Sequence[Vector], swing: sp.Expr, *, is_across: bool
 ) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
     """The middle angle by the three sides, where the triangle is flat, and how far from one.
 
     The other middle angle is twice the flat one, less the first. The angle returned is in the
-    interval that ends at the flat triangle and holds 0.
+    interval that ends at the flat triangle and holds 0. Two sides of π/2 leave the third as the
+    angle between them.
     """
+    base = flat_angle(values, *axes)
+    bend, beyond = (swing, sp.S.Zero) if is_across else _bend(values, axes, swing)
+    return values.let("middle", base + Where(base > 0, -bend, bend)), base, beyond
+
+
+def _bend(values: NamedValues, axes: Sequence[Vector], swing: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """The angle between two sides from that of the flat triangle on, by the half-angle formulas."""
     first, middle, last = axes
     sides = angle_between(values, first, middle), angle_between(values, middle, last)
-    base = flat_angle(values, first, middle, last)
     apart = values.let("apart", sp.Abs(sides[0] - sides[1]) / 2)
     together = values.let("together", (sides[0] + sides[1]) / 2)
     half = values.let("half", swing / 2)
     opened = values.positive("opened", _of_sines(values, half + apart, half - apart))
     closed = values.positive("closed", _of_sines(values, together + half, together - half))
     bend = values.let("bend", 2 * sp.atan2(sp.sqrt(opened), sp.sqrt(closed)))
-    angle = values.let("middle", base + Where(base > 0, -bend, bend))
     near = values.let("near_side", apart - half)
     far = values.let("far_side", half - Where(together > sp.pi / 2, sp.pi - together, together))
-    return angle, base, values.let("beyond", 2 * Where(near > far, near, far))
+    return bend, values.let("beyond", 2 * Where(near > far, near, far))
 
 
 def _of_sines(values: NamedValues, first: sp.Expr, second: sp.Expr) -> sp.Expr:

@@ -28,7 +28,7 @@ class Where(sp.Function):
     def eval(cls, condition: sp.Basic, then: sp.Expr, otherwise: sp.Expr) -> sp.Expr | None:
         if condition in (sp.true, sp.false):
             return then if condition == sp.true else otherwise
-        return None
+        return then if then == otherwise else None
 
 
 class Epsilon(sp.Function):

@@ -168,7 +168,7 @@ def _lines(kernel: Kernel, precision: Precision) -> Iterator[str]:
             case Call("eps"):
                 yield f"    const {real} {name} = {precision.literal(precision.eps)};"
             case Call(called):
-                used = {"abs": "fabs"}.get(called, called)
+                used = {"abs": "fabs", "atan2": "angle_of"}.get(called, called)
                 given = ", ".join(argument.text for argument in value.arguments)
                 yield f"    const {real} {name} = {used}{suffix}({given});"
             case Compare():

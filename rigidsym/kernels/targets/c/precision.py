@@ -10,6 +10,7 @@ from math import pi
 from typing import Any
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
+from rigidsym.kernels.lowering.arctangent import arctangent
 from rigidsym.kernels.lowering.sincos import reduction
 
 
@@ -62,12 +63,21 @@ class Precision:
             "first": (sine[0], cosine[0]),
             "rest": list(zip(sine[1:], cosine[1:], strict=True)),
             "nan": self.nan,
+            "arctangent": self._arctangent(),
             "series": [self._series(order) for order in range(FIRST_SERIES, last + 1)],
         }
 
     def falling(self, coefficients: Sequence[Fraction]) -> list[str]:
         """The literals of a polynomial from the highest power down, as Horner's rule takes them."""
         return [self.literal(float(coefficient)) for coefficient in reversed(coefficients)]
+
+    def _arctangent(self) -> dict[str, Any]:
+        """The numbers of the angle of a point."""
+        found = arctangent(self.digits)
+        first, *rest = self.falling(found.coefficients)
+        high, low = (self.literal(part) for part in found.eighth)
+        edge = self.literal(found.edge)
+        return {"edge": edge, "first": first, "rest": rest, "high": high, "low": low}
 
     def _series(self, order: int) -> dict[str, Any]:
         """c_k below its switch and above it."""

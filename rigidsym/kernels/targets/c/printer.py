@@ -22,9 +22,9 @@ from rigidsym.kernels.targets.text.layout import filled
 from rigidsym.system import resources
 
 _WORDS = (
-    "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf atan2f NULL "
-    "SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED tile found rows "
-    "count at i j"
+    "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf NULL angle_of "
+    "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED tile "
+    "found rows count at i j"
 )
 RESERVED = numpy.RESERVED | {*_WORDS.split()}  # the Python module's, too
 _WIDTH = 92
@@ -71,6 +71,7 @@ def _source(
         tile=_TILE,
         has_angles=bool(orders) or not called.isdisjoint(("sin", "cos")),
         has_roots=bool(orders) or not called.isdisjoint(("sqrt", "abs", "atan2")),
+        has_arctangents="atan2" in called,
         has_guards=any(map(statements.guards_of, kernels)),
         has_series=bool(orders),
         orders=max(2, *orders) + 1 if orders else 0,
@@ -168,8 +169,6 @@ def _units(units: Sequence[str]) -> str:
 def _beside(program: Program) -> Iterator[str]:
     """Remarks on conversions."""
     yield from program.remarks
-    if any(statements.calls(kernel, "atan2") for kernel in program.kernels):
-        yield "Conversions call atan2 of the C library."
     if program.unwrapping:
         yield "unwrap is only in the Python module, since it needs room for a trajectory."
 

@@ -11,6 +11,7 @@ from typing import Any
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.errors import MissingExtra
 from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Name, Number, Program
+from rigidsym.kernels.lowering.arctangent import arctangent
 from rigidsym.kernels.lowering.sincos import reduction
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.kernels.targets.numpy import printer as numpy
@@ -21,7 +22,7 @@ TEMPLATE = "numba/module.py.jinja"
 RESERVED = numpy.RESERVED | {"njit"}
 _FUNCTIONS = {name: name for name in FUNCTIONS} | {
     "sqrt": "np.sqrt",
-    "atan2": "np.arctan2",
+    "atan2": "_angle_of",
     "nan": "np.nan",
 }
 
@@ -45,6 +46,7 @@ def render(program: Program) -> dict[str, str]:
         rest=polynomials[1:],
         series=None if last < 0 else [_series(k) for k in range(FIRST_SERIES, last + 1)],
         orders=", ".join(f"c{k}" for k in range(max(last, 2) + 1)),
+        arctangent=_arctangent() if "atan2" in {call.function for call in calls} else None,
         kernels=[_compiled(kernel) for kernel in kernels],
     )
     return {f"{program.name}_numba.py": text}
@@ -73,6 +75,14 @@ def _series(order: int) -> dict[str, Any]:
         "start": repr(float(taylor(order - 2)[0])),
         "switch": repr(float(series.switch)),
     }
+
+
+def _arctangent() -> dict[str, Any]:
+    """The numbers of the angle of a point."""
+    found = arctangent(53)
+    high, low = map(repr, found.eighth)
+    polynomial = _falling(found.coefficients)
+    return {"edge": repr(found.edge), "polynomial": polynomial, "high": high, "low": low}
 
 
 def _compiled(kernel: Kernel) -> dict[str, Any]:
