@@ -21,7 +21,7 @@ _VECTOR = (0.4, 0.8, 0.8)  # along the axis in the figure of the note
 _SCALAR = 1.68  # beside a vector: the quaternion of about 65°, once it is a unit
 _MATRIX = (0.5, -0.7, 0.5, 0.8, 0.6, 0.1, -0.4, 0.3, 0.8)  # by rows, not far from a rotation
 _RATES = (0.4, 0.25, 0.7)
-_ANGLE_RATES = (40.0, -25.0, 60.0, 20.0, -35.0)  # degrees per second
+_ANGLE_RATES = (40.0, 25.0, 60.0, 20.0, 35.0)  # degrees per second
 _ANGLE = 40.0  # degrees, where no figure says better
 
 

@@ -25,12 +25,14 @@ from rigidsym.notes.prose.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
 from rigidsym.page.copies import LANGUAGES, copies_of
 from rigidsym.page.functions import Functions, functions_of
+from rigidsym.page.own_body import own_shape
 from rigidsym.page.shapes import SHAPES, as_data
 from rigidsym.page.stage import has_turns, label, rate_of, shown_angles, stage_of
 from rigidsym.system import resources
 
 TEMPLATE = "page/page.html.jinja"
-MODULES = ("vectors", "scene", "drawing", "state", "main", "sharing")  # in the order of imports
+# in the order of their imports
+MODULES = ("vectors", "scene", "body", "drawing", "state", "main", "sharing")
 MOST_BYTES = 400_000
 
 _FIGURE = "The axes of space and of the body, in the orientation given by the sliders"
@@ -42,6 +44,7 @@ _SHOWN = {  # what the figure can show, and whether it does at first
     "frames": ("Intermediate frames", False),
     "trace": ("Trace of the axis", True),
 }
+_NAMES = {"own": "This body"}
 _OF_TURNS = ("sum", "rings", "frames")
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=\w)", re.MULTILINE)
@@ -60,12 +63,15 @@ def print_page(derivation: Derivation, document: Document) -> str:
     controls = [control for group in groups for control in group.controls]
     stage = stage_of(derivation.model, document.letters)
     in_degrees = any(control.unit == "°" for control in controls)
-    body = _body(derivation.model)
+    shapes = {name: shape() for name, shape in SHAPES.items()}
+    own = own_shape(derivation.body)
+    shapes |= {"own": own} if own else {}
+    body = "own" if own else _body(derivation.model)
     choices = _choices(derivation.model, document)
     data = {
         "name": derivation.name,
         "scene": stage,
-        "bodies": {name: as_data(shape()) for name, shape in SHAPES.items()},
+        "bodies": {name: as_data(shape) for name, shape in shapes.items()},
         "body": body,
         "shown": [name for name, _, is_shown in choices if is_shown],
         "controls": [_data(control) for control in controls],
@@ -95,7 +101,7 @@ def print_page(derivation: Derivation, document: Document) -> str:
         values=[_value(step, printer, in_degrees=in_degrees) for step in functions.steps],
         pole=_pole(functions),
         stage=stage,
-        bodies=[(name, name.capitalize(), name == body) for name in SHAPES],
+        bodies=[(name, _NAMES.get(name, name.capitalize()), name == body) for name in shapes],
         choices=choices,
         has_turns=has_turns(derivation.model),
         count=len(stage["turns"]),

@@ -18,6 +18,7 @@ WHITE, PAGES = (246, 244, 238), (236, 228, 206)
 BLUE, NAVY = (58, 110, 190), (36, 70, 130)
 GOLD, BRONZE = (226, 182, 74), (196, 146, 56)
 RED, GREY = (204, 72, 58), (176, 182, 190)
+HOLE = (52, 54, 60)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,10 +66,10 @@ def top() -> Shape:
     """A spinning top about z′, with coloured sectors that show the spin."""
 
     def color(row: int, sector: int) -> Color:
-        return GREY if row > 3 else (RED, WHITE)[sector // 4 % 2]
+        return GREY if row > 6 else (RED, WHITE)[sector // 4 % 2]
 
-    profile = [(0.0, -0.8), (0.5, -0.12), (0.58, 0.0), (0.5, 0.12), (0.07, 0.2), (0.06, 0.62)]
-    return _revolved([*profile, (0.0, 0.64)], 32, color)
+    cone = [(0.0, -0.8), (0.06, -0.74), (0.44, -0.2), (0.54, -0.06), (0.58, 0.04), (0.53, 0.11)]
+    return _revolved([*cone, (0.3, 0.15), (0.07, 0.17), (0.06, 0.62), (0.0, 0.64)], 32, color)
 
 
 def aircraft() -> Shape:

@@ -1,13 +1,13 @@
 // A posed scene as SVG: a body, lines with hidden halves dashed, and labels that keep apart.
 
-import { cross, dot, length, minus, plus, same, scaled, within } from "./vectors.mjs";
+import { cross, dot, length, plus, same, scaled } from "./vectors.mjs";
+import { seenFaces } from "./body.mjs";
 
 const SCALE = 120; // pixels a length
 const TYPE = 17 / SCALE; // the size of the letters, in lengths
 const AXIS = 1.35; // lengths of the axes
 const NODE = 1.2;
 const STEP = (7.5 * Math.PI) / 180; // between the points of an arc
-const LIGHT = [-0.36, 0.48, 0.8]; // right, up and toward the viewer
 const MOST = 1.5; // lengths of the longest arrow of an angular velocity
 const OMEGA = 0.75; // lengths of 1 rad/s, if none is longer than MOST
 
@@ -129,28 +129,6 @@ function traceLines(trace, camera) {
   return lines;
 }
 
-// --- the body
-
-/** The faces that are seen, the farthest first, shaded. */
-function facesOf(body, frame, camera) {
-  const points = body.points.map((point) => within(point, frame));
-  const light = within(LIGHT, [camera.right, camera.up, camera.toward]);
-  return body.faces
-    .map(([color, ...corners]) => {
-      const [a, b, c] = corners.map((k) => points[k]);
-      const normal = cross(minus(b, a), minus(c, b));
-      const depth = corners.reduce((sum, k) => sum + camera.depth(points[k]), 0) / corners.length;
-      return { color, corners, normal: scaled(1 / (length(normal) || 1), normal), depth };
-    })
-    .filter(({ normal }) => camera.depth(normal) > 0)
-    .sort((one, other) => one.depth - other.depth)
-    .map(({ color, corners, normal }) => {
-      const bright = 0.62 + 0.38 * Math.max(0, dot(normal, light));
-      const rgb = body.colors[color].map((part) => Math.round(part * bright));
-      return { points: corners.map((k) => camera.project(points[k])), fill: `rgb(${rgb.join(" ")})` };
-    });
-}
-
 // --- labels: beyond the end of a line or beside its middle, where no other label is
 
 const BENDS = [0, 35, -35, 70, -70, 110, -110]; // degrees off the wished direction
@@ -249,7 +227,7 @@ export function draw(group, pose, camera, { shown, body, omega, omegaName, trace
     ...turns,
     ...(omega ? omegaLines(pose, omega, omegaName, shown.has("sum"), camera) : []),
   ];
-  const faces = body ? facesOf(body, pose.frames.at(-1), camera) : [];
+  const faces = body ? seenFaces(body, pose.frames.at(-1), camera) : [];
   group.replaceChildren(
     ...behind.filter(({ hidden }) => hidden).flatMap(pen),
     ...faces.map(({ points, fill }) => element("polygon", { class: "face", fill, stroke: fill, points: written(points) })),

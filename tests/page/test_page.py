@@ -7,15 +7,11 @@ import re
 import shutil
 import subprocess
 import sys
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
-from itertools import pairwise
-from math import hypot
 from pathlib import Path
 
-import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -26,7 +22,6 @@ from rigidsym.commands.cli import commands
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN
 from rigidsym.page.page import MODULES, MOST_BYTES
-from rigidsym.page.shapes import SHAPES
 from rigidsym.pipeline import output_of, read_spec
 from rigidsym.system import resources
 
@@ -75,29 +70,6 @@ def test_every_module_of_the_script_is_valid(name):
     file = resources.folder("templates") / "page" / f"{name}.mjs"
     done = subprocess.run([node, "--check", file], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-
-
-# --- the shapes
-
-
-@pytest.mark.parametrize("name", SHAPES)
-def test_a_shape_is_closed_and_its_faces_look_outward(name):
-    """Each edge is passed once in each direction, and the volume enclosed is positive."""
-    faces = [face.corners for face in SHAPES[name]()]
-    rim = Counter(edge for c in faces for edge in zip(c, (*c[1:], c[0]), strict=True))
-    if name != "book":  # the tiles of its cover meet longer edges of its sides
-        assert all(rim[b, a] == count for (a, b), count in rim.items())
-    volume = sum(np.linalg.det([c[0], p, q]) / 6 for c in faces for p, q in pairwise(c[1:]))
-    assert volume > 0.01
-    for corners in faces:
-        normal = np.cross(np.subtract(corners[1], corners[0]), np.subtract(corners[2], corners[1]))
-        assert np.linalg.norm(normal) > 0
-        assert np.abs((np.array(corners) - corners[0]) @ normal).max() < 2e-3 * len(corners)
-
-
-def test_every_shape_fits_into_the_axes():
-    for shape in SHAPES.values():
-        assert all(hypot(*p) <= 1.2 for face in shape() for p in face.corners)
 
 
 def test_two_runs_give_the_same_bytes():

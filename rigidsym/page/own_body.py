@@ -1,0 +1,268 @@
+"""The body of a derivation as a shape for the live page, meshed from its description.
+
+A solid is a map of a box of coordinates; its surface is the image of the sides of the box, without
+those that shrink to lines and those that meet, as at the angles 0 and 2π.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import islice, pairwise, permutations, product
+from math import hypot, isfinite
+
+import sympy as sp
+
+from rigidsym.models.body import RigidBody
+from rigidsym.models.distribution import Composite, Distribution, Part, Particles, Polyhedron, Solid
+from rigidsym.notes.figure.camera import Vector, combined, cross, dot, scaled, unit
+from rigidsym.page.shapes import BLUE, BRONZE, GOLD, GREY, HOLE, RED, Color, Face, Shape
+
+Numbers = Mapping[sp.Symbol, sp.Float]
+Map = Callable[..., Vector]
+
+_PALETTE = (BLUE, GOLD, GREY, RED, BRONZE)
+_SIZE = 0.95  # of the body drawn, from its centre of mass
+_LENGTHS = (1.0, 0.22, 0.3, 1.4, 0.6, 0.15, 0.8)  # of parameters without a value
+_TWO_LENGTHS = (0.6, 1.0)
+_MOST_TRIES = 500
+_ROUND, _CURVED = 20, 8  # divisions of a coordinate within sines, and of any other that bends
+_THICK = 0.03  # half the width of a line
+_PARTICLE = 0.09  # radius
+
+
+def own_shape(body: RigidBody | None) -> Shape:
+    """The faces of a body, its centre of mass at the origin; none if only its moments are known."""
+    if body is None or body.distribution is None:
+        return ()
+    values = {p.symbol: p.value for p in body.parameters}
+    numbers = lengths_of(body.distribution, values)
+    return _fitted(meshed(body.distribution, numbers), body, numbers) if numbers is not None else ()
+
+
+def lengths_of(
+    what: Distribution, values: Mapping[sp.Symbol, float | None]
+) -> dict[sp.Symbol, sp.Float] | None:
+    """The parameters with their values, or a suitable length if they have none."""
+    known = {symbol: value for symbol, value in values.items() if value is not None}
+    missing = [symbol for symbol in values if symbol not in known and _holds(what, symbol)]
+    lengths = _TWO_LENGTHS if len(missing) == 2 else _LENGTHS[: len(missing)]
+    if len(missing) > len(lengths):
+        return None
+    for chosen in islice(permutations(lengths), _MOST_TRIES):
+        given = {**known, **dict(zip(missing, chosen, strict=True))}
+        numbers = {symbol: sp.Float(value) for symbol, value in given.items()}
+        if all(_is_proper(solid, numbers) for solid in _solids(what)):
+            return numbers
+    return None
+
+
+def meshed(what: Distribution, numbers: Numbers) -> Shape:
+    """The faces of what has mass, in its own axes and in metres."""
+    return tuple(_faces(what, numbers, BLUE))
+
+
+def _geometry(what: Distribution) -> Iterator[sp.Basic]:
+    """Everything in a description that holds lengths."""
+    match what:
+        case Particles():
+            yield from (particle.position for particle in what.particles)
+        case Solid():
+            yield what.place
+            yield from (bound for pair in what.bounds for bound in pair)
+        case Polyhedron():
+            yield from what.vertices
+        case Composite():
+            for part in what.parts:
+                yield from (part.at, part.turned, *_geometry(part.what))
+
+
+def _holds(what: Distribution, symbol: sp.Symbol) -> bool:
+    return any(symbol in expression.free_symbols for expression in _geometry(what))
+
+
+def _solids(what: Distribution) -> Iterator[Solid]:
+    if isinstance(what, Composite):
+        for part in what.parts:
+            yield from _solids(part.what)
+    elif isinstance(what, Solid):
+        yield what
+
+
+def _map(solid: Solid, numbers: Numbers) -> Map:
+    """The point of a solid for coordinates that run from 0 to 1."""
+    place = sp.lambdify(solid.coordinates, list(solid.place.xreplace(numbers)), "math")
+    bounds = [
+        sp.lambdify(solid.coordinates[:k], [sp.S(b).xreplace(numbers) for b in pair], "math")
+        for k, pair in enumerate(solid.bounds)
+    ]
+
+    def point(*shares: float) -> Vector:
+        values: list[float] = []
+        for share, bound in zip(shares, bounds, strict=True):
+            low, high = bound(*values)
+            values.append(low + share * (high - low))
+        x, y, z = place(*values)
+        return (x, y, z)
+
+    return point
+
+
+def _is_proper(solid: Solid, numbers: Numbers) -> bool:
+    """Whether bounds are in order, and the map never turns inside out."""
+    point, count = _map(solid, numbers), len(solid.coordinates)
+    lengths = (sp.S(high - low).xreplace(numbers) for low, high in solid.bounds)
+    ordered = all(float(length) >= 0 for length in lengths if length.is_number)
+    shares = product((0.1, 0.5, 0.9), repeat=count)
+    return ordered and (count < 3 or len({_orientation(point, s) > 0 for s in shares}) == 1)
+
+
+def _orientation(point: Map, shares: Sequence[float]) -> float:
+    """The determinant of the map."""
+    here = point(*shares)
+    steps = (
+        combined((1, -1), (point(*(s + 1e-4 * (j == k) for j, s in enumerate(shares))), here))
+        for k in range(3)
+    )
+    a, b, c = steps
+    return dot(cross(a, b), c)
+
+
+def _faces(what: Distribution, numbers: Numbers, color: Color) -> Iterator[Face]:
+    match what:
+        case Particles():
+            for particle in what.particles:
+                yield from _octahedron(_vector(particle.position, numbers), color)
+        case Polyhedron():
+            corners = [_vector(vertex, numbers) for vertex in what.vertices]
+            yield from (Face(tuple(corners[k] for k in face), color) for face in what.faces)
+        case Solid():
+            yield from _of_solid(what, numbers, color)
+        case Composite():
+            for part, tint in zip(what.parts, _PALETTE * len(what.parts), strict=False):
+                yield from _placed(part, numbers, HOLE if part.hole else tint)
+
+
+def _vector(column: sp.MatrixBase, numbers: Numbers) -> Vector:
+    x, y, z = (float(part) for part in column.xreplace(numbers))
+    return (x, y, z)
+
+
+def _placed(part: Part, numbers: Numbers, color: Color) -> Iterator[Face]:
+    at = _vector(part.at, numbers)
+    axes = [_vector(part.turned[:, k], numbers) for k in range(3)]
+    swell = 1.01 if part.hole else 1.0  # its rim is seen on the surface
+    for face in _faces(part.what, numbers, color):
+        moved = (combined((1, swell), (at, combined(corner, axes))) for corner in face.corners)
+        yield Face(tuple(moved), HOLE if part.hole else face.color)
+
+
+def _octahedron(centre: Vector, color: Color) -> Iterator[Face]:
+    for i, j, k in product((1, -1), repeat=3):
+        signs = ((i, 0, 0), (0, j, 0), (0, 0, k))
+        corners = tuple(combined((1, _PARTICLE), (centre, sign)) for sign in signs)
+        yield Face(corners if i * j * k > 0 else corners[::-1], color)
+
+
+def _of_solid(solid: Solid, numbers: Numbers, color: Color) -> Iterator[Face]:
+    point = _map(solid, numbers)
+    counts = [_divisions(solid, symbol) for symbol in solid.coordinates]
+    if len(counts) == 1:
+        yield from _tube([point(k / (2 * _ROUND)) for k in range(2 * _ROUND + 1)], color)
+    elif len(counts) == 2:
+        grid = _grid(point, counts)
+        yield from _tiles(grid, color)
+        yield from _tiles([row[::-1] for row in grid], color)
+    else:
+        yield from _surface(point, counts, color)
+
+
+def _divisions(solid: Solid, symbol: sp.Symbol) -> int:
+    waves = solid.place.atoms(sp.sin, sp.cos)
+    if any(wave.has(symbol) for wave in waves):
+        return _ROUND
+    later = [bound for pair in solid.bounds for bound in pair if bound.has(symbol)]
+    slope = solid.place.diff(symbol)
+    if later or slope.has(symbol):
+        return _CURVED
+    return 1
+
+
+def _surface(point: Map, counts: Sequence[int], color: Color) -> Iterator[Face]:
+    outward = _orientation(point, (0.5, 0.5, 0.5)) > 0
+    for axis in range(3):
+        j, k = (axis + 1) % 3, (axis + 2) % 3
+
+        def side(end: float, axis: int = axis, j: int = j) -> Map:
+            def at(s: float, t: float) -> Vector:
+                shares = {axis: end, j: s}
+                return point(*(shares.get(n, t) for n in range(3)))
+
+            return at
+
+        low, high = (_grid(side(end), (counts[j], counts[k])) for end in (0.0, 1.0))
+        gaps = (
+            hypot(*combined((1, -1), pair))
+            for rows in zip(low, high, strict=True)
+            for pair in zip(*rows, strict=True)
+        )
+        if max(gaps) > 1e-9:
+            for grid, is_out in ((high, outward), (low, not outward)):
+                yield from _tiles(grid if is_out else [row[::-1] for row in grid], color)
+
+
+def _grid(at: Map, counts: Sequence[int]) -> list[list[Vector]]:
+    rows, columns = counts
+    return [[at(i / rows, k / columns) for k in range(columns + 1)] for i in range(rows + 1)]
+
+
+def _tiles(grid: Sequence[Sequence[Vector]], color: Color) -> Iterator[Face]:
+    """The tiles of a grid, counterclockwise as seen along (row) × (column); none without area."""
+    for lower, upper in pairwise(grid):
+        for (a, b), (d, c) in zip(pairwise(lower), pairwise(upper), strict=True):
+            corners = tuple(dict.fromkeys(_near(p) for p in (a, d, c, b)))
+            if len(corners) > 2 and _area(corners) > 1e-9:
+                yield Face(corners, color)
+
+
+def _near(point: Vector) -> Vector:
+    """Without the rounding errors that would part one corner into two."""
+    x, y, z = (round(part, 9) + 0.0 for part in point)
+    return (x, y, z)
+
+
+def _area(corners: Sequence[Vector]) -> float:
+    first, *others = corners
+    edges = [combined((1, -1), (corner, first)) for corner in others]
+    return hypot(*combined((1,) * (len(edges) - 1), [cross(a, b) for a, b in pairwise(edges)]))
+
+
+def _tube(line: Sequence[Vector], color: Color) -> Iterator[Face]:
+    """A thin square tube along a line."""
+    for start, end in pairwise(line):
+        along = unit(combined((1, -1), (end, start)))
+        axis: Vector = (1.0, 0.0, 0.0) if abs(along[0]) < 0.8 else (0.0, 1.0, 0.0)
+        u = unit(cross(along, axis))
+        v = cross(along, u)
+        around = [combined((p, q), (u, v)) for p, q in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+        grid = [
+            [combined((1, _THICK), (centre, side)) for side in (*around, around[0])]
+            for centre in (start, end)
+        ]
+        yield from _tiles([row[::-1] for row in grid], color)
+
+
+def _fitted(faces: Sequence[Face], body: RigidBody, numbers: Numbers) -> Shape:
+    """About the centre of mass, in the size of the figure."""
+    middle = [part.xreplace(numbers) for part in body.centre]
+    is_known = all(part.is_number for part in middle)
+    x, y, z = (float(part) if is_known else 0.0 for part in middle)  # else about its origin
+    moved = [
+        Face(tuple(combined((1, -1), (p, (x, y, z))) for p in face.corners), face.color)
+        for face in faces
+    ]
+    reach = max((hypot(*p) for face in moved for p in face.corners), default=0.0)
+    if not reach or not isfinite(reach):
+        return ()
+    return tuple(
+        Face(tuple(scaled(_SIZE / reach, p) for p in face.corners), face.color) for face in moved
+    )
