@@ -199,7 +199,7 @@ function setShown(names) {
   if (!view.shown.has("trace")) view.trace = [];
 }
 
-/** Show the first turns alone; a fraction is part of a turn. */
+/** Show only the first turns; a fraction is part of a turn. */
 function setDone(done) {
   view.done = Math.min(count, Math.max(0, done));
   if (at("turns")) at("turns").value = view.done;
