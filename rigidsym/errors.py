@@ -1,8 +1,7 @@
 """Every exception a user may see. Each says what was wrong, where, and what was expected.
 
-The class carries the exit code of the command line, so that no caller has to know a table: 1
-where what was asked failed, 2 where it was asked wrongly, 3 where a file does not hold what it
-should, 4 where something outside is missing.
+Each class has its exit code of the command line: 1 if a derivation or a check failed, 2 for wrong
+usage, 3 for a file with wrong content, 4 if an outside tool is missing.
 """
 
 from __future__ import annotations
@@ -38,13 +37,13 @@ class AlgebraError(RigidsymError):
 
 
 class ModelError(RigidsymError):
-    """A rotation model that is not one: unknown sequence, repeated coordinate, wrong shape."""
+    """An invalid rotation model: unknown sequence, repeated coordinate, wrong shape."""
 
     exit_code: ClassVar[int] = 2
 
 
 class NotARotation(RigidsymError):
-    """A 3x3 matrix whose R Rᵀ − 1 or det R − 1 does not vanish; the message shows what is left."""
+    """A 3x3 matrix with R Rᵀ ≠ 1 or det R ≠ 1; the message shows what is left over."""
 
 
 class BodyError(RigidsymError):
@@ -69,13 +68,13 @@ class Defect(RigidsymError):
 
 
 class QuantityError(RigidsymError):
-    """A quantity that the derivation does not hold; the message names those it does."""
+    """An unknown quantity, or one that the derivation does not hold."""
 
     exit_code: ClassVar[int] = 2
 
 
 class ExpressionError(RigidsymError):
-    """Text that is not an expression in the declared names; `column` counts from 1."""
+    """A text that is not a valid expression in the declared names; `column` counts from 1."""
 
     exit_code: ClassVar[int] = 2
 
@@ -89,7 +88,7 @@ class ExpressionError(RigidsymError):
 class Fault:
     """One thing wrong in a derivation file."""
 
-    line: int  # counted from 1; 0 where the file as a whole is meant
+    line: int  # counted from 1; 0 for the file as a whole
     path: str  # "rotation.angles[1]", in the file's own keys
     message: str  # what was found and what was expected
 
@@ -148,23 +147,19 @@ class ToolFailed(RigidsymError):
 
 
 class DataError(RigidsymError):
-    """A file of numbers that does not hold what was asked of it; the message says where."""
+    """A file of numbers with missing or wrong content; the message says where."""
 
     exit_code: ClassVar[int] = 3
 
 
 class RequestError(DataError):
-    """Something asked of files of numbers that cannot be, whatever they hold."""
+    """A request that no file of numbers can satisfy."""
 
     exit_code: ClassVar[int] = 2
 
 
-class DraftInUse(RigidsymError):
-    """A result that another process is writing; the message names it."""
-
-
 class KernelError(RigidsymError):
-    """A kernel that cannot be made: no such target, or a function that no target can print."""
+    """A kernel that cannot be made: unknown target, or a function that no target can print."""
 
     exit_code: ClassVar[int] = 2
 

@@ -52,7 +52,7 @@ class Output:
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
-        """All proofs, those of the conversions included."""
+        """All proofs, including those of the conversions."""
         return (*self.motion.proofs, *(self.conversions.proofs if self.conversions else ()))
 
     @property

@@ -28,6 +28,7 @@ from rigidsym.text.names import check_name
 
 LONGEST = 900  # characters of a sequence or of turns
 _AT_REST = re.compile(r".*\D0")  # a name that ends in 0: alpha0, b_0; not a_10
+_SHOWN = 40  # characters of a wrong text that a message repeats
 _AXES_OF_DIGITS = str.maketrans("123", "XYZ")
 _ALIASES = {"mrp": "modified_rodrigues", "quat": "quaternion", "rotvec": "rotation_vector"}
 _A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name'
@@ -140,7 +141,8 @@ def _sequence(text: str) -> str:
     letters = text.translate(_AXES_OF_DIGITS)
     if len(letters) == 3 and set(letters.lower()) <= {"x", "y", "z"}:
         return euler_sequence(text)
-    raise ModelError(f"{text!r} is not a rotation\n{_meant(text)}")
+    shown = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
+    raise ModelError(f"{shown!r} is not a rotation\n{_meant(text)}")
 
 
 def _meant(text: str) -> str:

@@ -1,8 +1,7 @@
 """Expressions of the [body] table of a derivation file, and the parameters that they bring.
 
-A text is an expression, exact as it stands. A whole number is itself. A number with a point is a
-measured one: it becomes a parameter, named after its place, that has this value, so that the
-derivation stays exact and its formulas short.
+Texts and integers are exact. A number with a decimal point is measured: it becomes a parameter with
+this value, named after its key, so that the derivation stays exact and its formulas short.
 """
 
 from __future__ import annotations
@@ -31,14 +30,14 @@ A_NUMBER = 'a number, or an expression in quotes such as "2*a"'
 
 
 class Declared:
-    """The parameters of one file: those of [parameters], and those that numbers bring."""
+    """The parameters of one file: declared in [parameters], or made from numbers."""
 
     def __init__(self) -> None:
         self._parameters: dict[str, Parameter] = {}
-        self.files: dict[Place, Mapping[str, object]] = {}  # what they hold, by their tables
-        self._notes: dict[str, tuple[str, str]] = {}  # what a name stands for, and its unit
-        self._taken: set[str] = set()  # names in the file, which no number may be given
-        self._numbers: dict[str, float] = {}  # what numbers were named
+        self.files: dict[Place, Mapping[str, object]] = {}  # contents, by their tables
+        self._notes: dict[str, tuple[str, str]] = {}  # name: meaning and unit
+        self._taken: set[str] = set()  # names used in the file
+        self._numbers: dict[str, float] = {}  # names of numbers
 
     def read(self, table: Table) -> None:
         """The tables of [parameters]: A = { positive = true, about = "...", unit = "kg m^2" }."""
@@ -56,7 +55,7 @@ class Declared:
                 table.fault(str(error), key)
 
     def take_names(self, data: object) -> None:
-        """Note all words in the texts of a table, that a number is not named like one of them."""
+        """Note all words in the texts of a table, which no number may have as its name."""
         if isinstance(data, str):
             self._taken.update(_WORD.findall(data))
         elif isinstance(data, Mapping):
@@ -67,13 +66,13 @@ class Declared:
                 self.take_names(entry)
 
     def symbol(self, name: str) -> sp.Symbol:
-        """The symbol of a name in an expression; raises ExpressionError for what names nothing."""
+        """The symbol of a name in an expression; raises ExpressionError for an invalid name."""
         return sp.Symbol(check_name(name))
 
     def measured(self, slot: str, value: float, *, positive: bool) -> sp.Symbol:
-        """The parameter that stands for a number in a place; raises BodyError for a wrong one.
+        """The parameter for a number; raises BodyError if it should be positive and is not.
 
-        It bears the name of the slot, or one like it where that has another meaning or value.
+        It has the name of its slot, or a similar one if that has another meaning or value.
         """
         taken = self._taken | self._parameters.keys() - self._numbers.keys()
         name = next(
@@ -88,7 +87,7 @@ class Declared:
         return sp.Symbol(name)
 
     def without_files(self, data: object, at: Place) -> object:
-        """The data at a path, with what was read from files in the place of their names."""
+        """The data at a path, with the contents of files instead of their names."""
         if isinstance(data, list):
             return [self.without_files(entry, (*at, k)) for k, entry in enumerate(data)]
         if not isinstance(data, Mapping):
@@ -99,18 +98,18 @@ class Declared:
         return {k: v for k, v in kept.items() if k not in OF_FILES} | dict(self.files[at])
 
     def note(self, expression: sp.Expr, about: str, unit: str) -> None:
-        """What a symbol stands for, where the expression is one and nothing was said of it."""
+        """Note the meaning of an expression that is a single symbol, unless it is known."""
         if expression.is_Symbol:
             self._notes.setdefault(expression.name, (about, unit))
 
     def number(self, expression: sp.Expr) -> float | None:
-        """The value of an expression, where all in it are numbers."""
+        """The value of an expression; None unless all its symbols have values."""
         values = {p.symbol: sp.Float(p.value, 17) for p in self.given() if p.value is not None}
         value = expression.xreplace(values)
         return float(value) if value.is_number else None
 
     def given(self) -> tuple[Parameter, ...]:
-        """All parameters that anything is known of."""
+        """All parameters with a declaration, a value or a meaning."""
         noted = {
             name: Parameter(symbol=sp.Symbol(name), positive=unit != "m" or "coord" not in about)
             for name, (about, unit) in self._notes.items()
@@ -134,7 +133,7 @@ def _parameter(entry: Table, name: str) -> Parameter:
 
 
 class BodyReader:
-    """Reads the values of one table; what is wrong is noted there, and None is read."""
+    """Reads the values of one table; a fault is noted, and None is returned."""
 
     def __init__(
         self,
@@ -148,8 +147,8 @@ class BodyReader:
         self.table = table
         self.declared = declared
         self.folder = folder  # paths in the file start here; None in a record, which has none
-        self.suffix = suffix  # of the names that numbers bring: "_2" in the second part
-        self._exact_only = exact  # whether a number with a point stays a number
+        self.suffix = suffix  # of the names of numbers: "_2" in the second part
+        self._exact_only = exact  # whether numbers with a point stay numbers
 
     def inside(self, table: Table, suffix: str = "", *, exact: bool = False) -> BodyReader:
         """The reader of a table within this one."""
@@ -158,7 +157,7 @@ class BodyReader:
     def expression(
         self, value: object, slot: str, *at: str | int, positive: bool = False
     ) -> sp.Expr | None:
-        """The exact expression of a text or a number that stands at a path."""
+        """The exact expression of a text or a number at a path."""
         try:
             if isinstance(value, str):
                 names = {name: self.declared.symbol(name) for name in names_in(value)}
@@ -183,7 +182,7 @@ class BodyReader:
         return sp.Rational(value.numerator, value.denominator)
 
     def single(self, key: str, slot: str, *, positive: bool = False) -> sp.Expr | None:
-        """The expression of a key; None where it is missing or wrong."""
+        """The expression of a key; None if it is missing or wrong."""
         value = self.table.value(key)
         return None if value is None else self.expression(value, slot, key, positive=positive)
 
@@ -200,7 +199,7 @@ class BodyReader:
     def entries(
         self, values: list[object], slots: tuple[str, ...], *at: str | int, positive: bool = False
     ) -> list[sp.Expr] | None:
-        """The expressions of a list; None where one of them is wrong."""
+        """The expressions of a list; None if one of them is wrong."""
         read = [
             self.expression(value, slot, *at, place, positive=positive)
             for place, (value, slot) in enumerate(zip(values, slots, strict=True))

@@ -190,7 +190,7 @@ def _read_title(table: Table) -> str | None:
 
 
 def _read_theory(table: Table, models: Sequence[RotationModel]) -> bool:
-    """Whether the theory, which is that of active rotations, comes first."""
+    """Whether the theory, which is written for active rotations, comes first."""
     is_wanted = bool(table.flag("theory"))
     if is_wanted and any(model.passive for model in models):
         table.fault("the theory is written for active rotations; remove passive", "theory")

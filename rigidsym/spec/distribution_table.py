@@ -35,7 +35,7 @@ _POINT = 'three coordinates, such as [0, 0, "h"]'
 
 
 def read_distribution(reader: BodyReader, kind: str) -> Distribution | None:
-    """What a table with this kind of key describes; None where a fault is noted."""
+    """The distribution that a table describes; None if a fault is noted."""
     return _KINDS[kind](reader)
 
 
@@ -78,7 +78,7 @@ def _read_shape(reader: BodyReader) -> Distribution | None:
 
 
 def _lengths(reader: BodyReader, length: Length) -> list[sp.Expr] | None:
-    """The lengths of one key; the symbols they have by default where it is missing."""
+    """The lengths of one key; if it is missing, their default symbols."""
     table, count = reader.table, len(length.names)
     corners = length.key == "corners"
     if table.value(length.key) is None:
@@ -102,7 +102,7 @@ def _lengths(reader: BodyReader, length: Length) -> list[sp.Expr] | None:
 
 
 def _mass_or_density(reader: BodyReader) -> dict[str, sp.Expr] | None:
-    """{"mass": ...} or {"density": ...}; the mass M where the table has neither."""
+    """{"mass": ...} or {"density": ...}; the mass M if the table has neither."""
     table = reader.table
     if table.value("mass") is not None and table.value("density") is not None:
         table.fault("expected either the mass or the density", "density")

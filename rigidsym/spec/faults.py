@@ -23,7 +23,8 @@ class Source:
     lines: Mapping[Path, int] = field(default_factory=dict)
 
     def fault(self, path: Path, message: str) -> Fault:
-        return Fault(line=self._line(path), path=dotted(path), message=message)
+        one_line = message.replace("\n", "; ")
+        return Fault(line=self._line(path), path=dotted(path), message=one_line)
 
     def _line(self, path: Path) -> int:
         """The line of a key, or of the table that lacks it; 0 if neither is in the file."""

@@ -8,18 +8,16 @@ from __future__ import annotations
 import stat
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from rigidsym.errors import MissingExtra, RigidsymError
 from rigidsym.models.distribution import Known
-from rigidsym.spec.body_reader import BodyReader, Declared
+from rigidsym.spec.body_reader import BodyReader
 
 if TYPE_CHECKING:
     from rigidsym.data.mass.properties import MassProperties
-
-Numbers = dict[str, Any]  # mass, centre (3,), inertia (3, 3)
 
 _ROUNDING = 1e-14  # relative to the largest moment: smaller numbers are rounding errors
 _SLOTS = tuple(f"I_{min(i, j)}{max(i, j)}" for i in (1, 2, 3) for j in (1, 2, 3))
@@ -128,43 +126,18 @@ def read_known(reader: BodyReader) -> Known | None:
     )
 
 
-def _known(reader: BodyReader, found: MassProperties) -> Known:
-    """The numbers of a file as parameters.
+def _known(reader: BodyReader, found: MassProperties) -> Known | None:
+    """The numbers of a file, read as if the table itself held them.
 
-    The record keeps the numbers in place of the file, so that it can be checked without the file.
+    The record keeps the numbers instead of the file, so that it can be checked without the file.
     """
     numbers = _cleaned(found.mass, found.centre.tolist(), found.inertia.tolist())
-    reader.declared.files[reader.table.path] = numbers
-    return _named(reader.declared, numbers, reader.suffix)
+    table = reader.table.instead(numbers)
+    reader.declared.files[table.path] = numbers
+    return read_known(BodyReader(table, reader.declared, reader.folder, reader.suffix))
 
 
-def _named(declared: Declared, numbers: Numbers, suffix: str = "") -> Known:
-    """Each number that is not zero becomes a parameter named after its place."""
-
-    def parameter(slot: str, value: float, about: str, unit: str) -> sp.Expr:
-        if value == 0:
-            return sp.S.Zero
-        symbol = declared.measured(slot + suffix, value, positive=about == "mass")
-        declared.note(symbol, about, unit)
-        return symbol
-
-    entries = [value for row in numbers["inertia"] for value in row]
-    inertia = [
-        parameter(slot, value, *(_MOMENT if place in (0, 4, 8) else _PRODUCT))
-        for place, (slot, value) in enumerate(zip(_SLOTS, entries, strict=True))
-    ]
-    centre = [
-        parameter(slot, value, *_COORDINATE)
-        for slot, value in zip(_CENTRE, numbers["centre"], strict=True)
-    ]
-    return Known(
-        mass=parameter("M", numbers["mass"], "mass", "kg"),
-        centre=sp.ImmutableMatrix(centre),
-        inertia=sp.ImmutableMatrix(3, 3, inertia),
-    )
-
-
-def _cleaned(mass: float, centre: list[float], inertia: list[list[float]]) -> Numbers:
+def _cleaned(mass: float, centre: list[float], inertia: list[list[float]]) -> dict[str, object]:
     """The values of [body]; rounding errors in place of zeros are removed."""
     scale = max(abs(entry) for row in inertia for entry in row)
     size = max(map(abs, centre)) + (scale / mass) ** 0.5

@@ -26,7 +26,7 @@ _OF_MATRICES = ("coordinates", "constraints")
 
 
 def read_rotation(table: Table, name: str) -> list[RotationModel]:
-    """The models of a table: those of its sequences, or the one of its matrix, called `name`."""
+    """The models of a table: one per sequence, or one of its matrix, called `name`."""
     if table.value("matrix") is not None:
         return _read_matrix(table, name)
     for key in _OF_MATRICES:
@@ -115,7 +115,7 @@ def _read_sequences(table: Table) -> list[tuple[Place, str]]:
 
 
 def _read_angles(table: Table, *, is_euler: bool) -> list[str] | None:
-    """Different names, three of them for Euler angles; None where a fault is noted."""
+    """Different names, three for Euler angles; None if a fault is noted."""
     names = _read_names(table, "angles", _THREE_NAMES if is_euler else _NAMES)
     given = table.value("angles")
     if is_euler and isinstance(given, list) and given and len(given) != len(DEFAULT_ANGLES):
@@ -125,7 +125,7 @@ def _read_angles(table: Table, *, is_euler: bool) -> list[str] | None:
 
 
 def _read_names(table: Table, key: str, expected: str) -> list[str] | None:
-    """Different names; None where there are none, or a fault is noted."""
+    """Different names; None if there are none or a fault is noted."""
     texts = table.texts(key, expected)
     if not texts:
         return None

@@ -20,7 +20,7 @@ _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
 class Table:
-    """A table at a path. The readers give None for a key that is not there or is wrong."""
+    """A table at a path. The readers return None for a missing or wrong key."""
 
     def __init__(self, data: Mapping[str, object], path: Path, faults: Faults) -> None:
         self._data = data
@@ -39,16 +39,20 @@ class Table:
     def path(self) -> Path:
         return self._path
 
+    def instead(self, data: Mapping[str, object]) -> Table:
+        """A table with other data at this path."""
+        return Table(data, self._path, self._faults)
+
     def fault(self, message: str, *at: str | int) -> None:
         """Note a fault at a path below this table."""
         self._faults.add((*self._path, *at), message)
 
     def mistyped(self, value: object, expected: str, *at: str | int) -> None:
-        """Note that the value at a path below this table is not of the type it should have."""
+        """Note that the value at a path below this table has the wrong type."""
         self.fault(f"expected {expected}, got {described(value)}", *at)
 
     def refuse_others(self, known: Sequence[str], hints: Mapping[str, str] | None = None) -> None:
-        """Note every key that is not known; a hint says more of one than the nearest name."""
+        """Note every key that is not known; a hint replaces the nearest name."""
         for key in self._data:
             if key not in known:
                 hint = (hints or {}).get(key) or offer(key, known)
@@ -84,7 +88,7 @@ class Table:
         return None
 
     def tables(self, key: str, expected: str) -> list[Table]:
-        """A list of tables; empty where it is missing or wrong, and the fault is noted."""
+        """A list of tables; empty, with the fault noted, if it is missing or wrong."""
         value = self.value(key)
         if isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
             return [Table(v, (*self._path, key, k), self._faults) for k, v in enumerate(value)]
@@ -94,7 +98,7 @@ class Table:
     def texts(
         self, key: str, expected: str, *, may_be_empty: bool = False
     ) -> list[str | None] | None:
-        """A list of texts, with None in the place of what is no text."""
+        """A list of texts, with None for each entry that is not a text."""
         value = self.value(key)
         if value is None:
             return None
@@ -111,7 +115,7 @@ class Table:
     def choices(
         self, key: str, known: Sequence[str], *, may_be_empty: bool = False
     ) -> tuple[str, ...] | None:
-        """A list of different names, out of those that are known."""
+        """A list of different known names."""
         expected = f'a list of names such as ["{known[0]}"]'
         texts = self.texts(key, expected, may_be_empty=may_be_empty)
         if texts is None:

@@ -1,7 +1,7 @@
-"""On which line of a TOML text each key and each list entry stands.
+"""The line of each key and each list entry of a TOML text.
 
-tomllib gives no positions. This reads the text a second time, knows the layout of TOML and nothing
-of its values, and relies on tomllib having taken the text already.
+tomllib gives no positions. This module reads the text a second time, by the layout of TOML and not
+its values, after tomllib has accepted it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ Path = tuple[str | int, ...]  # ("rotation", "angles", 1)
 
 _BLANK = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")  # also comments and line ends
 _STRING = re.compile(
-    r'"""(?:\\.|[^\\])*?"""(?:"{0,2})'  # up to two quotes may stand before the closing three
+    r'"""(?:\\.|[^\\])*?"""(?:"{0,2})'  # up to two quotes may precede the closing three
     r"|'''.*?'''(?:'{0,2})"
     r'|"(?:\\.|[^"\\])*"'
     r"|'[^']*'",
@@ -26,7 +26,7 @@ _BARE_VALUE = re.compile(r"[^,\]}#\n]*")  # a number, a date with its time, true
 def locate(text: str) -> dict[Path, int]:
     """{path: line} of all tables, keys and list entries; lines count from 1.
 
-    `text` is valid TOML; for any other text the answer means nothing.
+    `text` must be valid TOML.
     """
     reader = _Reader(text)
     reader.document()

@@ -16,7 +16,7 @@ def write_text(path: Path, text: str) -> Path:
 
 
 def write_bytes(path: Path, content: bytes) -> Path:
-    """Write bytes to a new file and move it into place; what was there before stays until then."""
+    """Write bytes to a new file and move it into place; an older file stays until then."""
     with whole_file(path) as file:
         file.write(content)
     return path

@@ -29,7 +29,7 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
     """Stop what runs inside after some seconds; with a label, count the seconds on a terminal.
 
     Raises LimitReached when the time is up, and RequestError for a time that is not positive or
-    if this is not the main thread, which alone receives signals.
+    outside the main thread, since only that receives signals.
     """
     if not seconds > 0:
         raise RequestError(f"timeout: expected a positive number of seconds, got {seconds}")
@@ -65,7 +65,7 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
 def memory_limit(gigabytes: float) -> Iterator[None]:
     """Stop what runs inside when it needs this much more memory than is in use now.
 
-    Raises LimitReached. Where the system cannot limit memory, there is no limit.
+    Raises LimitReached. Without support by the system there is no limit.
     """
     used = _memory_in_use()
     if used is None or not isfinite(gigabytes):

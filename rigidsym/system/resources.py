@@ -1,7 +1,7 @@
-"""The templates and shipped derivation files, wherever this package stands.
+"""The templates and shipped derivation files, however this package is installed.
 
 A wheel carries them inside the package, in `_data`; in a checkout or an editable install their
-folders stand beside the package.
+folders are beside the package.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _HOMES = (_PACKAGE / "_data", _PACKAGE.parent)
 def folder(kind: str) -> Path:
     """The folder of one kind, "templates" or "derivations".
 
-    Raises FileNotFoundError, naming the places searched, where the package came without it.
+    Raises FileNotFoundError, with the places searched, if the package came without it.
     """
     for home in _HOMES:
         if (home / kind).is_dir():
@@ -48,9 +48,9 @@ def names(kind: str, suffix: str) -> tuple[str, ...]:
 
 @contextmanager
 def overridden_by(own: Path) -> Iterator[None]:
-    """Inside, templates in a folder of the user's stand in for those of the same name.
+    """Inside, the templates in a folder of the user replace those of the same name.
 
-    Raises TemplateFault where the folder holds none of the templates, naming them.
+    Raises TemplateFault, with their names, if the folder holds none of the templates.
     """
     known = names("templates", ".jinja")
     if not any((own / f"{name}.jinja").is_file() for name in known):
@@ -66,7 +66,7 @@ def overridden_by(own: Path) -> Iterator[None]:
 def environment(**options: Any) -> Environment:
     """A Jinja2 environment over the templates; `options` are Jinja2's, delimiters for instance.
 
-    Templates are sandboxed, and what is printed stands in the output as it is: each kind of
+    Templates are sandboxed and do not escape: each kind of
     document escapes its own text before it reaches a template. An undefined name, bad syntax or
     a forbidden access raises TemplateFault with the template, the line and the names there are.
     """

@@ -111,14 +111,14 @@ class SandboxedTemplates(SandboxedEnvironment):
         return f"{file}, line {line}"
 
     def _is_of_template(self, error: BaseException) -> bool:
-        """Whether it was raised by a template or by Jinja2 for it, and not by what it was given."""
+        """Whether a template or Jinja2 raised it, and not the code that the template called."""
         *_, (frame, _) = walk_tb(error.__traceback__)
         is_by_jinja = frame.f_globals.get("__name__", "").startswith("jinja2.")
         return is_by_jinja or frame.f_code.co_filename in self._files
 
 
 def _names_at(trace: TracebackType | None, common: set[str]) -> list[str]:
-    """The names that the template was given, without those that every template has."""
+    """The names passed to the template, without those of every template."""
     contexts = (frame.f_locals.get("context") for frame, _ in walk_tb(trace))
     found = next((c for c in contexts if isinstance(c, Context)), None)
     return sorted(set(found.get_all()) - common) if found is not None else []

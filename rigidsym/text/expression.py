@@ -185,7 +185,7 @@ def _check_after_value(before: _Token | None, token: _Token, *, in_call: bool) -
 def _masked(tokens: list[_Token]) -> str:
     """The text for Python's ast, in brackets: names as underscores, numbers as ones.
 
-    A token that starts at character k stands at column k + 1, counted from 0.
+    A token that starts at character k is at column k + 1, counted from 0.
     """
     masks = {"name": "_", "number": "1"}
     result = "("
@@ -202,7 +202,7 @@ def _expected(what: str, text: str, place: int) -> ExpressionError:
 
 
 def _closing(text: str, place: int) -> int:
-    """Where the bracket closes that was opened just before `place`."""
+    """The position of the bracket that closes the one just before `place`."""
     depth = 1
     for at in range(place, len(text)):
         depth += {"(": 1, ")": -1}.get(text[at], 0)

@@ -53,7 +53,7 @@ FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
 
 @dataclass(frozen=True, slots=True)
 class Sized:
-    """An expression, and bounds on what it would become if it were multiplied out."""
+    """An expression, and bounds on its size when expanded."""
 
     expression: sp.Expr
     degree: int
