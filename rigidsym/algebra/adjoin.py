@@ -1,4 +1,4 @@
-"""Which generators a set of expressions asks for, closed under d/dt.
+"""The generators that a set of expressions needs, closed under d/dt.
 
 Nothing here knows a rotation: quaternions, rotation vectors, masses and potentials come in as
 expressions, and leave as the generators of a ring.
@@ -118,7 +118,7 @@ class GeneratorSet:
                 self.collect(rate_of(expression))
 
     def collect(self, expression: sp.Expr) -> None:
-        """Note what one expression asks for; raises AlgebraError for what no ring can hold."""
+        """Collect the generators of one expression; raises AlgebraError if no ring can hold it."""
         if expression in self._seen:
             return
         self._seen.add(expression)

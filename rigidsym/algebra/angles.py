@@ -108,7 +108,7 @@ def not_exact(number: sp.Float) -> AlgebraError:
 
 
 def cosine_sine_of_pi(turns: sp.Rational) -> tuple[sp.Expr, sp.Expr]:
-    """cos(turns·π) and sin(turns·π) by square roots; raises AlgebraError where there are none."""
+    """cos(turns·π) and sin(turns·π) by square roots; raises AlgebraError if there are none."""
     values = sp.cos(turns * sp.pi), sp.sin(turns * sp.pi)
     if any(value.has(sp.sin, sp.cos) for value in values):
         raise AlgebraError(

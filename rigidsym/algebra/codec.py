@@ -188,7 +188,7 @@ class Codec:
         return AlgebraError(f"{expression} is not in the ring of {names}")
 
     def _product(self, factors: Sequence[sp.Expr]) -> Quotient:
-        """The product; what are generators and their powers is one monomial, made in one go."""
+        """The product; generators and their powers are gathered into one monomial."""
         powers = [0] * len(self.ring.generators)
         others: list[Quotient] = []
         for factor in factors:

@@ -1,4 +1,4 @@
-"""Common factors taken out, the one that saves most first.
+"""Common factors are taken out, in the order of what they save.
 
 Terms are Laurent monomials over the generators (a negative power divides), with coefficients.
 The result is a sum of products, each of which may hold a sum in turn.

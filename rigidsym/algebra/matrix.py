@@ -145,7 +145,7 @@ class RingMatrix:
         )
 
     def _minor(self, row: int, column: int) -> RingMatrix:
-        """What is left without one row and one column."""
+        """The matrix without one row and one column."""
         kept = [entries for place, entries in enumerate(self.rows) if place != row]
         return RingMatrix(self.ring, tuple(e[:column] + e[column + 1 :] for e in kept))
 

@@ -172,7 +172,7 @@ class Presenter:
 
 
 class _Expressions(dict[int, sp.Expr]):
-    """What stands at each place of a monomial: generators, then folded sums when asked for."""
+    """The expression at each place of a monomial: generators, then folded sums."""
 
     def __init__(self, generators: Sequence[sp.Expr], sums: Sequence[Rule]) -> None:
         super().__init__(enumerate(generators))
@@ -204,7 +204,7 @@ def _divide(monomial: Monomial, divisor: Monomial) -> Monomial:
 
 
 def _leading_number(element: PolyElement) -> Fraction:
-    """What a sum is freed from: the common factor of its numbers, and a leading minus.
+    """The common factor of the numbers in a sum, with a leading minus.
 
     The term of the lowest degree leads, so that 1 − cos θ is left and not cos θ − 1.
     """

@@ -45,7 +45,7 @@ def _shortest_outside(seen: set[PolyElement], found: Sequence[PolyElement]) -> P
 
 
 def _length(element: PolyElement) -> tuple[int, int]:
-    """Terms first, then the degrees: what a reader counts."""
+    """The number of terms, then the sum of the degrees."""
     return len(element), sum(sum(monomial) for monomial in element)
 
 

@@ -21,7 +21,7 @@ from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.shorten import shortest
 from rigidsym.errors import AlgebraError
 
-_MOST_TERMS = 60  # of what is tried multiplied out; longer forms are no textbook's
+_MOST_TERMS = 60  # of a form that is tried multiplied out; longer ones are no textbook's
 _HALF = sp.Rational(1, 2)
 
 
@@ -55,7 +55,7 @@ def half_of_squares(
 
 
 def _by_weight(matrix: RingMatrix) -> dict[PolyElement, list[int]]:
-    """Places on the diagonal by what stands there; zeros left out."""
+    """Places on the diagonal by their entries; zeros left out."""
     groups: dict[PolyElement, list[int]] = {}
     for k in range(3):
         if matrix[k, k]:
@@ -180,7 +180,7 @@ def shortest_of(forms: Iterable[Sequence[sp.Expr]]) -> sp.ImmutableMatrix:
 def proved(
     present: Presenter, form: sp.Expr, value: PolyElement, number: sp.Rational = sp.S.One
 ) -> sp.Expr:
-    """The form, if it equals number · value in the ring; raises AlgebraError where it does not."""
+    """The form, if it equals number · value in the ring; raises AlgebraError if it does not."""
     ring = present.ring
     scaled = Quotient.product(
         ring, [present.codec.encode_quotient(number), Quotient.whole(ring, ring.reduce(value))]

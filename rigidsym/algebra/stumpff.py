@@ -61,7 +61,7 @@ class _Norm:
 def rewriter_of(
     expressions: Sequence[sp.Expr], constraints: Sequence[sp.Expr] = ()
 ) -> Rewriter | None:
-    """The rewriter for expressions in which there is one norm; None where there is not one."""
+    """The rewriter for expressions with exactly one norm; else None."""
     angles = [f.args[0] for e in expressions for f in e.atoms(sp.sin, sp.cos)]
     if not any(_is_root(angle.as_coeff_Mul()[1]) for angle in angles):
         return None
@@ -105,7 +105,7 @@ class Rewriter:
         self._wholes: dict[PolyElement, sp.Expr | None] = {}
 
     def rewritten(self, expression: sp.Expr) -> sp.Expr | None:
-        """The expression in terms of `Stumpff`, proved equal; None where a singularity stays.
+        """The expression in terms of `Stumpff`, proved equal; None if a singularity remains.
 
         What stands below a fraction bar may still vanish, but not at n = 0 for all v.
         """

@@ -79,7 +79,7 @@ def _check_names(arguments: Iterable[Argument], model: str) -> None:
 
 
 def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument, ...]:
-    """The constants of the model and of the body, where there are any."""
+    """The constants of the model and of the body, if there are any."""
     of_body = body.parameters if body else ()
     symbols = (*model.constants, *(parameter.symbol for parameter in of_body))
     if not symbols:

@@ -36,7 +36,7 @@ class Proof:
 
     claim: Formula  # R Rᵀ = 1
     status: Status
-    residual: sp.ImmutableMatrix | None = None  # what is left over; None where it is zero
+    residual: sp.ImmutableMatrix | None = None  # None if it is zero
 
     @property
     def is_exact(self) -> bool:
@@ -48,7 +48,7 @@ Shape = Literal["scalar", "vector", "matrix"]  # (), (n,) and (m, n) in kernels 
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """What a step defines."""
+    """A quantity that a step defines."""
 
     name: str  # in Python, in kernels, in JSON
     symbol: Formula
@@ -248,16 +248,16 @@ Measure = Literal["det W", "det [W, J]", "det W Wᵀ", "det Wᵀ W", "minors"]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Singularities:
-    """Where the rate matrix has less than its highest rank.
+    """Orientations at which the rate matrix has less than its generic rank.
 
     That is where the determinant vanishes: of W, where it is square; of W Wᵀ or Wᵀ W, where it is
     wide or tall, which is the sum of the squares of the minors; of W above the rows J = ∂c/∂q of
     the conditions c = 0, where these make a square of it. The points are where all minors vanish.
     """
 
-    rank: int  # of W where it does not fail
+    rank: int  # of W at generic coordinates
     measure: Measure
-    determinant: sp.Expr | None  # None where it was not worked out: no divisor, hence no failure
+    determinant: sp.Expr | None  # None if there is no divisor, and hence no failure
     minors: tuple[sp.Expr, ...]  # the determinant itself, or minors whose squares add up to it
     points: tuple[Singularity, ...]
     is_solved: bool  # whether `points` are all the places where the rank falls
@@ -278,7 +278,7 @@ class Derivation:
     model: RotationModel
     arguments: tuple[Argument, ...]
     steps: tuple[Step, ...]
-    singularities: Singularities | None  # None where no quantity of the rates was asked for
+    singularities: Singularities | None  # None if no quantity of the rates was asked for
     body: RigidBody | None = None  # what turns, where energy and momentum were asked for
     theory: tuple[Statement, ...] = ()  # the equations that the steps rest on, where asked for
     definitions: tuple[Definition, ...] = ()  # intermediate quantities that the steps name
@@ -293,7 +293,7 @@ class Derivation:
         raise QuantityError(f"{self.name} has no quantity {quantity!r}; {offer(quantity, names)}")
 
     def select(self, names: Sequence[str]) -> Self:
-        """The derivation with these quantities alone, numbered anew in the order of the steps.
+        """The derivation with only these quantities, numbered anew in the order of the steps.
 
         Singularities go with the rates. Raises QuantityError for a name that is not here.
         """

@@ -39,7 +39,7 @@ class ParticleSums:
         }
 
     def _part(self, monomial: Monomial) -> Monomial:
-        """What of a monomial belongs to the particle."""
+        """The powers in a monomial that belong to the particle."""
         return tuple(monomial[place] for place in self._own)
 
     def of(self, summand: PolyElement) -> PolyElement:

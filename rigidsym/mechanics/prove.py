@@ -145,14 +145,14 @@ class Prover:
         return check_for(self.codec, self.witness)
 
     def _pulled_back(self, left: sp.ImmutableMatrix) -> RingMatrix:
-        """What is left, in the ring of the functions that stand for the coordinates."""
+        """The residual in the ring of the functions that the coordinates are pulled back to."""
         codec, values = self._pullback
         rows = [[codec.encode(entry.xreplace(values)) for entry in row] for row in left.tolist()]
         return RingMatrix.of(codec.ring, rows)
 
     @cached_property
     def _pullback(self) -> tuple[Codec, dict[sp.Expr, sp.Expr]]:
-        """The ring of the pullback, and what the coordinates and their rates become in it."""
+        """The ring of the pullback, with the coordinates and their rates in terms of it."""
         pullback = self.subject.pullback
         assert pullback is not None
         values: dict[sp.Expr, sp.Expr] = {}
@@ -164,7 +164,7 @@ class Prover:
         return codec_for(inputs, constraints=pullback.constraints), values
 
     def _unless_zero(self, divisors: Iterable[PolyElement], claim: Formula) -> Proof:
-        """Exact, unless a divisor may be zero everywhere; it is then what is left over."""
+        """Exact, unless a divisor may be zero everywhere; the divisor is then the residual."""
         for divisor in divisors:
             if not self._is_refuted(divisor):
                 left = self._decoded(RingMatrix.of(self.codec.ring, [[divisor]]))

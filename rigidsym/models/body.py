@@ -1,4 +1,4 @@
-"""What has mass: the mass, the centre and the inertia tensor of a rigid body, as data."""
+"""Rigid bodies as data: mass, centre of mass and inertia tensor."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class RigidBody:
     parameters: tuple[Parameter, ...] = ()  # every symbol above, in the order of kernels
     source: Citation = SOURCE
     allow: bool = False
-    distribution: Distribution | None = None  # of its mass, where that is known
+    distribution: Distribution | None = None  # of its mass, if that is known
     request: Mapping[str, Any] = field(
         default_factory=dict, hash=False
     )  # what asks for it in a file

@@ -1,4 +1,4 @@
-"""Where mass is: particles, solids, and what is put together from them; data alone."""
+"""Distributions of mass as data: particles, solids, and bodies composed of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What may turn: coordinates q and the rotation R(q) they stand for, as data."""
+"""Rotation models as data: coordinates q and the rotation R(q) that they define."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Citation:
     """Where a formula comes from."""
 
     text: str  # author, title
-    equation: str = ""  # its number there, where it has one
+    equation: str = ""  # its number there, if it has one
     section: str = ""  # where in the source, if it is not in the text
 
     def __str__(self) -> str:
@@ -50,7 +50,7 @@ class Turn:
 
     axis: str  # x, y, z, or how the axis is printed
     angle: sp.Expr  # radians; quotients in it that cancel are gone
-    components: tuple[sp.Expr, ...] = ()  # of the axis, where it is not a coordinate axis
+    components: tuple[sp.Expr, ...] = ()  # of the axis, if it is not a coordinate axis
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "angle", symbolic(self.angle, "the angle of a turn"))
@@ -120,11 +120,11 @@ class RotationModel:
     coordinates: tuple[sp.Expr, ...]  # functions of time
     matrix: sp.ImmutableMatrix  # R, (3, 3)
     source: Citation
-    turns: tuple[Turn, ...] = ()  # where R is a product of turns: left to right as multiplied
+    turns: tuple[Turn, ...] = ()  # if R is a product of turns: left to right as multiplied
     constraints: tuple[sp.Expr, ...] = ()  # each vanishes for all time
-    units: tuple[str, ...] = ()  # of the coordinates; radians where nothing is said
+    units: tuple[str, ...] = ()  # of the coordinates; radians by default
     passive: bool = False
-    pullback: Pullback | None = None  # where the coordinates are bound, in place of constraints
+    pullback: Pullback | None = None  # if the coordinates are bound, in place of constraints
     vector: tuple[sp.Expr, ...] = ()  # the three coordinates that are components of one vector
     example: tuple[tuple[sp.Expr, sp.Expr], ...] = ()  # (symbol, value): a real point, if known
     request: Mapping[str, Any] = field(
@@ -163,7 +163,7 @@ class RotationModel:
 
     @property
     def _parts(self) -> tuple[sp.Basic, ...]:
-        """What the rotation is made of; turns are shorter to read than their product."""
+        """The parts of the rotation; turns are shorter to read than their product."""
         turns = [part for turn in self.turns for part in (turn.angle, *turn.components)]
         return (*(turns or [self.matrix]), *self.constraints)
 
@@ -206,12 +206,12 @@ class RotationModel:
 
     @property
     def product(self) -> str:
-        """R as a product of turns in plain text, "Rz(φ) Rx(θ) Rz(ψ)"; empty where it is none."""
+        """R as a product of turns in plain text, "Rz(φ) Rx(θ) Rz(ψ)"; empty if it is not one."""
         return " ".join(str(turn) for turn in self.turns)
 
     @property
     def conditions(self) -> tuple[str, ...]:
-        """What the coordinates and constants are bound by, in plain text: "c**2 + s**2 = 1"."""
+        """The conditions on coordinates and constants in plain text: "c**2 + s**2 = 1"."""
         plain = {q: sp.Symbol(q.func.__name__) for q in self.coordinates}
         parts = (constraint.xreplace(plain).as_coeff_Add() for constraint in self.constraints)
         return tuple(f"{rest} = {-number}" for number, rest in parts)

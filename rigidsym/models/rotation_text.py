@@ -1,4 +1,4 @@
-"""What a file or a command asks for -> a rotation model."""
+"""From the text in a file or a command to a rotation model."""
 
 from __future__ import annotations
 

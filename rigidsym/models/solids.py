@@ -28,7 +28,7 @@ class Length:
     """A length that a solid asks for, or several of a kind."""
 
     key: str  # in a file: radius
-    names: tuple[str, ...]  # of its symbols, where nothing is given
+    names: tuple[str, ...]  # of its symbols, by default
     about: str
 
 
@@ -297,7 +297,7 @@ def check_lengths(name: str, values: Sequence[float | None]) -> None:
 
 
 def free_coordinates(names: Sequence[str], used: Sequence[sp.Expr | None]) -> tuple[sp.Symbol, ...]:
-    """Symbols of these names, with a number behind where an expression has the name already."""
+    """Symbols of these names, with a number behind if an expression has the name already."""
     taken = {
         s.name for expression in used if expression is not None for s in expression.free_symbols
     }

@@ -97,7 +97,7 @@ def _vector(names: Sequence[str]) -> tuple[tuple[sp.Expr, ...], sp.Matrix, sp.Ex
 
 
 def distinct_names(names: Sequence[str], count: int) -> tuple[str, ...]:
-    """Plain names of coordinates; raises ModelError where they are not `count` different ones."""
+    """Plain names of coordinates; raises ModelError unless they are `count` different ones."""
     if not isinstance(names, Sequence):
         raise ModelError(f"expected {count} different names, got {names!r}")
     plain = tuple(check_name(name) for name in names)

@@ -236,7 +236,7 @@ class _Kinematics:
         symbol: Formula,
         below: PolyElement | None = None,
     ) -> Found:
-        """A matrix over `below`, as a function of the vector too where it is one."""
+        """A matrix over `below`, also as a function of the vector if it is one."""
         over = self.values.ring.one if below is None else below
         form = matrix_form(self.prove, self.model.vector, matrix, over, symbol)
         proved = proofs if form is None else (*proofs, form.proof)

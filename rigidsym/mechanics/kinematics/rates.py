@@ -18,7 +18,7 @@ Inverse = tuple[RingMatrix, PolyElement]  # G and d, for G/d
 
 
 def right_inverse(matrix: RingMatrix, bound: RingMatrix | None) -> Inverse | None:
-    """G (n, 3) and d with W G = d 1, for a rate matrix W (3, n); None where there is none.
+    """G (n, 3) and d with W G = d 1, for a rate matrix W (3, n); None if there is none.
 
     `bound` is the matrix J of the constraints on the rates, J q̇ = 0; then J G = 0 as well.
     """
@@ -41,7 +41,7 @@ def right_inverse(matrix: RingMatrix, bound: RingMatrix | None) -> Inverse | Non
 def bound_on_rates(
     constraints: Sequence[sp.Expr], coordinates: Sequence[sp.Expr], codec: Codec
 ) -> RingMatrix | None:
-    """J = ∂(constraints)/∂q, (m, n); None where no constraint binds a coordinate."""
+    """J = ∂(constraints)/∂q, (m, n); None if no constraint binds a coordinate."""
     rows = [[sp.diff(c, q) for q in coordinates] for c in constraints if c.has(*coordinates)]
     if not rows:
         return None

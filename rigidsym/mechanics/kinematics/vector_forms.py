@@ -105,7 +105,7 @@ def _one_fraction(coefficient: sp.Expr) -> sp.Expr:
 
 
 class Vectors:
-    """The vector of one model over its ring, and the point where it lies along its first axis."""
+    """The vector of one model over its ring, and the point at which v = (|v|, 0, 0)."""
 
     def __init__(self, vector: Sequence[sp.Expr], prove: Prover) -> None:
         self.vector = tuple(vector)
@@ -209,7 +209,7 @@ class Vectors:
         return total
 
     def special(self, element: PolyElement) -> PolyElement:
-        """The element where v = (|v|, 0, 0); |v| is the root, where the ring has it."""
+        """The element at v = (|v|, 0, 0); |v| is the root, if the ring has it."""
         first, *others = self._places
         result = self.ring.zero
         for monomial, coefficient in element.items():
@@ -223,7 +223,7 @@ class Vectors:
         return self.ring.reduce(result) if self._root is not None else result
 
     def by_length(self, element: PolyElement) -> PolyElement | None:
-        """The element at the special point, divided by |v|; None where that does not divide."""
+        """The element at the special point, divided by |v|; None if |v| does not divide it."""
         if self._root is not None:
             root = self.ring.generators[self._root].expression
             return self.ring.reduce(element * self.codec.encode(1 / root))
@@ -245,8 +245,8 @@ class Vectors:
         return element, inverse
 
     def lifted(self, form: Weighted) -> Weighted:
-        """The coefficients as functions of v·v again; empty where one is odd in |v|."""
-        if self._root is not None:  # |v| itself stands in them
+        """The coefficients as functions of v·v again; empty if one is odd in |v|."""
+        if self._root is not None:  # they hold |v| itself
             return form
         first = self._places[0]
         if any(monomial[first] % 2 for coefficient, _, _ in form for monomial in coefficient):

@@ -1,4 +1,4 @@
-"""What a derivation works with: the matrices and vectors of one model, over its ring."""
+"""The matrices and vectors of one model over its ring."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Values:
 
     @cached_property
     def factors(self) -> tuple[Factor, ...]:
-        """The turns, where there are too many to multiply R Rᵀ and dR/dt Rᵀ out; else none."""
+        """The turns, if there are too many to multiply R Rᵀ and dR/dt Rᵀ out; else none."""
         return tuple(
             Factor(self.encoded(turn.matrix), self._turning(turn)) for turn in self._many_turns
         )

@@ -238,7 +238,7 @@ _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
 }
 
 
-# The equations of the lecture that these evaluate; what stands on the way to 16 has its number.
+# The equations of the lecture that these quantities evaluate; steps towards 16 share its number.
 NUMBERS = {
     "rotation_rate": 15,
     "spin_matrix": 15,

@@ -1,4 +1,4 @@
-"""What the statements of the lecture are made of: symbols, and one way to write them down."""
+"""Symbols of the lecture, and one way to write a statement down."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ class _Inertia:
 
     @cached_property
     def moments(self) -> Moments:
-        """Those of the distribution; of a body that is given, those that say the same."""
+        """The moments of the distribution, or equivalent ones if only the tensor is given."""
         body = self.body
         known = Known(mass=body.mass, centre=body.centre, inertia=body.inertia)
         return moments_of(body.distribution or known)

@@ -46,7 +46,7 @@ class Moments:
     mass: sp.Expr
     first: sp.ImmutableMatrix
     second: sp.ImmutableMatrix
-    element: sp.Expr | None = None  # of a solid: what is integrated for a density of one
+    element: sp.Expr | None = None  # of a solid: the integrand for a density of one
     proofs: tuple[Proof, ...] = ()
 
     @property
@@ -56,7 +56,7 @@ class Moments:
 
 @singledispatch
 def moments_of(distribution: Distribution) -> Moments:
-    """The moments of a distribution. Raises BodyError where it has none."""
+    """The moments of a distribution. Raises BodyError if it has none."""
     raise BodyError(f"{type(distribution).__name__} is no distribution of mass")
 
 
@@ -226,7 +226,7 @@ class _Integrals:
         return element, (self.prove.is_root(squared, given, bounds, _ELEMENT),)
 
     def split(self, measure: PolyElement) -> tuple[PolyElement, PolyElement]:
-        """The measure as a constant times what is integrated: all of it is one or the other."""
+        """The measure as a constant times an integrand, one of which is 1."""
         names = set(self.solid.coordinates)
         moving = [
             k for k, g in enumerate(self.ring.generators) if g.expression.free_symbols & names
@@ -313,7 +313,7 @@ def _(given: Polyhedron) -> Moments:
 def _triangles(
     given: Polyhedron, codec: Codec, corners: Sequence[tuple[PolyElement, ...]]
 ) -> Iterable[list[tuple[PolyElement, ...]]]:
-    """Each face as triangles about its first corner; raises BodyError where it is not plane."""
+    """Each face as triangles about its first corner; raises BodyError if it is not plane."""
     for number, face in enumerate(given.faces):
         first, *others = (corners[k] for k in face)
         sides = [tuple(a - b for a, b in zip(p, first, strict=True)) for p in others]

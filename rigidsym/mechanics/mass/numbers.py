@@ -19,7 +19,7 @@ _LONGEST = 10**6  # a larger denominator is a measured number's
 
 
 def in_numbers(body: RigidBody) -> MassProperties | None:
-    """Mass, centre, inertia tensor, principal moments and axes; None where a symbol is left."""
+    """Mass, centre, inertia tensor, principal moments and axes; None if a symbol is left."""
     import numpy as np  # which no derivation needs
 
     from rigidsym.data.mass.principal_axes import principal_axes_of

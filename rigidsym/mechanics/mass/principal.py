@@ -19,12 +19,12 @@ class Principal:
     """Principal moments (3, 1) and axes (3, 3), and how they were found."""
 
     moments: sp.ImmutableMatrix
-    axes: sp.ImmutableMatrix | None  # None where no direction was found
+    axes: sp.ImmutableMatrix | None  # None if no direction was found
     because: str
 
 
 def principal_of(inertia: sp.ImmutableMatrix) -> Principal | None:
-    """The principal moments and axes; None where the characteristic polynomial does not factor.
+    """The principal moments and axes; None if the characteristic polynomial does not factor.
 
     There are no axes where they would be too long for use.
     """
@@ -64,7 +64,7 @@ def _diagonal(inertia: sp.ImmutableMatrix) -> Principal:
 
 
 def _root_apart(inertia: sp.ImmutableMatrix, alone: int) -> sp.Expr:
-    """A root of (p − q)² + 4 r² for what is left across one axis; squares are taken out of it.
+    """A root of (p − q)² + 4 r² for the two moments across one axis, without square factors.
 
     Its sign does not matter: the other one swaps the two moments with their axes.
     """
@@ -187,7 +187,7 @@ def _axes(inertia: sp.ImmutableMatrix, roots: list[sp.Expr]) -> sp.ImmutableMatr
 
 
 def _null_vector(inertia: sp.ImmutableMatrix, root: sp.Expr) -> sp.Matrix | None:
-    """A column of the adjugate of I − λ 1, free of common factors; None where all vanish."""
+    """A column of the adjugate of I − λ 1, free of common factors; None if all vanish."""
     adjugate = (inertia - root * sp.eye(3)).adjugate().applyfunc(sp.cancel)
     for k in range(3):
         column = sp.Matrix(adjugate[:, k])

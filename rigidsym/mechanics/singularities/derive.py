@@ -1,4 +1,4 @@
-"""Where the rate matrix loses rank, which direction is lost, and which rates turn nothing."""
+"""Singular orientations: where the rate matrix loses rank, the axis lost, the null rates."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class _Study:
         return "det Wᵀ W" if columns == full and rows == 3 else "minors"
 
     def _is_regular_at_zero(self, minors: Sequence[sp.Expr]) -> bool:
-        """Whether a minor is not zero where all coordinates are, by its entire form."""
+        """Whether a minor is not zero at zero coordinates, by its form in Stumpff functions."""
         rewriter = rewriter_for(self.codec)
         forms = (rewriter.rewritten(minor) for minor in minors) if rewriter else ()
         return any(form is not None and bool(at_zero(form) != 0) for form in forms)
@@ -102,7 +102,7 @@ class _Study:
     def _strata(
         self, matrix: RingMatrix, zero: Zero, rank: int, minors: Sequence[PolyElement]
     ) -> tuple[list[Singularity], bool]:
-        """The points where the rank falls, and those among them where it falls once more."""
+        """The points at which the rank falls, and further on those at which it falls again."""
         is_never_less = any(minor.is_ground for minor in minors) or self._is_never_zero(minors)
         if not rank or is_never_less:
             return [], True
@@ -186,7 +186,7 @@ class _Study:
 
 
 def _rank_and_minors(matrix: RingMatrix, most: int = 9) -> tuple[int, list[PolyElement]]:
-    """The rank, if it is `most` at most, where nothing vanishes but zero; its minors but zeros."""
+    """The generic rank, or `most` if that is less, and the minors of that size but zeros."""
     for size in range(min(*matrix.shape, most), 0, -1):
         minors = [minor for minor in _minors(matrix, size) if minor]
         if minors:
@@ -212,7 +212,7 @@ def _part(ring: Ring, rows: Sequence[Row], columns: Sequence[int]) -> RingMatrix
 
 
 def _kernel(matrix: RingMatrix, rank: int) -> RingMatrix:
-    """Columns that span what the matrix, wider than its rank, takes to zero; by Cramer's rule."""
+    """Columns that span the kernel of a matrix wider than its rank, by Cramer's rule."""
     width = matrix.shape[1]
     if not rank:
         return RingMatrix.identity(matrix.ring, width)
@@ -231,7 +231,7 @@ def _kernel(matrix: RingMatrix, rank: int) -> RingMatrix:
 
 
 def _regular_parts(matrix: RingMatrix, rank: int) -> list[tuple[Sequence[Row], Sequence[int]]]:
-    """Rows and columns of the parts that are regular; one alone if its determinant is constant."""
+    """Rows and columns of the regular parts; only one if its determinant is constant."""
     found: list[tuple[Sequence[Row], Sequence[int]]] = []
     for rows in combinations(matrix.rows, rank):
         for columns in combinations(range(matrix.shape[1]), rank):
@@ -246,7 +246,7 @@ def _regular_parts(matrix: RingMatrix, rank: int) -> list[tuple[Sequence[Row], S
 def _solutions(
     square: RingMatrix, rows: Sequence[Row], pivots: Sequence[int], width: int
 ) -> Iterator[Row]:
-    """Each column that is no pivot in terms of those that are: a vector that is taken to zero."""
+    """A vector of the kernel for each column that is no pivot."""
     ring = square.ring
     above, below = square.adjugate(), square.det()
     for free in (k for k in range(width) if k not in pivots):

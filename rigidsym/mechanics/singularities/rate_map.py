@@ -23,7 +23,7 @@ class RateMap:
     """The rates of n coordinates -> an angular velocity in some frame, over the ring."""
 
     matrix: RingMatrix  # (3, n)
-    bound: RingMatrix | None  # (m, n): what the conditions on the coordinates make of the rates
+    bound: RingMatrix | None  # (m, n): J of the conditions J q̇ = 0
     to_space: tuple[RingMatrix, ...]  # from this frame to that of space, one after the other
     to_body: tuple[RingMatrix, ...]  # from this frame to that of the body
 

@@ -1,4 +1,4 @@
-"""Where polynomials in sines and cosines vanish together: solved factor by factor, or not at all.
+"""Common zeros of polynomials in sines and cosines: solved factor by factor, or not at all.
 
 A factor is solved where it is the sine or the cosine of a rational multiple of one coordinate (or
 of the length n of all of them), 1 plus or minus such a cosine, or a sum of multiples of the two
@@ -29,11 +29,11 @@ _QUARTERS = {0: (0, 1), 1: (1, 0), 2: (0, -1), -1: (-1, 0)}  # quarter turns: si
 
 @dataclass(frozen=True, slots=True)
 class Root:
-    """One coordinate at one value, and what the generators become there."""
+    """One coordinate at one value, and the values of the generators there."""
 
     place: Place
     becomes: tuple[tuple[int, Any], ...]  # generator: a whole number, or an element of the ring
-    order: tuple[int, float, str]  # by coordinates and values; what is no number by its text
+    order: tuple[int, float, str]  # by coordinates and values; symbols by their text
 
 
 Zero = tuple[Root, ...]  # all of them at once
@@ -114,7 +114,7 @@ class Solver:
                 yield _Angle(sine, cosine, fraction, coordinate, coordinate == length)
 
     def common(self, elements: Iterable[PolyElement]) -> tuple[list[Zero], bool]:
-        """The places where all elements vanish, and whether these are all of them."""
+        """The common zeros of the elements, and whether all were found."""
         found: dict[frozenset[Root], Zero] = {}
         is_complete = self._search(list(elements), (), found)
         zeros = [zero for key, zero in found.items() if not any(other < key for other in found)]
@@ -143,7 +143,7 @@ class Solver:
         return is_complete
 
     def _left(self, elements: Sequence[PolyElement], zero: Zero) -> list[PolyElement]:
-        """What is not zero yet, in short forms, each once."""
+        """The elements that are not zero yet, in short forms, each once."""
         last = zero[-1:]
         there = (self._ring.reduce(substituted(e, last)) if last else e for e in elements)
         left = list(dict.fromkeys(element for element in there if element))
@@ -152,7 +152,7 @@ class Solver:
         return list(dict.fromkeys(shortest(self._ring, element) for element in left))
 
     def _roots(self, element: PolyElement) -> list[Root] | None:
-        """The zeros of one element; None where some factor is not solved."""
+        """The zeros of one element; None if some factor is not solved."""
         roots: dict[Root, None] = {}
         for factor in _factors(element):
             if factor not in self._known:
@@ -178,7 +178,7 @@ class Solver:
         return self._of_sum(factor, angle) or self._never(factor, angle)
 
     def _simple(self, angle: _Angle) -> Iterator[tuple[tuple[int, ...], PolyElement]]:
-        """The factors that vanish at quarter turns alone, and these quarter turns."""
+        """The factors that vanish only at quarter turns, and these quarter turns."""
         sine, cosine = self._ring.generator(angle.sine), self._ring.generator(angle.cosine)
         yield from (((0, 2), sine), ((-1, 1), cosine), ((0,), cosine - 1), ((2,), cosine + 1))
         yield from (((1,), sine - 1), ((-1,), sine + 1))
@@ -192,7 +192,7 @@ class Solver:
         return False
 
     def _is_constant(self, factor: PolyElement) -> bool:
-        """Whether it holds constants of the model alone, which are taken not to make it zero."""
+        """Whether it holds only constants of the model, which are assumed not to make it zero."""
         return all(
             place in self._constant or not power
             for monomial in factor
@@ -200,7 +200,7 @@ class Solver:
         )
 
     def _never(self, factor: PolyElement, angle: _Angle) -> list[Root] | None:
-        """No root, where a polynomial in one sine and cosine has none by the count of Sturm."""
+        """No roots, if a polynomial in one sine and cosine has none by Sturm's theorem."""
         others = {angle.sine, angle.cosine}
         if any(power and k not in others for m in factor for k, power in enumerate(m)):
             return None
@@ -283,7 +283,7 @@ def length_of(coordinates: Sequence[sp.Expr]) -> sp.Expr:
 
 
 def angle_of(sine: sp.Expr, cosine: sp.Expr) -> sp.Expr:
-    """The angle with a given sine and cosine, without atan2 where they are those of an angle."""
+    """The angle with a given sine and cosine; atan2 only if they name no angle themselves."""
     for sign_of_sine in (1, -1):
         for sign_of_cosine in (1, -1):
             first, second = sign_of_sine * sine, sign_of_cosine * cosine
