@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rigidsym.formula.latex_pen import MarkdownPen
+from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.notation import Notation
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
@@ -44,7 +44,7 @@ class EquationPrinter:
     def latex(self, step: Step) -> str:
         letters = letters_of(self.arguments, self.notation, self.model)
         equation = as_vectors(equation_of(step, self.arguments), step, letters)
-        return display(equation, letters, _WIDTH, MarkdownPen(self.notation)).text
+        return display(equation, letters, _WIDTH, LatexPen(self.notation)).text
 
     def text(self, step: Step) -> str:
         return show_step(step, self.arguments, notation=self.notation, model=self.model)
