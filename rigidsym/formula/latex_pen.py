@@ -65,7 +65,7 @@ class LatexPen(SheetPen):
             return f" {text}" if text.startswith("\\") and is_binary else text
         if character in ",;":
             return f"{text} "
-        is_start = character in "+−±=≤⇔"  # a line may start with it
+        is_start = character in "+−±=≤<⇔"  # a line may start with it
         return f"{text.rstrip()} " if is_start else f" {text.rstrip()} "
 
     def spelt_gap(self, before: Formula, after: Formula, is_thin: bool) -> str:

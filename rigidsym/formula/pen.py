@@ -37,7 +37,7 @@ from rigidsym.formula.tree import (
 )
 
 DIVISOR = 50  # a divisor's brackets are as deep as so many others: 1/(1 + n²) is broken last
-RELATIONS = "=≤⇔"
+RELATIONS = "=≤<⇔"
 _BREAKS = f"+−±{RELATIONS}"
 
 

@@ -54,6 +54,7 @@ _SIGNS = {
     r"\cdot": "·",
     r"\pm": "±",
     r"\le": "≤",
+    "<": "<",
     r"\in": "∈",
     r"\Leftrightarrow": "⇔",
 }

@@ -29,7 +29,7 @@ _ABOVE = str.maketrans("0123456789-−+TB", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻�
 _BELOW = str.maketrans(
     "0123456789+-−=()aeoruhklmnpstijβγρφχ", "₀₁₂₃₄₅₆₇₈₉₊₋₋₌₍₎ₐₑₒᵣᵤₕₖₗₘₙₚₛₜᵢⱼᵦᵧᵨᵩᵪ"
 )
-_SPACED = "+−±=≤∈⇔×"
+_SPACED = "+−±=≤<∈⇔×"
 
 
 def columns(text: str) -> int:
@@ -73,7 +73,7 @@ class UnicodePen(Pen):
             return self._atom(f"{character} " if is_binary else character)
         if character not in _SPACED or not is_binary:
             return self._atom(character)
-        starts_a_line = character in "+−±=≤⇔"
+        starts_a_line = character in "+−±=≤<⇔"
         return self._atom(f"{character} " if starts_a_line else f" {character} ")
 
     def between(self, before: Formula, after: Formula) -> Piece:

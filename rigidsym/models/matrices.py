@@ -13,6 +13,8 @@ from rigidsym.models.rotation import Citation, Pullback, RotationModel, lecture
 from rigidsym.models.so3 import symbolic, time_function
 from rigidsym.models.vectors import distinct_names
 
+GIVEN = "given by the user"  # the source of a rotation without another
+
 _NAMES = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
 
 
@@ -44,7 +46,7 @@ def given(
     title: str = "",
     coordinates: Sequence[sp.Expr] = (),
     constraints: Sequence[sp.Expr] = (),
-    source: str = "given by the user",
+    source: str = GIVEN,
     passive: bool = False,
 ) -> RotationModel:
     """Your own R(q), 3x3, in functions of time; it is proved to be a rotation when derived.

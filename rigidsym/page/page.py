@@ -9,10 +9,10 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator
 from typing import Any
 
-from rigidsym.formula.tree import NOTHING, PLUS, Formula, Numeral, Symbol, equal, joined, row
+from rigidsym.formula.tree import NOTHING, Numeral, Symbol
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
@@ -21,13 +21,14 @@ from rigidsym.notes.document.document import Document, Equation, Paragraph, Text
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
 from rigidsym.notes.prose.singular_words import singular
+from rigidsym.notes.prose.turn_words import sum_of_turns
 from rigidsym.notes.prose.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
 from rigidsym.page.copies import LANGUAGES, copies_of
 from rigidsym.page.functions import Functions, functions_of
 from rigidsym.page.own_body import own_shape
 from rigidsym.page.shapes import SHAPES, as_data
-from rigidsym.page.stage import has_turns, label, rate_of, shown_angles, stage_of
+from rigidsym.page.stage import has_turns, label, shown_angles, stage_of
 from rigidsym.system import resources
 
 TEMPLATE = "page/page.html.jinja"
@@ -179,21 +180,7 @@ def _turn_words(model: RotationModel, document: Document, printer: PagePrinter) 
         printer.words(words("Turn {} of {}: by {} about {}", str(k), str(len(axes)), angle, axis))
         for k, (angle, axis) in enumerate(zip(angles, axes, strict=True), start=1)
     ]
-    return [*sentences, _sum(model, document, axes, printer)]
-
-
-def _sum(
-    model: RotationModel, document: Document, axes: Sequence[Formula], printer: PagePrinter
-) -> str:
-    """Ω = φ̇ e_z + θ̇ e_N + ψ̇ e_z′."""
-    omega = document.letters.notation.applied(SPACE.omega)
-    rates = [rate_of(turn.angle, document.letters) for turn in model.turns]
-    terms = [
-        row(rate, Symbol("e", "bold", index=axis))
-        for rate, axis in zip(rates, axes, strict=True)
-        if rate != Numeral("0")
-    ]
-    return f"<p>{printer.formula(equal(omega, joined(terms, PLUS)))}</p>"
+    return [*sentences, f"<p>{printer.formula(sum_of_turns(model, document.letters))}</p>"]
 
 
 def _value(step: Step, printer: PagePrinter, *, in_degrees: bool) -> dict[str, Any]:

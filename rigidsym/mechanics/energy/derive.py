@@ -74,7 +74,7 @@ class _Energy:
         residual = summed - self._scalar(twice)
         return Found(
             sp.ImmutableMatrix([[self._translational]]),
-            "All the mass moves with the centre of mass.",
+            "The energy of translation is that of the total mass moving with the centre of mass.",
             (self.prove.vanishes(residual, claims.TRANSLATION_OF_PARTICLES),),
         )
 
@@ -121,7 +121,7 @@ class _Energy:
         summed = self._of_particles(self._crossed(self.centre, self.velocity))
         return Found(
             self.present.matrix(momentum),
-            "It is that of the whole mass in the centre of mass.",
+            "The angular momentum of the centre-of-mass motion is that of the total mass.",
             (self.prove.vanishes(summed - momentum, claims.MOMENTUM_OF_CENTRE),),
         )
 
@@ -149,7 +149,7 @@ class _Energy:
             proofs.append(self.prove.vanishes(summed - momentum, claims.MOMENTUM_OF_PARTICLES))
         return Found(
             momentum_forms.in_space(self.present, self.inertia, values),
-            "The components along the axes of space follow by the rotation.",
+            "Rotating gives the components along the axes of space.",
             tuple(proofs),
         )
 
@@ -165,7 +165,7 @@ class _Energy:
         rotation = momentum_forms.in_space(self.present, self.inertia, self.values)
         return Found(
             sp.ImmutableMatrix(self.present.matrix(of_centre) + rotation),
-            "The momentum splits as the energy does.",
+            "Like the energy, the angular momentum is the sum of two parts.",
             (proof,),
         )
 

@@ -81,16 +81,16 @@ class _Kinematics:
         turned_over = " and transposed" if self.model.passive else ""
         match len(self.model.turns):
             case 0:
-                return f"The rotation is given{turned_over}."
+                return f"The rotation matrix is given{turned_over}."
             case 1:
-                return f"The matrix of the turn is written out{turned_over}."
-        return f"The turns are multiplied from left to right{turned_over}."
+                return f"The rotation matrix is that of the turn{turned_over}."
+        return f"Multiplying the matrices of the turns gives the rotation matrix{turned_over}."
 
     def rotation_rate(self) -> Found:
         spin = self._shown_spin
         return Found(
             self.present.matrix(self._shown(self.values.R_dot)),
-            "The matrix is differentiated entry by entry, by the chain rule.",
+            "The chain rule gives the time derivative of each entry.",
             (
                 self.prove.vanishes(spin + spin.T, claims.stays_orthogonal(self._shown_symbol)),
                 *self._composed(),
@@ -121,12 +121,12 @@ class _Kinematics:
         if values.factors:
             (proof,) = self._composed()
             because = (
-                "Each turn adds its own axis, as the turns before it have moved it; for so many "
-                "turns the product is not multiplied out."
+                "Each turn contributes its rate times its axis, as the turns before it have moved "
+                "it; for so many turns the product is not multiplied out."
             )
         else:
             because = (
-                "C⁻¹ takes the vector of a skew matrix from its entries (3,2), (1,3) and (2,1)."
+                "The components of Ω are the entries (3,2), (1,3) and (2,1) of this skew matrix."
             )
             if self.model.passive:
                 because = (
@@ -142,8 +142,8 @@ class _Kinematics:
         return self._vector(
             BODY,
             values.omega_body,
-            "The components along the axes of the body follow by the "
-            + ("direction cosine matrix." if self.model.passive else "transposed rotation."),
+            f"Multiplying by {'A' if self.model.passive else 'Rᵀ'} gives the components along the "
+            "axes of the body.",
             self.prove.vanishes(
                 values.R @ values.omega_body - values.omega_space,
                 claims.rotates(ROTATION, BODY.omega, SPACE.omega),
@@ -155,11 +155,24 @@ class _Kinematics:
         claim = claims.maps_rates(frame.matrix, RATES, frame.omega)
         return self._matrix(
             matrix,
-            "The angular velocity is linear in the rates; their coefficients are the columns."
+            self._columns_in_words(frame)
             if len(self.model.coordinates) > 1
-            else "The angular velocity is the rate times the axis.",
+            else "The angular velocity is the rate times the axis of the turn.",
             self.prove.vanishes(residual, claim),
             symbol=frame.matrix,
+        )
+
+    def _columns_in_words(self, frame: Frame) -> str:
+        turns = [turn.angle for turn in self.model.turns]
+        if turns and all(a == q for a, q in zip(turns, self.model.coordinates, strict=False)):
+            where = "in space" if frame is SPACE else "in the body"
+            return (
+                "The angular velocity depends linearly on the rates; the columns of the rate "
+                f"matrix are the axes of the turns, with their components {where}."
+            )
+        return (
+            "The angular velocity depends linearly on the rates; the columns of the rate matrix "
+            "are their coefficients."
         )
 
     def inverse(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> Found | None:
@@ -173,7 +186,8 @@ class _Kinematics:
         )
         return self._matrix(
             above,
-            "The adjugate is divided by the determinant."
+            "The inverse gives the rates for a known angular velocity, for example one measured by "
+            "gyroscopes; it is the adjugate divided by the determinant."
             if matrix.shape == (3, 3)
             else self._of_all_rates(),
             proof,
@@ -183,8 +197,12 @@ class _Kinematics:
 
     def _of_all_rates(self) -> str:
         is_bound = self.values.bound is not None
-        choice = "those that keep to the conditions" if is_bound else "the smallest"
-        return f"Of all rates that give an angular velocity, {choice} are taken."
+        if is_bound:
+            return "The rates that satisfy the conditions on the coordinates are unique."
+        return (
+            "The rates are not unique, since there are more coordinates than components of the "
+            "angular velocity; we choose the smallest."
+        )
 
     def rates(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> Found | None:
         if inverse is None:
@@ -202,7 +220,7 @@ class _Kinematics:
         )
         return Found(
             self.present.matrix(rates, below),
-            "The inverse rate matrix is applied to a given angular velocity.",
+            "It takes a given angular velocity to the rates, which can then be integrated.",
             (proof,) if form is None else (proof, form.proof),
             form,
         )
@@ -212,7 +230,7 @@ class _Kinematics:
         claim = claims.is_operator(ALPHA, claims.rate_of_whole(claims.spin_of(ROTATION)))
         return Found(
             self.present.matrix(space),
-            "The space components of the angular velocity are differentiated.",
+            "The angular acceleration is the time derivative of the angular velocity.",
             (self.prove.vanishes(self.values.spin.dt() - hat(space), claim), *self._composed()),
         )
 

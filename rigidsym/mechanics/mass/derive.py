@@ -67,7 +67,11 @@ class _Inertia:
     def mass(self) -> Found | None:
         if self.body.distribution is None or self.body.mass.is_Symbol:
             return None
-        return Found(_scalar(self.body.mass), "The mass is added up.", self.moments.proofs)
+        return Found(
+            _scalar(self.body.mass),
+            "The total mass is the sum over all parts of the body.",
+            self.moments.proofs,
+        )
 
     def centre_of_mass(self) -> Found | None:
         if self.body.distribution is None:
@@ -76,7 +80,7 @@ class _Inertia:
         proofs = () if not self.body.mass.is_Symbol else self.moments.proofs
         return Found(
             self.body.centre,
-            "The centre of mass is the mean of the places, each with its mass.",
+            "The centre of mass is the mean position, weighted with the mass.",
             (*proofs, identity(rest, claims.CENTRED, self.body.name)),
         )
 
@@ -89,7 +93,7 @@ class _Inertia:
         about_origin = moments.second.trace() * _ONE - moments.second
         rest = about_origin - body.inertia - _moved(body.mass, body.centre)
         proofs.append(identity(rest, claims.ABOUT_ORIGIN, body.name))
-        because = "The inertia tensor is that of the lecture, about the centre of mass."
+        because = "The inertia tensor is taken about the centre of mass."
         if isinstance(body.distribution, Composite):
             rest = self._of_parts(body.distribution.parts) - body.inertia
             conditions = body.distribution.conditions
@@ -117,7 +121,8 @@ class _Inertia:
         rest = self._about_point - body.inertia - _moved(body.mass, self.point - body.centre)
         return Found(
             sp.ImmutableMatrix(body.inertia + self._shift),
-            "About another point the whole mass, put into the centre of mass, is added.",
+            "By the parallel-axis (Steiner) theorem, the mass is added as if concentrated in the "
+            "centre of mass.",
             (identity(rest, claims.OF_POINT, body.name),),
         )
 
@@ -182,7 +187,7 @@ class _Inertia:
         rest = sp.Matrix([body.mass * radius**2 for radius in radii]) - moments
         return Found(
             radii,
-            "At this distance from the axis the whole mass would have the same moment.",
+            "The radii of gyration are defined by I′ⱼⱼ = M kⱼ².",
             (identity(rest, claims.OF_RADII, body.name),),
         )
 
@@ -217,7 +222,7 @@ class _Inertia:
         whole = unit.col_join(sp.Matrix([[_volume(axes) - 1, 0, 0]]))
         return Found(
             axes,
-            "Each axis is a direction that the tensor keeps.",
+            "The principal axes are the eigenvectors of I′.",
             (
                 identity(turned, claims.DIAGONAL, name),
                 identity(whole, claims.ORTHOGONAL_AXES, name),
@@ -234,7 +239,7 @@ class _Inertia:
         )
         return Found(
             sp.ImmutableMatrix(semi_axes),
-            "The ellipsoid is that of all x′ for which x′·I′ x′ = 1.",
+            "The inertia ellipsoid consists of all points x′ with x′·I′ x′ = 1.",
             (identity(rest, claims.ELLIPSOID, self.body.name),),
         )
 
@@ -246,7 +251,7 @@ class _Inertia:
         prove = Prover(values.model, values.codec)
         return Found(
             presenter_for(values.codec).matrix(space),
-            "The components along the axes of space follow by the rotation, on both sides.",
+            "A tensor is rotated from both sides.",
             (
                 prove.vanishes(values.R.T @ (space @ values.R) - body, claims.BACK),
                 prove.vanishes(trace, claims.TRACE),

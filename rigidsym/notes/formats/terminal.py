@@ -22,7 +22,7 @@ from rigidsym.notes.formula.scalars import formula_of, matrix_of
 from rigidsym.notes.layout.entries import RESIDUAL, entry_names, indexed
 from rigidsym.notes.layout.grid import grid
 from rigidsym.notes.prose.prose import turn
-from rigidsym.notes.prose.singular_words import failures, measured
+from rigidsym.notes.prose.singular_words import failures, geometry, measured, singular_title
 from rigidsym.notes.prose.vector_words import sum_of_vectors
 from rigidsym.notes.prose.words import convention, symbols_of, unit_in_words, with_symbols
 
@@ -276,12 +276,13 @@ class _Screen(_Steps):
         if found is None:
             return
         yield ""
-        yield self.style("Where the rates fail", "heading")
+        yield self.style(singular_title(self.derivation), "heading")
         if found.determinant is not None:
             yield from self._listing(
                 [equal(*measured(found))], [formula_of(found.determinant, self.letters)]
             )
-        for sentence in failures(self.derivation, found):
+        zeros, *points = failures(self.derivation, found)
+        for sentence in (zeros, *geometry(self.derivation), *points):
             yield from self._wrapped(sentence)
 
     def _conversions(self) -> Iterator[str]:
@@ -299,7 +300,7 @@ class _Screen(_Steps):
 
     def _proofs(self) -> Iterator[str]:
         yield ""
-        yield self.style("What was proved", "heading")
+        yield self.style("Identities verified", "heading")
         numbered = [(s.number, s.proofs) for s in self.derivation.theory]
         numbered += [(step.number, step.proofs) for step in self.steps]
         for number, proofs in numbered:

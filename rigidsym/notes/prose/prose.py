@@ -72,7 +72,9 @@ def _active_motion() -> Iterator[NoteBlock]:
 def _passive_motion() -> Iterator[NoteBlock]:
     spinning = spin_of(COSINES)
     yield Paragraph(
-        words("A point at rest in space has the body components {}, which change by", PASSIVE)
+        words(
+            "A point at rest in space has the body components {}, which change at the rate", PASSIVE
+        )
     )
     yield Equation(
         sides=(
@@ -83,8 +85,8 @@ def _passive_motion() -> Iterator[NoteBlock]:
     )
     yield Paragraph(
         words(
-            "Seen from the body it turns backwards, by {}, so that {} is the matrix of the "
-            "operator {}\u00a0{}.",
+            "As seen from the body, the point moves with the velocity {}, so that {} is the "
+            "matrix of the operator {}\u00a0{}.",
             _minus(_cross(BODY.omega, BODY_POSITION)),
             spinning,
             _minus(_operator(BODY.omega)),
@@ -108,7 +110,7 @@ def _minus(symbol: Formula) -> Formula:
 def announcement(equation: Equation, done: Done) -> Text:
     """What a reader has to be told of the way an equation is set, before it; often nothing."""
     if done == "abbreviated":
-        return words("In short, with {} for {} and {} for {} of any angle,", *_SHORTHAND)
+        return words("With the abbreviations {} for {} and {} for {},", *_SHORTHAND)
     if done == "listed":
         return words("The entries of {} are", equal(*equation.sides))
     return ()
@@ -117,12 +119,12 @@ def announcement(equation: Equation, done: Done) -> Text:
 def proofs_in_words(*, is_proved: bool) -> Text:
     """What the table of proofs means by its words."""
     exact = (
-        "Each claim was put to the ring of polynomials in which the derivation was made, modulo "
-        "the relations between its generators, such as that of sine and cosine. It is exact where "
-        "the difference of its two sides reduces to zero there."
+        "Each identity was verified exactly, as a polynomial identity in the sines and cosines "
+        "using sin² + cos² = 1 (and similar relations for other functions). “Exact” means that "
+        "the two sides were shown to be identical."
     )
     unproved = (
-        " It is unproved where something is left over and the relations that are known do not "
-        "decide whether that is zero; then it is shown below the table."
+        " “Unproved” means that the difference of the two sides was not shown to vanish; it is "
+        "given below the table."
     )
     return (exact if is_proved else exact + unproved,)

@@ -1,8 +1,8 @@
-"""Sentences on where the rates fail, and what is lost there, for the note and the terminal."""
+"""Sentences on singular orientations and gimbal lock, for the note and the terminal."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import prod
 
 import sympy as sp
@@ -22,13 +22,23 @@ from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
 from rigidsym.notes.document.document import Text, listed, words
 from rigidsym.notes.formula.letters import Letters, letters_of
 from rigidsym.notes.formula.scalars import formula_of
+from rigidsym.notes.prose.turn_words import are_euler_angles
 from rigidsym.notes.prose.words import vector
 
 _MOST_POINTS = 8  # that are told of one by one
 _FRAMES = (SPACE.matrix, BODY.matrix)
 WITH_CONDITIONS = formula(r"\mathbf{J}")
+_HALVES = {sp.pi / 2, -sp.pi / 2}
+_CONFINED = {1: "a line", 2: "a plane"}
 _WHOLE_TURN = 2 * sp.pi
 _COUNTED = formula(r"k = 1, 2, \ldots")
+
+
+def singular_title(derivation: Derivation) -> str:
+    """The heading of these sentences."""
+    found = derivation.singularities
+    is_lock = found is not None and len(derivation.model.turns) > 1 and bool(found.points)
+    return "Singular orientations (gimbal lock)" if is_lock else "Singular orientations"
 
 
 def measured(found: Singularities) -> tuple[Formula, ...]:
@@ -49,21 +59,22 @@ def meaning(found: Singularities) -> Text:
     sentences: dict[Measure, Text] = {
         "det W": ("Both rate matrices have the determinant",),
         "det [W, J]": words(
-            "Below the rate matrix stand the rows {} by which the conditions bind the rates; the "
-            "determinant of the whole is",
+            "The conditions on the coordinates bind the rates by the rows {}. Together with the "
+            "rate matrix they have the determinant",
             WITH_CONDITIONS,
         ),
         "det W Wᵀ": (
-            "The rate matrix is wider than it is high; its rank falls where all its largest "
-            "minors vanish, the squares of which add up to",
+            "The rate matrix has more columns than rows. It has full rank as long as the "
+            "following determinant does not vanish:",
         ),
         "det Wᵀ W": (
-            "The rate matrix is higher than it is wide; its rank falls where all its largest "
-            "minors vanish, the squares of which add up to",
+            "The rate matrix has more rows than columns. It has full rank as long as the "
+            "following determinant does not vanish:",
         ),
         "minors": (
-            f"The squares of the minors of rank {found.rank} of the rate matrix, and of the rows "
-            "by which conditions bind the rates, add up to",
+            f"The rate matrix, with the rows by which conditions bind the rates, has rank "
+            f"{found.rank} as long as the following sum of the squares of its minors does not "
+            "vanish:",
         ),
     }
     return sentences[found.measure]
@@ -76,7 +87,7 @@ def failures(derivation: Derivation, found: Singularities) -> Iterator[Text]:
     yield from (singular(point, derivation) for point in found.points[:_MOST_POINTS])
     more = len(found.points) - _MOST_POINTS
     if more > 0:
-        yield (f"At the other {more} points the like is lost; the record lists them.",)
+        yield (f"The other {more} singular points are listed in the JSON record.",)
 
 
 def _zeros(found: Singularities, letters: Letters) -> Text:
@@ -87,23 +98,22 @@ def _zeros(found: Singularities, letters: Letters) -> Text:
             "orientations are not listed. The function singularity_margin is 0 there.",
         )
     if found.determinant is None:
-        return ("The rates follow without any divisor, so that they fail nowhere.",)
+        return ("The rates follow without any divisor, so that there is no singular orientation.",)
     points = [point for point in found.points if point.places]
     if points:
-        where, period = _where(points, letters), _period(points, letters)
-        unknown = "; where else it vanishes was not decided"
-        only = ", and nowhere else" if found.is_solved else unknown
-        return (*where, *period, only, *_not_at_zero(points, letters), ".")
+        where, period = _where(found, points, letters)
+        more = "" if found.is_solved else "; other zeros were not determined"
+        return (*where, *period, more, *_not_at_zero(points, letters), ".")
     if not found.rank:
-        return ("The rates of the coordinates turn nothing.",)
+        return ("The body does not turn, whatever the rates are.",)
     if not found.is_solved:
-        return ("Where it vanishes was not decided: no closed form for that is known here.",)
+        return ("Its zeros have no closed form here and were not determined.",)
     unless = ", unless the constants make it zero" if _has_constants(found.determinant) else ""
     if found.rank == 3:
-        return (f"It never vanishes{unless}: the rates always follow from the angular velocity.",)
+        return (f"It never vanishes{unless}, so this parametrisation has no singularity.",)
     return (
-        f"It never vanishes{unless}: the rank is {found.rank} everywhere, which is how many "
-        "directions of the angular velocity can be reached.",
+        f"It never vanishes{unless}: the rank is {found.rank} everywhere, and the angular velocity "
+        f"is confined to {_CONFINED[found.rank]}.",
     )
 
 
@@ -115,19 +125,37 @@ def _has_constants(determinant: sp.Expr) -> bool:
     )
 
 
-def _where(points: Sequence[Singularity], letters: Letters) -> Text:
-    """It vanishes at θ = 0 and θ = π; or, of several coordinates, where they have these values."""
+def _where(
+    found: Singularities, points: Sequence[Singularity], letters: Letters
+) -> tuple[Text, Text]:
+    """It vanishes at θ = 0 and θ = π, or where several coordinates have values; the period."""
     values: dict[sp.Expr, dict[sp.Expr, None]] = {}
     for place in (place for point in points for place in point.places):
         values.setdefault(place.coordinate, {})[place.value] = None
+    only = "only " if found.is_solved else ""
     is_grid = len(points) == prod(map(len, values.values()))
     if len(values) == 1 or not is_grid:
-        return ("It vanishes at ", *listed([_at(point, letters) for point in points]))
+        multiples = _multiples(values, letters) if found.is_solved else ()
+        if multiples:
+            return multiples, ()
+        at = listed([_at(point, letters) for point in points])
+        return (f"It vanishes {only}at ", *at), _period(points, letters)
     choices: list[Text] = [
         (formula_of(coordinate, letters), " is ", *listed(_markups(several, letters), " or "))
         for coordinate, several in values.items()
     ]
-    return ("It vanishes where ", *listed(choices))
+    return (f"It vanishes {only}where ", *listed(choices)), _period(points, letters)
+
+
+def _multiples(values: Mapping[sp.Expr, Iterable[sp.Expr]], letters: Letters) -> Text:
+    """It vanishes only where θ is a multiple of π; empty for other zeros."""
+    (angle, zeros), *_ = values.items()
+    for found, multiple in (({sp.S.Zero, sp.pi}, "a multiple"), (_HALVES, "an odd multiple")):
+        if set(zeros) == found and len(values) == 1:
+            unit = sp.pi if sp.pi in found else sp.pi / 2
+            text = f"It vanishes only where {{}} is {multiple} of {{}}"
+            return words(text, formula_of(angle, letters), formula_of(unit, letters))
+    return ()
 
 
 def _markups(values: Iterable[sp.Expr], letters: Letters) -> list[Text]:
@@ -151,19 +179,19 @@ def _place(place: Place, letters: Letters) -> Text:
 
 
 def _period(points: Sequence[Singularity], letters: Letters) -> Text:
-    """Up to whole turns, or up to how many of them."""
+    """Modulo 2π, or a multiple of it."""
     periods = {p.coordinate: p.period for point in points for p in point.places if not p.is_length}
     if not periods:
         return ()
     longer = {q: period for q, period in periods.items() if period != _WHOLE_TURN}
     if not longer:
-        return (", up to whole turns",)
+        return words(", modulo {}", formula_of(_WHOLE_TURN, letters))
     multiples: list[Text] = [
-        words("multiples of {} for {}", formula_of(period, letters), formula_of(q, letters))
+        words("{} for {}", formula_of(period, letters), formula_of(q, letters))
         for q, period in longer.items()
     ]
-    others: list[Text] = [("whole turns",)] if len(longer) < len(periods) else []
-    return (", up to ", *listed([*others, *multiples]))
+    others: list[Text] = [(formula_of(_WHOLE_TURN, letters),)] if len(longer) < len(periods) else []
+    return (", modulo ", *listed([*others, *multiples]))
 
 
 def _not_at_zero(points: Sequence[Singularity], letters: Letters) -> Text:
@@ -178,7 +206,7 @@ def singular(point: Singularity, derivation: Derivation) -> Text:
     letters = letters_of(derivation.arguments, model=derivation.model)
     head = ("At ", *_at(point, letters), " ") if point.places else ("Everywhere ",)
     if not point.rank:
-        return (*head, "no rates turn the body.")
+        return (*head, "the body does not turn, whatever the rates are.")
     return (*head, *_determined(point, derivation, letters), *_lost(point, letters), ".")
 
 
@@ -192,11 +220,23 @@ def _determined(point: Singularity, derivation: Derivation, letters: Letters) ->
             return ("the rates of ", *names, f" are not determined: the rank is {point.rank}")
         return (f"the rate matrix has rank {point.rank}",)
     kept = determined(point, coordinates, derivation.argument("q_dot").symbols)
-    turning_nothing = listed([vector(column, letters) for column in idle.T.tolist()])
     verb = "is" if len(kept) == 1 else "are"
     names = listed([(formula_of(combination, letters),) for combination in kept])
-    only: Text = ("only ", *names, f" {verb} determined; ") if kept else ()
-    return (*only, "rates in proportion to ", *turning_nothing, " turn nothing")
+    only: Text = ("only ", *names, f" {verb} determined: ") if kept else ()
+    return (*only, *_idle(idle, coordinates, letters), " the body at rest")
+
+
+def _idle(idle: sp.MatrixBase, coordinates: Sequence[sp.Expr], letters: Letters) -> Text:
+    """Changing φ and ψ by opposite amounts leaves; or rates proportional to (1, 2, 0) leave."""
+    columns = idle.T.tolist()
+    moved = [(q, n) for q, n in zip(coordinates, columns[0], strict=True) if n]
+    if len(columns) == 1 and len(moved) == 2 and abs(moved[0][1]) == abs(moved[1][1]):
+        how = "equal" if moved[0][1] == moved[1][1] else "opposite"
+        pair = (formula_of(q, letters) for q, _ in moved)
+        return words(f"changing {{}} and {{}} by {how} amounts leaves", *pair)
+    if len(columns) == 1 and len(moved) == 1:
+        return words("changing {} leaves", formula_of(moved[0][0], letters))
+    return ("rates proportional to ", *listed([vector(c, letters) for c in columns]), " leave")
 
 
 def determined(
@@ -230,14 +270,29 @@ def _whole(row: sp.MatrixBase) -> list[sp.Expr]:
 
 def _lost(point: Singularity, letters: Letters) -> Text:
     if point.reachable_axis is not None:
-        axis = vector(point.reachable_axis, letters)
-        return (", and rates turn the body about ", *axis, " alone")
+        return (", and the body can only turn about ", *vector(point.reachable_axis, letters))
     if point.lost_axis_space is None or point.lost_axis_body is None:
         return ()
     return (
-        ", and no rates turn the body about ",
+        ". No choice of rates yields an angular velocity along ",
         *vector(point.lost_axis_space, letters),
-        " in space, that is ",
+        " in space, which is ",
         *vector(point.lost_axis_body, letters),
         " in the body",
+    )
+
+
+def geometry(derivation: Derivation) -> Iterator[Text]:
+    """Why two of three turns lock, and what that means nearby."""
+    found, turns = derivation.singularities, derivation.model.turns
+    if found is None or not found.points or not are_euler_angles(derivation.model):
+        return
+    letters = letters_of(derivation.arguments, model=derivation.model)
+    first, last = (formula_of(turns[k].angle, letters) for k in (0, 2))
+    yield words(
+        "At these orientations the axes of the first and of the last turn coincide: {} and {} turn "
+        "the body about the same axis, and one degree of freedom is lost. This is gimbal lock. "
+        "Near these orientations, the rates of {} and {} for a given angular velocity grow without "
+        "bound, as one over the determinant.",
+        *(first, last, first, last),
     )

@@ -11,6 +11,7 @@ import sympy as sp
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula, Symbol, equal
+from rigidsym.mechanics.claims import transpose_of
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.mechanics.quantities.energy import CENTRE
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
@@ -49,7 +50,7 @@ _ALSO_WORDS = ("a", "A", "I")  # in a sentence these are words, whatever an angl
 def symbols_of(derivation: Derivation) -> dict[str, Formula]:
     """The symbols that may occur in a sentence about a derivation, by their plain text."""
     named = chain(
-        (ROTATION, *map(Symbol, AXES)),
+        (ROTATION, transpose_of(ROTATION), *map(Symbol, AXES)),
         chain.from_iterable(argument.notation for argument in derivation.arguments),
         (step.quantity.symbol for step in derivation.steps),
         (SPACE.omega, BODY.omega, RATES, VECTOR_OF),
@@ -135,7 +136,7 @@ def _conditions(derivation: Derivation, notation: Notation) -> Iterator[Text]:
     for constraint in derivation.model.constraints:
         number, rest = constraint.as_coeff_Add()
         sides = (formula_of(rest, letters), formula_of(-number, letters))
-        yield words("All that is proved is proved under the condition {}.", equal(*sides))
+        yield words("All identities hold under the condition {}.", equal(*sides))
 
 
 def _direction(*, passive: bool) -> Text:
@@ -159,7 +160,7 @@ def _coordinates(argument: Argument, *, has_dots: bool) -> Text:
     measured = f", in {unit_in_words(units[0])}" if len(units) == 1 and units[0] else ""
     several = len(argument.notation) > 1
     head = words(f"The coordinate{'s are' if several else ' is'} {{}} = (", COORDINATES)
-    dots = "; a dot is the derivative with respect to time" if has_dots else ""
+    dots = "; a dot denotes the derivative with respect to time" if has_dots else ""
     return (*head, *names, f"){measured}{dots}.")
 
 

@@ -38,7 +38,7 @@ from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.entries import indexed
 from rigidsym.notes.prose.words import unit_in_words
 
-_KINDS = ("the length", "the area", "the volume")
+_KINDS = ("length", "area", "volume")
 _DIGITS = 6
 
 
@@ -51,7 +51,7 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
         case Solid():
             yield from _solid(body.distribution, letters)
         case Composite():
-            yield Paragraph((f"{body.title}: it is put together from parts.",))
+            yield Paragraph(("The body is composed of the following parts.",))
             yield _parts(body.distribution.parts, letters)
             solids = (part.what for part in body.distribution.parts)
             for solid in dict.fromkeys(what for what in solids if isinstance(what, Solid)):
@@ -61,8 +61,9 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
         case Polyhedron():
             yield Paragraph(
                 (
-                    "The solid is bounded by plane faces; it is the sum of the tetrahedra between "
-                    "the origin and its faces, those outside with a minus sign.",
+                    "The solid is bounded by plane faces. Its integrals are sums over the "
+                    "tetrahedra between the origin and the faces, with a minus sign for those "
+                    "outside.",
                 )
             )
     yield from _numbers(body, letters)
@@ -70,7 +71,7 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
 
 def _solid(solid: Solid, letters: Letters) -> Iterator[NoteBlock]:
     """The map, its bounds, the element and the integrals of a solid."""
-    yield Paragraph((f"{solid.title}: its points are",))
+    yield Paragraph((f"The points of the {solid.title.lower()} are",))
     yield Equation(sides=(PLACE,), matrix=solid.place, entries=indexed(PLACE, (3,)))
     bounds = [
         _between(u, pair, letters) for u, pair in zip(solid.coordinates, solid.bounds, strict=True)
@@ -97,13 +98,22 @@ def _element(solid: Solid, element: sp.Expr, letters: Letters) -> Text:
     kind, value = _KINDS[count - 1], formula_of(element, letters)
     spread = row(*_differentials(solid.coordinates, letters))
     how = (
-        ", the determinant of this map," if count == 3 else ", whose square is det JᵀJ of this map,"
+        ", the Jacobian determinant of this map;"
+        if count == 3
+        else ", the square root of det JᵀJ, where J is the Jacobian matrix of this map;"
     )
-    head = words(f"To {{}} belongs {kind} {{}} {{}}{how} ", spread, value, spread)
+    head = words(f"The element of {kind} is {{}} {{}}{how} ", value, spread)
     if solid.mass is not None:
         mass = formula_of(solid.mass, letters)
-        return (*head, *words("and the mass {} is spread evenly over", mass), f" {kind}")
-    return (*head, "and the mass is the integral")
+        return (
+            *head,
+            *words(
+                "the density is uniform, and its integral is the mass {}. The integral of the "
+                "element is",
+                mass,
+            ),
+        )
+    return (*head, "and the mass is the integral of the density:")
 
 
 def _between(u: sp.Symbol, pair: tuple[sp.Expr, sp.Expr], letters: Letters) -> Text:
@@ -153,7 +163,7 @@ def _named(part: Part) -> str:
 def _particles(given: Particles, letters: Letters) -> NoteTable:
     return NoteTable(
         caption="The particles",
-        head=(("Mass",), ("Place",)),
+        head=(("Mass",), ("Position",)),
         rows=tuple(
             ((formula_of(particle.mass, letters),), _triple(particle.position, letters))
             for particle in given.particles

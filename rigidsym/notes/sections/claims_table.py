@@ -25,8 +25,8 @@ def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[NoteBlock]:
     unproved = [proof for _, proof in claims if not proof.is_exact]
     yield Paragraph(proofs_in_words(is_proved=not unproved))
     yield NoteTable(
-        caption="What was claimed, and what became of it",
-        head=(("Equation",), ("Claim",), ("Status",)),
+        caption="Identities verified",
+        head=(("Equation",), ("Identity",), ("Status",)),
         rows=tuple(
             ((EquationReference(label),), (proof.claim,), _status(proof)) for label, proof in claims
         ),
@@ -41,7 +41,7 @@ def _status(proof: Proof) -> Text:
 
 def _left_over(proof: Proof) -> Iterator[NoteBlock]:
     """What remains of a claim that could not be decided."""
-    yield Paragraph((Strong("Unproved:"), " ", proof.claim, ". What is left over is"))
+    yield Paragraph((Strong("Unproved:"), " ", proof.claim, ". The difference of its two sides is"))
     if proof.residual is not None:
         yield Equation(
             sides=(RESIDUAL,),

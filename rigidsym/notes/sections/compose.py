@@ -18,6 +18,7 @@ from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.models.matrices import GIVEN
 from rigidsym.models.rotation import Citation, Turn
 from rigidsym.models.so3 import hat
 from rigidsym.notes.document.document import (
@@ -37,7 +38,14 @@ from rigidsym.notes.formula.scalars import formula_of
 from rigidsym.notes.layout.entries import entry_names, indexed
 from rigidsym.notes.prose.figure_words import figure_of
 from rigidsym.notes.prose.prose import motion, turn
-from rigidsym.notes.prose.singular_words import failures, meaning, measured
+from rigidsym.notes.prose.singular_words import (
+    failures,
+    geometry,
+    meaning,
+    measured,
+    singular_title,
+)
+from rigidsym.notes.prose.turn_words import angles_in_words, sum_in_words
 from rigidsym.notes.prose.words import OPERATOR, convention, symbols_of, with_symbols
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
@@ -45,6 +53,7 @@ from rigidsym.notes.sections.fitting import Fitter
 from rigidsym.notes.sections.summary import summary
 from rigidsym.notes.sections.symbol_tables import functions, symbols
 
+IDENTITIES = "Identities verified"
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
 
 _ANGULAR_VELOCITY = (
@@ -110,13 +119,13 @@ class Composer:
             "The rotation": self._rotation(),
             "The angular velocity": self._angular_velocity(),
             "The rates of the coordinates": self._rates(),
-            "Where the rates fail": self._singularities(),
+            singular_title(self.derivation): self._singularities(),
             "The angular acceleration": self._steps(ACCELERATION),
             "The body": self._body(),
             "The kinetic energy": self._steps(ENERGIES),
             "The angular momentum": self._steps(MOMENTA),
             "The equations of motion": self._motion(),
-            "What was proved": self._proofs(),
+            IDENTITIES: self._proofs(),
             "Symbols": iter([symbols(self.derivation, self.letters)]),
             "Functions": self._functions(),
         }
@@ -145,7 +154,9 @@ class Composer:
             yield Equation(sides=(integral.symbol, value))
 
     def _convention(self) -> Iterator[NoteBlock]:
-        return (Paragraph(text) for text in convention(self.derivation, self.letters.notation))
+        first, *others = convention(self.derivation, self.letters.notation)
+        texts = (first, *angles_in_words(self.model, self.letters), *others)
+        return map(Paragraph, texts)
 
     def _rotation(self) -> Iterator[NoteBlock]:
         if self.model.turns:
@@ -156,8 +167,9 @@ class Composer:
 
     def _product_of_turns(self) -> Iterator[NoteBlock]:
         turns = [turn(t, self.letters) for t in self.model.turns]
-        kind = "a product of turns" if len(turns) > 1 else "one turn"
-        yield Paragraph(words(f"The rotation is {kind}\u00a0{{}}:", Cited(self.model.source)))
+        kind = "a product of turns" if len(turns) > 1 else "a single turn"
+        see = ", shown in Figure 1" if figure_of(self.model, self.letters) else ""
+        yield Paragraph(words(f"The rotation is {kind}\u00a0{{}}{see}:", Cited(self.model.source)))
         yield Equation(sides=(ROTATION, row(*turns)))
         yield from self._figure()
         by_axis = list(self._turns_by_axis())
@@ -166,9 +178,9 @@ class Composer:
             yield Paragraph(words("The right-handed turn by an angle {} is", angle))
         else:
             read = (
-                "Read from left to right, they are about the axes as they have turned; read from "
-                "right to left, about the axes fixed in space. Right-handed turns by an angle {} "
-                "are"
+                "Read from left to right, the factors are rotations about the current axes of the "
+                "body; read from right to left, about the axes fixed in space. Right-handed turns "
+                "by an angle {} are"
             )
             yield Paragraph(words(read, angle))
         short = tuple(self._elementary(t) for t in by_axis if not t.components)
@@ -199,13 +211,14 @@ class Composer:
 
     def _angular_velocity(self) -> Iterator[NoteBlock]:
         shown = COSINES if self.model.passive else ROTATION
+        yield from sum_in_words(self.model, self.letters)
         yield from motion(passive=self.model.passive)
         yield Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
         yield Paragraph(
             words(
-                "That {} is skew follows from {} by differentiation:",
-                spin_of(shown),
+                "Differentiating {} shows that {} is skew:",
                 orthogonal(shown),
+                spin_of(shown),
             )
         )
         yield Equation(sides=(skew(spin_of(shown)),))
@@ -226,7 +239,9 @@ class Composer:
         )
         yield from steps
         if found is not None and found.rank < 3:
-            yield Paragraph(("The rate matrices have no inverse; the rates are not solved for.",))
+            yield Paragraph(
+                ("The rate matrices have no inverse, so that the rates do not follow from Ω.",)
+            )
 
     def _singularities(self) -> Iterator[NoteBlock]:
         found = self.derivation.singularities
@@ -236,7 +251,8 @@ class Composer:
             yield Paragraph(meaning(found))
             value = formula_of(found.determinant, self.letters)
             yield Equation(sides=(*measured(found), value))
-        yield from map(Paragraph, failures(self.derivation, found))
+        zeros, *points = failures(self.derivation, found)
+        yield from map(Paragraph, (zeros, *geometry(self.derivation), *points))
 
     def _steps(self, names: Sequence[str]) -> Iterator[NoteBlock]:
         for step in self.derivation.steps:
@@ -266,7 +282,7 @@ class Composer:
         """The source of a step; the model's own is cited once, where the rotation is given."""
         is_given = step.quantity.name == "rotation_matrix" and not self.model.turns
         if is_given:
-            return self.model.source
+            return None if self.model.source.text == GIVEN else self.model.source
         return None if step.quantity.source == self.model.source else step.quantity.source
 
     def _equation(self, step: Step) -> Equation:

@@ -25,10 +25,10 @@ from rigidsym.notes.document.document import (
 from rigidsym.notes.layout.entries import indexed
 from rigidsym.notes.prose.conversion_words import HOW, WHICH
 from rigidsym.notes.prose.words import symbols_of, with_symbols
-from rigidsym.notes.sections.compose import equation_of
+from rigidsym.notes.sections.compose import IDENTITIES, equation_of
 
 TITLE = "Conversions"
-_BEFORE = "What was proved"  # the section that it stands before
+_BEFORE = IDENTITIES  # the section that follows
 _FUNCTIONS = ("from_quaternion(quaternion{})", "from_rotation_matrix(matrix{})")
 
 

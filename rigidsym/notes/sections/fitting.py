@@ -153,7 +153,7 @@ def _again(names: Mapping[str, Sequence[Text]]) -> Text:
     """Where abbreviations were explained, by the labels of the equations."""
     if sum(map(len, names.values())) > _MOST_NAMES:
         places = [(EquationReference(label),) for label in names]
-        return ("Abbreviations are again those of ", *listed(places))
+        return ("The abbreviations are again those of ", *listed(places))
     said: list[Text] = []
     for label, own in names.items():
         verb = " are those of " if len(own) > 1 else " is that of "
@@ -168,9 +168,8 @@ def _is_of_motion(step: Step) -> bool:
 
 def _said(equation: Equation, short: Sequence[Formula], lines: int) -> Iterator[NoteBlock]:
     """What it is, and how long it would be; the function evaluates it all the same."""
-    what = "It" if equation.matrix is None else "Its entries"
     yield _without_entries(equation, short)
-    yield Paragraph((f"{what}, written out, would fill {lines} lines.",))
+    yield Paragraph((f"Written out, the components would fill {lines} lines.",))
 
 
 def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:

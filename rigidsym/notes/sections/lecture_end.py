@@ -28,9 +28,9 @@ _LEAD = 2.0  # lines that the words before a row of equations take
 _OF_THE_THEORY: Sequence[tuple[str, str, str, str]] = (  # symbol, meaning, unit, equation
     ("m_i", "mass of a particle", "kg", ""),
     ("M", "mass of the body", "kg", ""),
-    (r"\mathbf{r}_i", "place of a particle", "m", ""),
-    (r"\mathbf{r}_C", "place of the centre of mass", "m", "centre_of_mass"),
-    (r"\mathbf{x}_i", "place of a particle seen from the centre of mass", "m", ""),
+    (r"\mathbf{r}_i", "position of a particle", "m", ""),
+    (r"\mathbf{r}_C", "position of the centre of mass", "m", "centre_of_mass"),
+    (r"\mathbf{x}_i", "position of a particle relative to the centre of mass", "m", ""),
     (r"\mathbf{x}'_i", "the same, body components", "m", ""),
     (r"\mathbf{e}_j", "vectors of an orthonormal basis", "1", ""),
     (r"\mathbf{e}'_j", "the same, turned", "1", "components_in_another_basis"),
@@ -45,12 +45,12 @@ _OF_THE_THEORY: Sequence[tuple[str, str, str, str]] = (  # symbol, meaning, unit
 _PARTS = "parts_of_the_momentum"
 _BY_THE_BODY: Sequence[tuple[str, str, str, str]] = (  # where no body has them as quantities
     (r"\mathbf{I}'", "the inertia tensor, body components", "kg m²", "inertia_turns"),
-    ("E_C", "kinetic energy of the mass in the centre of mass", "J", "energy_splits"),
+    ("E_C", "kinetic energy of the centre-of-mass motion", "J", "energy_splits"),
     ("E_R", "kinetic energy of the rotation about the centre of mass", "J", "energy_splits"),
     ("E_K", "kinetic energy", "J", "energy_splits"),
     (
         r"\mathbf{L}_C",
-        "angular momentum of the mass in the centre of mass",
+        "angular momentum of the centre-of-mass motion",
         "kg m²/s",
         _PARTS,
     ),

@@ -21,9 +21,10 @@ from rigidsym.notes.document.document import (
     words,
 )
 from rigidsym.notes.formula.summands import sums
+from rigidsym.notes.prose.singular_words import singular_title
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
-from rigidsym.notes.sections.compose import ACCELERATION, Composer
+from rigidsym.notes.sections.compose import ACCELERATION, IDENTITIES, Composer
 from rigidsym.notes.sections.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
@@ -34,14 +35,13 @@ _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs
     "moment_about_a_line": "inertia_of_particles",
 }
 _SUMS = (
-    "A statement about a sum over particles is proved for the generic summand. The sum is linear, "
-    "and what is the same for all particles stands before it; of the sums themselves two are "
-    "known, {} and {} with its derivative, and no other relation is used. So it holds for every "
-    "body, of however many particles."
+    "A statement about a sum over particles is proved for the generic summand. Factors common to "
+    "all particles are taken out of the sum; only {} and {} with its derivative are used, so that "
+    "the statement holds for a body of any number of particles."
 )
 _ROTATIONS = (
-    "A rotation {} of which nothing is said is that of a unit quaternion, as every rotation is. "
-    "The place of the centre of mass is written {}, since {} is the rotation."
+    "A general rotation {} is represented by a unit quaternion, without loss of generality. The "
+    "position of the centre of mass is written {}, since {} is the rotation."
 )
 
 
@@ -68,19 +68,19 @@ class _Lecture(Composer):
     """The sections of the theory, of the rotation, of the body."""
 
     def sections(self) -> Iterator[Section]:
-        yield Section("What is proved, and how", tuple(self._method()))
+        yield Section("How the equations are proved", tuple(self._method()))
         for title, statements in groupby(self.derivation.theory, key=lambda s: s.section):
             blocks = (block for statement in statements for block in self._statement(statement))
             yield Section(title, tuple(blocks))
         parts = {
             self.model.title: self._of_the_rotation(),
             "The rates of the coordinates": self._rates(),
-            "Where the rates fail": self._singularities(),
+            singular_title(self.derivation): self._singularities(),
             "The angular acceleration": self._steps(ACCELERATION),
             "The body": self._body(),
             "The kinetic energy of the body": self._steps(ENERGIES),
             "The angular momentum of the body": self._steps(MOMENTA),
-            "What was proved": self._proofs(),
+            IDENTITIES: self._proofs(),
             "Symbols": self._symbols(),
             "Functions": self._functions(),
         }

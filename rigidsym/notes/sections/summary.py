@@ -75,8 +75,6 @@ def _blocks(
             also = ("; see also ", *_numbers(others)) if others else ()
             yield Paragraph((f"{title} ", *_numbers(list(short)), *also, ":"))
             yield EquationRow(tuple(short.values()))
-        else:
-            yield Paragraph((f"{title}: see ", *_numbers(there), "."))
     yield from _where_it_fails(derivation, letters)
 
 

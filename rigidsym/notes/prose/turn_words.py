@@ -1,0 +1,141 @@
+"""What a textbook says of the angles of a product of turns, and of Ω as the sum of the turns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import sympy as sp
+
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import PLUS, Formula, Numeral, Symbol, equal, joined, row
+from rigidsym.mechanics.quantities.kinematics import SPACE
+from rigidsym.models.rotation import RotationModel
+from rigidsym.models.so3 import TIME
+from rigidsym.notes.document.document import (
+    Equation,
+    EquationRow,
+    NoteBlock,
+    Paragraph,
+    Text,
+    words,
+)
+from rigidsym.notes.figure.scene import scene_of
+from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.scalars import formula_of
+from rigidsym.notes.layout.entries import indexed
+
+PROPER = ("precession", "nutation", "spin")
+TAIT_BRYAN = ("yaw", "pitch", "roll")
+_MOST_WRITTEN = 3  # axes that are written out
+
+
+def are_euler_angles(model: RotationModel) -> bool:
+    """Whether R is three turns by its coordinates about coordinate axes, no two in a row alike."""
+    turns = model.turns
+    if len(turns) != 3 or {turn.angle for turn in turns} != set(model.coordinates):
+        return False
+    axes = [turn.axis for turn in turns]
+    return axes[0] != axes[1] != axes[2] and not any(turn.components for turn in turns)
+
+
+def names_of_angles(model: RotationModel) -> tuple[str, ...]:
+    """Precession, nutation, spin, or yaw, pitch, roll; none where the angles have no such names."""
+    if not are_euler_angles(model):
+        return ()
+    axes = [turn.axis for turn in model.turns]
+    if axes[0] == axes[2]:
+        return PROPER
+    return TAIT_BRYAN if axes == ["z", "y", "x"] else ()
+
+
+def angles_in_words(model: RotationModel, letters: Letters) -> Iterator[Text]:
+    """What the angles are called, and the ranges in which they are unique."""
+    if not are_euler_angles(model):
+        return
+    first, middle, last = (formula_of(turn.angle, letters) for turn in model.turns)
+    found = names_of_angles(model)
+    called = [f"the {name} angle {{}}" if found is PROPER else f"the {name} {{}}" for name in found]
+    if found:
+        text = f"The angles are {called[0]}, {called[1]} and {called[2]}; "
+        yield words(
+            f"{text}each orientation has exactly one set with {{}} and {{}}, except for the "
+            "singular ones.",
+            first,
+            middle,
+            last,
+            *_ranges(model, first, middle, last),
+        )
+    else:
+        yield words(
+            "Each orientation has exactly one set of angles with {} and {}, except for the "
+            "singular ones.",
+            *_ranges(model, first, middle, last),
+        )
+
+
+def _ranges(
+    model: RotationModel, first: Formula, middle: Formula, last: Formula
+) -> tuple[Formula, Formula]:
+    axes = [turn.axis for turn in model.turns]
+    outer = formula(r"-\pi < #1, #2 \le \pi", first, last)
+    if axes[0] == axes[2]:
+        return outer, formula(r"0 \le #1 \le \pi", middle)
+    return outer, formula(r"-\frac{\pi}{2} \le #1 \le \frac{\pi}{2}", middle)
+
+
+def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:
+    """The unit vectors about which the turns are made, named after the figure: e_z, e_N, e_z′."""
+    scene = scene_of(model, letters)
+    posed = scene.posed(scene.view.angles) if scene else None
+    rays = [posed.named(arc.axis) for arc in posed.arcs] if posed else []
+    if not rays or not all(rays) or len(rays) != len(model.turns):
+        return [Symbol("n", "bold", index=Numeral(str(k))) for k in range(1, len(model.turns) + 1)]
+    return [Symbol("e", "bold", index=ray.name) for ray in rays if ray]
+
+
+def sum_of_turns(model: RotationModel, letters: Letters) -> Formula:
+    """Ω = φ̇ e_z + θ̇ e_N + ψ̇ e_z′; turns by constant angles add nothing."""
+    rates = [turn.angle.diff(TIME) for turn in model.turns]
+    axes = axes_of_turns(model, letters)
+    terms = [
+        row(formula_of(rate, letters), axis)
+        for rate, axis in zip(rates, axes, strict=True)
+        if rate != 0
+    ]
+    return equal(SPACE.omega, joined(terms, PLUS))
+
+
+def sum_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
+    """Ω read off the figure, with the axes in space components."""
+    if len(model.turns) < 2 or not all(turn.angle.diff(TIME) for turn in model.turns):
+        return
+    see = "; see Figure 1" if scene_of(model, letters) else ""
+    yield Paragraph(
+        words(
+            "Angular velocities about different axes add. Each turn contributes its rate about its "
+            f"own axis{see}:"
+        )
+    )
+    yield Equation(sides=(sum_of_turns(model, letters),))
+    if len(model.turns) > _MOST_WRITTEN:
+        return
+    yield Paragraph(
+        ("Each axis has been moved by the turns to its left. In space components the axes are",)
+    )
+    yield EquationRow(tuple(_written(axes_of_turns(model, letters), _directions(model))))
+    yield Paragraph(("The derivative of the rotation matrix leads to the same result.",))
+
+
+def _directions(model: RotationModel) -> Iterator[sp.ImmutableMatrix]:
+    """The axis of each turn in space components, as the turns before it have moved it."""
+    before = sp.eye(3)
+    for turn in model.turns:
+        yield sp.ImmutableMatrix(before * sp.Matrix(turn.direction))
+        before = before * turn.matrix
+
+
+def _written(
+    axes: Sequence[Formula], directions: Iterator[sp.ImmutableMatrix]
+) -> Iterator[Equation]:
+    for axis, direction in zip(axes, directions, strict=True):
+        yield Equation(sides=(axis,), matrix=direction, entries=indexed(axis, (3,)))
