@@ -204,6 +204,7 @@ def _output() -> Schema:
             "quantities": texts("all by default; see Quantities", *VOCABULARY.quantities),
             "kernels": texts("languages of the functions, numpy by default", *VOCABULARY.kernels),
             "note": texts("formats of the note, tex and html by default", *VOCABULARY.note),
+            "style": text("of the note, lecture by default", *VOCABULARY.styles),
             "conversions": flag("add functions to and from quaternions and matrices"),
             "derivatives": texts('Jacobians, such as "angular_velocity_body by q"'),
         },

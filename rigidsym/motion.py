@@ -80,17 +80,26 @@ class Motion(Derivation):
 
         return conversions_of(self.model)
 
-    def note(self, *, with_kernels: bool = True, conversions: bool = False) -> Note:
+    def note(
+        self, *, with_kernels: bool = True, conversions: bool = False, style: str = "lecture"
+    ) -> Note:
         """The document of the derivation: `.latex()`, `.html()`, `.markdown()`, `.notebook()`.
 
-        `with_kernels` names the function of the NumPy module beside each equation; `conversions`
-        adds a section on the unit quaternion and the matrix.
+        `style` is "lecture", which explains, "paper", which is terse, or "audit", which shows every
+        identity and, with `with_kernels`, the function of the NumPy module beside its equation.
+        `conversions` adds a section on the unit quaternion and the matrix.
         """
         from rigidsym.notes.note import note
 
         converting = self.conversions if conversions else None
         module = f"{self.name}.py" if with_kernels else None
-        return note(self, module=module, notation=self.notation, conversions=converting)
+        return note(
+            self,
+            module=module,
+            notation=self.notation,
+            conversions=converting,
+            style=style,
+        )
 
     def page(self, *, with_kernels: bool = True) -> str:
         """One HTML file that needs no network: the note, and a figure with sliders."""

@@ -25,6 +25,7 @@ from rigidsym.models.body import RigidBody
 from rigidsym.motion import CHOICES, DEFAULT, QUANTITIES, Motion, Notation, derive
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.record import record
+from rigidsym.notes.sections.styles import STYLES
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.spec.faults import Source
 from rigidsym.spec.vocabulary import Vocabulary
@@ -120,6 +121,7 @@ def vocabulary() -> Vocabulary:
         quantities=QUANTITIES,
         kernels=tuple(TARGETS),
         note=note_formats(),
+        styles=STYLES,
         notation=Notation,
         choices=CHOICES,
         derivative=read_request,
@@ -181,7 +183,9 @@ def _printed(
 
 
 def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
-    note = motion.note(with_kernels="numpy" in spec.kernels, conversions=spec.conversions)
+    note = motion.note(
+        with_kernels="numpy" in spec.kernels, conversions=spec.conversions, style=spec.style
+    )
     for ending in FORMATS:
         if ending in spec.note or (ending == "tex" and PDF in spec.note):
             yield f"{spec.name}.{ending}", note.render(ending)

@@ -184,6 +184,12 @@ class OutputOptions:
         help="Add the Jacobian of a quantity with respect to q, q_dot, ...; QUANTITY:VECTOR:jvp "
         "and :vjp add products with a vector. May be repeated.",
     )
+    style: str | None = option(
+        "--style",
+        type=click.Choice(("lecture", "paper", "audit")),
+        help="Style of the note: lecture explains, paper is terse, audit shows every identity and "
+        "function.  [default: lecture]",
+    )
     pdf: bool = option("--pdf", is_flag=True, help="Also typeset the note; needs TeX.")
     as_json: bool = option("--json", is_flag=True, help="Print the results as JSON.")
     quiet: bool = option("--quiet", is_flag=True, help="Print only the names of the files written.")
@@ -206,6 +212,7 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, SelectionOp
             self.in_notation(self.selected(spec)),
             note=note,
             kernels=targets or spec.kernels,
+            style=self.style or spec.style,
             derivatives=self._derivatives(spec),
         )
 

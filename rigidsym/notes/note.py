@@ -11,6 +11,7 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document.document import Document
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.sections.compose import compose
+from rigidsym.notes.sections.styles import in_style
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -58,22 +59,23 @@ def note(
     functions: Sequence[str] | None = None,
     notation: Notation = DEFAULT,
     conversions: Conversions | None = None,
+    style: str = "audit",
 ) -> Note:
-    """The note of a derivation, and of the conversions where they are given.
+    """The note of a derivation, and of the conversions if they are given, in a style.
 
     `module` is the file name of its kernel module, if there is one; `functions` are the quantities
-    that module evaluates, all of them where nothing is said. Each equation names its function.
+    that module evaluates, all of them by default. Each equation of an audit names its function.
     """
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
     document = _composed(derivation)(
         derivation, module=module, functions=names if module else (), notation=notation
     )
-    if conversions is None:
-        return Note(document)
-    from rigidsym.notes.sections.conversion_section import with_conversions
+    if conversions is not None:
+        from rigidsym.notes.sections.conversion_section import with_conversions
 
-    return Note(with_conversions(document, derivation, conversions, has_functions=bool(module)))
+        document = with_conversions(document, derivation, conversions, has_functions=bool(module))
+    return Note(in_style(document, style))
 
 
 def _composed(derivation: Derivation) -> Callable[..., Document]:

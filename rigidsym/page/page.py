@@ -180,7 +180,7 @@ def _turn_words(model: RotationModel, document: Document, printer: PagePrinter) 
         printer.words(words("Turn {} of {}: by {} about {}", str(k), str(len(axes)), angle, axis))
         for k, (angle, axis) in enumerate(zip(angles, axes, strict=True), start=1)
     ]
-    return [*sentences, f"<p>{printer.formula(sum_of_turns(model, document.letters))}</p>"]
+    return [*sentences, printer.words((sum_of_turns(model, document.letters),))]
 
 
 def _value(step: Step, printer: PagePrinter, *, in_degrees: bool) -> dict[str, Any]:

@@ -27,7 +27,7 @@ _FILE = (*_OF_BOTH, "rotation", "output")
 _RECORD = (*_OF_BOTH, "name", "rotations")
 _DYNAMICS = ("potential", "forces")
 _FORMER = ("measured",)  # in old records: errors that were printed with the kernels
-_OUTPUT = ("quantities", "kernels", "note", "conversions", "derivatives")
+_OUTPUT = ("quantities", "kernels", "note", "style", "conversions", "derivatives")
 
 
 def read_file(file: str, words: Vocabulary) -> DerivationSpec:
@@ -158,6 +158,7 @@ class _Reader:
             "quantities": table.choices("quantities", words.quantities),
             "kernels": table.choices("kernels", words.kernels, may_be_empty=True),
             "note": table.choices("note", words.note, may_be_empty=True),
+            "style": table.choice("style", words.styles),
             "conversions": table.flag("conversions"),
         }
         chosen["derivatives"] = self.derivatives(table, chosen["quantities"] or words.quantities)

@@ -43,6 +43,7 @@ class DerivationSpec:
     quantities: tuple[str, ...] = ()  # empty: all
     kernels: tuple[str, ...] = ("numpy",)
     note: tuple[str, ...] = ("tex", "html")
+    style: str = "lecture"  # of the note
     conversions: bool = False  # to and from quaternion and matrix
     derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
     notation: NotationChoice | None = None  # of notes and terminal; None: the default
@@ -79,6 +80,7 @@ class DerivationSpec:
         optional: dict[str, Any] = {
             "theory": self.theory,
             "dynamics": self._dynamics_data(),
+            "style": self.style if self.style != "lecture" else "",
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),
             "notation": self._notation_data(),

@@ -72,6 +72,14 @@ class Table:
         self.mistyped(value, "a number", key)
         return None
 
+    def choice(self, key: str, known: Sequence[str]) -> str | None:
+        """One of the names that are known."""
+        text = self.text(key)
+        if text is not None and text not in known:
+            self.fault(f"unknown name {shortened(text)}; {offer(text, known)}", key)
+            return None
+        return text
+
     def flag(self, key: str) -> bool | None:
         value = self.value(key)
         if value is None or isinstance(value, bool):

@@ -32,6 +32,7 @@ class Vocabulary:
     quantities: tuple[str, ...]
     kernels: tuple[str, ...]
     note: tuple[str, ...]
+    styles: tuple[str, ...]  # of a note, the default first
     notation: Callable[..., NotationChoice]  # raises ModelError for names of frames
     choices: Mapping[str, tuple[str, ...]]  # of [notation], the default first
     derivative: Callable[[str], DerivativeRequest]  # raises KernelError

@@ -8,7 +8,7 @@ from helpers.motions import derived
 from rigidsym import pipeline
 from rigidsym.errors import ModelError
 from rigidsym.formula.unicode_pen import UnicodePen
-from rigidsym.notes import formats
+from rigidsym.notes import formats, note
 from rigidsym.pipeline import output_of, read_spec
 
 TOY = """
@@ -29,6 +29,7 @@ def toy(tmp_path, monkeypatch):
     monkeypatch.setattr(formats, "_KNOWN", known := dict(formats._KNOWN))
     monkeypatch.setattr(formats, "FORMATS", known)
     monkeypatch.setattr(pipeline, "FORMATS", known)
+    monkeypatch.setattr(note, "FORMATS", known)
     path = tmp_path / "toy.py"
     path.write_text(TOY, encoding="utf-8")
     return path

@@ -106,8 +106,8 @@ class _Energy:
             proofs.append(self.prove.vanishes(self._cross_term(), claims.NO_CROSS_TERM))
         return Found(
             sp.ImmutableMatrix([[self._translational + self._rotational]]),
-            "The energy splits, since the velocities relative to the centre of mass add up to "
-            "nothing.",
+            "The energy splits, since the velocities relative to the centre of mass, weighted "
+            "with the masses, sum to zero.",
             tuple(proofs),
         )
 

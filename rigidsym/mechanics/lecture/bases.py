@@ -40,8 +40,8 @@ STATEMENTS: tuple[Statement, ...] = (
         "rotation_goes_over",
         _BASIS,
         (
-            "A rotation keeps products, and so it can be moved from one factor to the other, "
-            "where it becomes its inverse:",
+            "Rotations preserve scalar products; moved from one factor to the other, a rotation "
+            "becomes its inverse:",
         ),
         (
             formula(r"\Omega'_j"),

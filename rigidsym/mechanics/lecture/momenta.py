@@ -19,7 +19,7 @@ STATEMENTS: tuple[Statement, ...] = (
             formula(r"\mathbf{r}_i\times(m_i\dot{\mathbf{r}}_i)"),
             " over its particles. With ",
             formula(r"\mathbf{r}_i = \mathbf{r}_C + \mathbf{x}_i"),
-            " the mixed terms sum to nothing again, and it has two parts,",
+            " the cross terms vanish again, and it has two parts,",
         ),
         (
             formula(r"\mathbf{L}"),
@@ -38,7 +38,7 @@ STATEMENTS: tuple[Statement, ...] = (
         12,
         "parts_of_the_momentum",
         _MOMENTUM,
-        ("These are the momentum of the mass in its centre and that of the motion about it:",),
+        ("These are the angular momentum of the centre-of-mass motion and that of the rotation:",),
         (
             formula(r"\mathbf{L}_C = \mathbf{r}_C\times(M\dot{\mathbf{r}}_C), \qquad \mathbf{L}_R"),
             formula(r"\sum_i \mathbf{x}_i\times(m_i\dot{\mathbf{x}}_i)"),
@@ -82,7 +82,7 @@ STATEMENTS: tuple[Statement, ...] = (
         14,
         "momentum_in_principal_axes",
         _MOMENTUM,
-        ("In principal axes each component has a factor of its own,",),
+        ("In the principal-axis frame the components are simply",),
         (
             formula(r"L_{R,1} = I_{11}\Omega_1, \qquad L_{R,2} = I_{22}\Omega_2, \qquad L_{R,3}"),
             formula(r"I_{33}\Omega_3"),
@@ -100,7 +100,8 @@ STATEMENTS: tuple[Statement, ...] = (
         (
             "Let coordinates ",
             formula(r"\mathbf{q}(t)"),
-            " say how the body has turned from where its principal axes lay along the basis, ",
+            " describe the orientation relative to a reference orientation in which the principal "
+            "axes coincide with the basis, ",
             formula(r"\mathbf{x}_i = \mathbf{R}(\mathbf{q}(t))\,\mathbf{x}'_i"),
             ". Then",
         ),

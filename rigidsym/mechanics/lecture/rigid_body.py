@@ -60,8 +60,9 @@ STATEMENTS: tuple[Statement, ...] = (
             NO_MOMENT,
             " at all times, and ",
             NO_MOMENTUM,
-            ": when the velocities are squared, the mixed term sums to nothing, and the energy "
-            "is that of the mass in its centre and that of the motion about it,",
+            ": when the velocities are squared, the cross term vanishes, and the energy splits "
+            "into that of the total mass moving with the centre of mass and that of the motion "
+            "about it,",
         ),
         (
             formula("E_K"),
@@ -128,8 +129,8 @@ STATEMENTS: tuple[Statement, ...] = (
             formula(
                 r"E_R = \frac{1}{2}\boldsymbol{\Omega}^{\mathsf T}\mathbf{I}\,\boldsymbol{\Omega}"
             ),
-            ". Its coefficients, the inertia tensor, are of second order in the places of the "
-            "particles and know nothing else of the body:",
+            ". Its coefficients form the inertia tensor, which depends on the mass distribution "
+            "only through its second moments:",
         ),
         (
             formula("I_{jk}"),

@@ -187,7 +187,7 @@ class _Inertia:
         rest = sp.Matrix([body.mass * radius**2 for radius in radii]) - moments
         return Found(
             radii,
-            "The radii of gyration are defined by I′ⱼⱼ = M kⱼ².",
+            "The radius of gyration of an axis is the square root of its moment over the mass.",
             (identity(rest, claims.OF_RADII, body.name),),
         )
 

@@ -93,27 +93,23 @@ def _total(solid: Solid) -> sp.Expr:
 
 
 def _element(solid: Solid, element: sp.Expr, letters: Letters) -> Text:
-    """What a unit of the coordinates measures, and what the mass has to do with it."""
+    """The element of volume, area or length, and how the mass follows from it."""
     count = len(solid.coordinates)
-    kind, value = _KINDS[count - 1], formula_of(element, letters)
-    spread = row(*_differentials(solid.coordinates, letters))
+    spread = _differentials(solid.coordinates, letters)
+    whole = row(*([] if element == 1 else [formula_of(element, letters)]), *spread)
     how = (
-        ", the Jacobian determinant of this map;"
+        "the Jacobian determinant of this map"
         if count == 3
-        else ", the square root of det JᵀJ, where J is the Jacobian matrix of this map;"
+        else "the square root of det JᵀJ, where J is the Jacobian matrix of this map"
     )
-    head = words(f"The element of {kind} is {{}} {{}}{how} ", value, spread)
+    head = words(f"The element of {_KINDS[count - 1]} is {{}}; the factor is {how}. ", whole)
     if solid.mass is not None:
         mass = formula_of(solid.mass, letters)
-        return (
-            *head,
-            *words(
-                "the density is uniform, and its integral is the mass {}. The integral of the "
-                "element is",
-                mass,
-            ),
+        uniform = (
+            "The density is uniform, and its integral is the mass {}. The element integrates to"
         )
-    return (*head, "and the mass is the integral of the density:")
+        return (*head, *words(uniform, mass))
+    return (*head, "The mass is the integral of the density,")
 
 
 def _between(u: sp.Symbol, pair: tuple[sp.Expr, sp.Expr], letters: Letters) -> Text:

@@ -53,7 +53,7 @@ from rigidsym.notes.sections.fitting import Fitter
 from rigidsym.notes.sections.summary import summary
 from rigidsym.notes.sections.symbol_tables import functions, symbols
 
-IDENTITIES = "Identities verified"
+IDENTITIES, SYMBOLS, FUNCTIONS = "Identities verified", "Symbols", "Functions"
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
 
 _ANGULAR_VELOCITY = (
@@ -126,8 +126,8 @@ class Composer:
             "The angular momentum": self._steps(MOMENTA),
             "The equations of motion": self._motion(),
             IDENTITIES: self._proofs(),
-            "Symbols": iter([symbols(self.derivation, self.letters)]),
-            "Functions": self._functions(),
+            SYMBOLS: iter([symbols(self.derivation, self.letters)]),
+            FUNCTIONS: self._functions(),
         }
         filled = ((title, tuple(blocks)) for title, blocks in parts.items())
         sections = [Section(title, blocks) for title, blocks in filled if blocks]

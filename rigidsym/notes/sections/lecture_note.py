@@ -24,7 +24,7 @@ from rigidsym.notes.formula.summands import sums
 from rigidsym.notes.prose.singular_words import singular_title
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
-from rigidsym.notes.sections.compose import ACCELERATION, IDENTITIES, Composer
+from rigidsym.notes.sections.compose import ACCELERATION, FUNCTIONS, IDENTITIES, SYMBOLS, Composer
 from rigidsym.notes.sections.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
@@ -81,8 +81,8 @@ class _Lecture(Composer):
             "The kinetic energy of the body": self._steps(ENERGIES),
             "The angular momentum of the body": self._steps(MOMENTA),
             IDENTITIES: self._proofs(),
-            "Symbols": self._symbols(),
-            "Functions": self._functions(),
+            SYMBOLS: self._symbols(),
+            FUNCTIONS: self._functions(),
         }
         filled = ((title, tuple(blocks)) for title, blocks in parts.items())
         sections = [Section(title, blocks) for title, blocks in filled if blocks]

@@ -1,0 +1,70 @@
+"""The styles of a note: a lecture and a paper leave out what an audit shows, and no equation."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from helpers.motions import derived
+from rigidsym.errors import ModelError
+from rigidsym.notes.document.document import Equation
+from rigidsym.notes.sections.styles import APPENDIX, STYLES, in_style
+from rigidsym.pipeline import output_of, read_spec
+
+AUDIT = derived("ZXZ").note(style="audit").document
+
+
+def titles(document):
+    return [section.title for section in document.sections]
+
+
+@pytest.mark.parametrize("style", STYLES)
+def test_every_numbered_equation_is_in_every_style(style):
+    found = in_style(AUDIT, style)
+    assert [e.number for e in found.equations] == [e.number for e in AUDIT.equations]
+    assert [e.sides for e in found.equations] == [e.sides for e in AUDIT.equations]
+
+
+def test_an_audit_shows_identities_and_functions_beside_their_equations():
+    assert all(e.proved and e.function for e in AUDIT.equations)
+    assert "Functions" in titles(AUDIT)
+
+
+def test_a_lecture_ends_with_its_identities():
+    found = in_style(AUDIT, "lecture")
+    assert titles(found)[-1] == APPENDIX
+    assert "Functions" not in titles(found)
+    assert not any(e.proved or e.function for e in found.equations)
+
+
+def test_a_paper_has_neither_appendix_nor_summary():
+    found = titles(in_style(AUDIT, "paper"))
+    assert not {APPENDIX, "Identities verified", "Symbols", "Functions", "Summary"} & set(found)
+
+
+def test_what_is_unproved_is_said_in_every_style():
+    first, *others = AUDIT.sections[1:2]
+    blocks = tuple(
+        replace(b, proved=(), unproved=b.proved) if isinstance(b, Equation) and b.number else b
+        for b in first.blocks
+    )
+    changed = replace(AUDIT, sections=(AUDIT.sections[0], replace(first, blocks=blocks), *others))
+    for style in ("lecture", "paper"):
+        found = in_style(changed, style)
+        assert any(e.unproved for e in found.equations)
+        assert found.sections[0] == AUDIT.sections[0]  # which does not call all of it verified
+
+
+def test_a_file_chooses_the_style_and_the_record_knows_it():
+    file = '[rotation]\nsequence = "ZXZ"\n[output]\nnote = ["md"]\nstyle = "audit"\nkernels = []\n'
+    spec = read_spec(file, source="top.toml", name="top")
+    assert spec.to_data()["style"] == "audit"
+    assert "Proved: " in output_of(spec).files["top.md"]
+    assert "Proved: " not in output_of(replace(spec, style="lecture")).files["top.md"]
+    assert "style" not in replace(spec, style="lecture").to_data()
+
+
+def test_an_unknown_style_is_named():
+    with pytest.raises(ModelError, match="lecture, paper or audit, and not 'book'"):
+        in_style(AUDIT, "book")
