@@ -133,7 +133,7 @@ def test_a_note_shows_them_before_the_proofs(text):
     motion = rs.derive(rotation_from(text))
     document = motion.note(conversions=True).document
     titles = [section.title for section in document.sections]
-    assert titles.index("Conversions") + 1 == titles.index("What was proved")
+    assert titles.index("Conversions") + 1 == titles.index("Symbols")
     number = document.number("quaternion")
     assert number == len(motion.steps) + 1
     module = motion.kernels(conversions=True).source

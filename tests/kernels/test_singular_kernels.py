@@ -261,8 +261,8 @@ def test_whole_turns_are_said_in_words():
     assert (place.coordinate, place.value, point.rank) == (found.length, 2 * sp.pi, 1)
     assert list(point.reachable_axis) == list(motion.model.coordinates)
     text = " ".join(motion.note().latex().split())
-    assert "$n = 2 \\pi k$ with $k = 1, 2, \\ldots$, and nowhere else; at $n = 0$" in text
-    assert "rates turn the body about ($v_{1}$, $v_{2}$, $v_{3}$) alone." in text
+    assert "only at $n = 2 \\pi\\,k$ with $k = 1, 2, \\ldots$; at $n = 0$" in text
+    assert "the body can only turn about ($v_1$, $v_2$, $v_3$)." in text
     values = dict(zip(motion.model.coordinates, (0, 0, 2 * mp.pi), strict=True))
     at = evaluate(motion.rate_matrix_space, values)
     assert max(map(abs, at - mp.diag([0, 0, 1]))) < mp.mpf(10) ** -40

@@ -70,7 +70,7 @@ def test_the_terminal_shows_conversions_and_their_proofs():
     text = show(motion, width=120, conversions=motion.conversions)
     assert "(14) unit quaternion of the rotation, scalar first" in text
     assert "At a pole" in text
-    proofs = text.partition("What was proved")[2]
+    proofs = text.partition("Identities verified")[2]
     for proof in motion.conversions.proofs:
         assert f"exact     {proof.claim.text}" in proofs
     assert "Conversions" not in show(motion, width=120)

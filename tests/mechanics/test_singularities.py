@@ -1,4 +1,4 @@
-"""Where the rates fail, for every rotation: ranks, directions and completeness, by numbers.
+"""Singular orientations, for every rotation: ranks, directions and completeness, by numbers.
 
 The witness builds R and the rate matrix from exponentials of skew matrices and differences.
 """
@@ -210,19 +210,19 @@ def test_axis_and_angle_fail_at_whole_turns_alone(angle):
 
 def test_every_model_says_something_true_where_its_rates_are_shown():
     expected = {
-        "quaternion": "It never vanishes: the rates always follow",
-        "unit_quaternion": "It never vanishes: the rates always follow",
-        "direction_cosines": "follow without any divisor, so that they fail nowhere",
+        "quaternion": "It never vanishes, so this parametrisation has no singularity",
+        "unit_quaternion": "It never vanishes, so this parametrisation has no singularity",
+        "direction_cosines": "without any divisor, so that there is no singular orientation",
         "axis_angle": "At φ = 0 the rates of e₁, e₂ and e₃ are not determined: the rank is 1",
         "y(phi) x(theta)": "the rank is 2 everywhere",
         "z(a) z(b)": "Everywhere only a + b is determined",
-        "z(phi) x(theta/2) z(psi)": "up to multiples of 4π for θ, and nowhere else",
-        "z(phi) x(theta) z(psi) y(delta)": "where θ is 0 or π and ψ is −π/2 or π/2, up to whole",
-        UNDECIDED: "Where it vanishes was not decided",
+        "z(phi) x(theta/2) z(psi)": "modulo 4π for θ",
+        "z(phi) x(theta) z(psi) y(delta)": "only where θ is 0 or π and ψ is −π/2 or π/2, modulo 2π",
+        UNDECIDED: "Its zeros have no closed form here",
     }
     for text, words in expected.items():
         said = show(motion_of(text), width=100)
-        assert "Where the rates fail" in said
+        assert "Singular orientations" in said
         assert words in " ".join(said.split())
 
 
@@ -230,8 +230,8 @@ def test_every_model_says_something_true_where_its_rates_are_shown():
 def test_the_note_says_it_too(text):
     motion = motion_of(text)
     note = motion.note()
-    assert r"\section{Where the rates fail}" in note.latex()
-    assert "nowhere else" in note.latex() or "everywhere" in note.latex()
+    assert r"\section{Singular orientations" in note.latex()
+    assert "determined" in note.latex() or "everywhere" in note.latex()
 
 
 def test_only_rates_are_determined_where_idle_rates_lead_away():

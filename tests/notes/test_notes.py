@@ -140,7 +140,7 @@ def test_only_the_functions_of_the_module_are_named():
 
 
 def test_every_claim_stands_in_the_table_of_proofs(motion):
-    (section,) = (s for s in _note(motion).document.sections if s.title == "What was proved")
+    (section,) = (s for s in _note(motion).document.sections if s.title == "Identities verified")
     (table,) = (block for block in section.blocks if isinstance(block, NoteTable))
     shown = [row[1][0] for row in table.rows]
     assert shown == [proof.claim for proof in motion.proofs]
@@ -166,7 +166,7 @@ def test_singular_angles_in_words():
     said = _words(_note(derived("ZXZ")).document)
     assert "At θ = 0 only φ + ψ is determined" in said
     assert "At θ = π only φ − ψ is determined" in said
-    assert "vanishes at θ = 0 and θ = π, up to whole turns, and nowhere else" in said
+    assert "vanishes only where θ is a multiple of π." in said
 
 
 def test_the_passive_form_says_that_it_is():
@@ -178,12 +178,14 @@ def test_the_passive_form_says_that_it_is():
 def test_a_rotation_of_two_coordinates_has_no_inverse_rates():
     document = note(derive(_two_turns())).document
     assert "The rate matrices have no inverse" in _words(document)
-    assert "the rank is 2 everywhere, which is how many directions" in _words(document)
+    assert "the rank is 2 everywhere, and the angular velocity is confined to a plane" in _words(
+        document
+    )
 
 
 def test_a_rotation_that_is_given_cites_its_source():
     said = _words(note(derive(_two_turns())).document)
-    assert "The rotation is given\u00a0A book." in said
+    assert "The rotation matrix is given\u00a0A book." in said
 
 
 # --- what could not be proved ---
@@ -356,7 +358,7 @@ def _symbols(motion: rs.Motion) -> dict[str, tuple[str, str]]:
 
 def test_one_turn_is_not_called_a_product():
     said = _said(rs.derive("z(phi)"))
-    assert "The rotation is one turn" in said
+    assert "The rotation is a single turn" in said
     assert "The right-handed turn by an angle" in said
     assert "The angular velocity is the rate times the axis" in said
     for wrong in ("product of turns", "from left to right", "The coordinates are"):
@@ -364,18 +366,18 @@ def test_one_turn_is_not_called_a_product():
 
 
 def test_what_is_transposed_is_said_to_be():
-    assert "from left to right and transposed" in _said(derived("ZYX", passive=True))
-    assert "The rotation is given and transposed" in _said(
+    assert "the transpose of the product of the turns" in _said(derived("ZYX", passive=True))
+    assert "the direction cosine matrix is its transpose" in _said(
         rs.derive(rs.rotation_from("rotation_vector", passive=True))
     )
-    assert "transposed" not in _said(derived("ZYX")).replace("the transposed rotation", "")
+    assert "transpose" not in _said(derived("ZYX"))
 
 
 @pytest.mark.parametrize(
     ("rotation", "choice"),
     [
-        ("unit_quaternion", "those that keep to the conditions are taken"),
-        ("quaternion", "the smallest are taken"),
+        ("unit_quaternion", "The rates that satisfy the conditions on the coordinates are unique"),
+        ("quaternion", "we choose the smallest"),
     ],
 )
 def test_which_of_all_rates_are_taken_depends_on_the_conditions(rotation, choice):

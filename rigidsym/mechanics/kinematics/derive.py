@@ -78,13 +78,16 @@ class _Kinematics:
 
     def _given_as(self) -> str:
         """Where the matrix that is shown comes from."""
-        turned_over = " and transposed" if self.model.passive else ""
+        if self.model.passive:
+            if not self.model.turns:
+                return "The rotation matrix is given; the direction cosine matrix is its transpose."
+            return "The direction cosine matrix is the transpose of the product of the turns."
         match len(self.model.turns):
             case 0:
-                return f"The rotation matrix is given{turned_over}."
+                return "The rotation matrix is given."
             case 1:
-                return f"The rotation matrix is that of the turn{turned_over}."
-        return f"Multiplying the matrices of the turns gives the rotation matrix{turned_over}."
+                return "The rotation matrix is that of the turn."
+        return "Multiplying the matrices of the turns gives the rotation matrix."
 
     def rotation_rate(self) -> Found:
         spin = self._shown_spin

@@ -25,10 +25,10 @@ from rigidsym.notes.document.document import (
 from rigidsym.notes.layout.entries import indexed
 from rigidsym.notes.prose.conversion_words import HOW, WHICH
 from rigidsym.notes.prose.words import symbols_of, with_symbols
-from rigidsym.notes.sections.compose import IDENTITIES, equation_of
+from rigidsym.notes.sections.compose import IDENTITIES, SYMBOLS, equation_of
 
 TITLE = "Conversions"
-_BEFORE = IDENTITIES  # the section that follows
+_BEFORE = (IDENTITIES, SYMBOLS)  # the sections that follow
 _FUNCTIONS = ("from_quaternion(quaternion{})", "from_rotation_matrix(matrix{})")
 
 
@@ -43,7 +43,7 @@ def with_conversions(
     blocks = tuple(_blocks(derivation, conversions, has_functions=has_functions))
     own = Section(TITLE, blocks)
     titles = [section.title for section in document.sections]
-    place = titles.index(_BEFORE) if _BEFORE in titles else len(titles)
+    place = next((k for k, title in enumerate(titles) if title in _BEFORE), len(titles))
     before, after = document.sections[:place], document.sections[place:]
     return replace(document, sections=(*before, own, *after))
 
