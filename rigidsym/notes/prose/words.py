@@ -11,8 +11,8 @@ import sympy as sp
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula, Symbol, equal
-from rigidsym.mechanics.claims import transpose_of
 from rigidsym.mechanics.derivation import Argument, Derivation
+from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.energy import CENTRE
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, POINT
