@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from rigidsym.kernels.module import KernelModule
     from rigidsym.mechanics.conversions.conversions import Conversions
     from rigidsym.notes.note import Note
+    from rigidsym.simulation.trajectory import Trajectory
 
 QUANTITIES = (*QUANTITY_NAMES, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES, *DYNAMICS_QUANTITIES)
 
@@ -100,6 +101,22 @@ class Motion(Derivation):
             conversions=converting,
             style=style,
         )
+
+    def simulate(
+        self,
+        initial: Mapping[str, float],
+        parameters: Mapping[str, float],
+        t_end: float,
+        **options: Any,
+    ) -> Trajectory:
+        """The motion from t = 0 to `t_end` seconds, with the drift of its first integrals.
+
+        `initial` holds coordinates and rates by name (theta, theta_dot), `parameters` every
+        constant; for the options see `rigidsym.simulation.integrate.simulate`.
+        """
+        from rigidsym.simulation.integrate import simulate
+
+        return simulate(self, initial, parameters, t_end, **options)
 
     def page(self, *, with_kernels: bool = True) -> str:
         """One HTML file that needs no network: the note, and a figure with sliders."""

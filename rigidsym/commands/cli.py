@@ -28,6 +28,7 @@ _SUMMARIES = {  # name: what `rigidsym --help` says of it
     "eval": "Evaluate quantities for every row of a file.",
     "identify": "Find the convention that given numbers follow.",
     "inertia": "Mass properties of particles or of a mesh.",
+    "simulate": "Simulate a motion and report its first integrals.",
     "list": "List rotations, quantities, targets and shipped files.",
     "templates": "Copy the shipped templates, to change them.",
 }

@@ -38,6 +38,7 @@ ORDER = (
     "spec",
     "mechanics",
     "kernels",
+    "simulation",
     "notes",
     "page",
     "motion",

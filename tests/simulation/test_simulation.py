@@ -1,0 +1,130 @@
+"""Simulated motions against exact solutions, and what a simulation cannot begin with."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+from helpers.command import call
+
+A, B, C = sp.symbols("A B C")
+TOP = {"A": 1.3, "C": 0.7, "m": 2.0, "g": 9.81, "l": 0.4}
+REST = dict.fromkeys(("phi", "theta", "psi", "phi_dot", "theta_dot", "psi_dot"), 0.0)
+
+
+@cache
+def top() -> rs.Motion:
+    model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
+    body = rs.principal_moments(A, A, C)
+    return rs.derive(model, body=body, potential="m*g*l*cos(theta)")
+
+
+@cache
+def free(symmetric: bool = True) -> rs.Motion:
+    model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
+    return rs.derive(model, body=rs.principal_moments(A, A if symmetric else B, C), potential=0)
+
+
+def test_the_top_that_rises_to_the_vertical_in_infinite_time():
+    """1/cos θ = 1 + 1/cosh γt for θ₀ = π/3, φ̇₀ = 2γ/√3, ψ̇₀ = (3A − C)γ/(C√3), γ² = mgl/A"""
+    values = TOP
+    gamma = np.sqrt(values["m"] * values["g"] * values["l"] / values["A"])
+    start = REST | {
+        "theta": np.pi / 3,
+        "phi_dot": 2 * gamma / np.sqrt(3),
+        "psi_dot": (3 * values["A"] - values["C"]) * gamma / (values["C"] * np.sqrt(3)),
+    }
+    found = top().simulate(start, values, 3.0, samples=301)
+    exact = np.arccos(1 / (1 + 1 / np.cosh(gamma * found.t)))
+    assert np.abs(found.q[:, 1] - exact).max() < 1e-8
+    assert max(found.drift.values()) < 1e-10
+
+
+def test_steady_precession_goes_on_for_hundreds_of_turns():
+    """A cos θ φ̇² − C ω₃ φ̇ + m g l = 0 keeps θ constant, with ω₃ = ψ̇ + φ̇ cos θ"""
+    theta, spin = 0.6, 60.0
+    a, c, weight = TOP["A"], TOP["C"], TOP["m"] * TOP["g"] * TOP["l"]
+    slow = min(np.roots([a * np.cos(theta), -c * spin, weight]).real)
+    start = REST | {
+        "theta": theta,
+        "phi_dot": slow,
+        "psi_dot": spin - slow * np.cos(theta),
+    }
+    found = top().simulate(start, TOP, 20.0)
+    assert np.abs(found.q[:, 1] - theta).max() < 1e-7
+
+
+def test_the_angular_velocity_of_a_free_symmetric_body_turns_at_a_constant_rate():
+    """Ω′₁ + iΩ′₂ turns at (C − A)/A Ω′₃ about the axis of symmetry"""
+    values = {"A": 2.0, "C": 1.2}
+    start = REST | {"theta": 0.9, "phi_dot": 1.1, "psi_dot": 0.7}
+    found = free().simulate(start, values, 12.0)
+    omega = found.angular_velocity_body
+    rate = (values["C"] - values["A"]) / values["A"] * omega[0, 2]
+    exact = (omega[0, 0] + 1j * omega[0, 1]) * np.exp(1j * rate * found.t)
+    assert np.abs(omega[:, 0] + 1j * omega[:, 1] - exact).max() < 1e-8
+    assert np.abs(omega[:, 2] - omega[0, 2]).max() < 1e-9
+
+
+def test_rotation_about_the_intermediate_axis_grows_at_the_known_rate():
+    """Small deviations grow as exp(σt), σ² = Ω² (B − A)(C − B)/(A C) about the axis of B"""
+    values = {"A": 1.0, "B": 1.5, "C": 2.1}
+    spin, small = 2.0, 1e-6
+    a, b, c = values.values()
+    rate = spin * np.sqrt((b - a) * (c - b) / (a * c))
+    # about the second axis: θ = π/2, ψ = 0 gives Ω′ = (θ̇, φ̇, ψ̇); along the growing direction
+    start = REST | {"theta": np.pi / 2, "phi_dot": spin, "psi_dot": small}
+    start |= {"theta_dot": (b - c) * spin / (a * rate) * small}
+    found = free(symmetric=False).simulate(start, values, 6.0)
+    size = np.linalg.norm(found.angular_velocity_body[:, [0, 2]], axis=1)
+    small_still = size < 1e-2
+    slope = np.polyfit(found.t[small_still], np.log(size[small_still]), 1)[0]
+    assert slope == pytest.approx(rate, rel=1e-3)
+
+
+def test_a_motion_straight_through_the_pole_goes_on_with_its_integrals_kept():
+    start = REST | {"theta": 1.0, "theta_dot": -1.0}
+    found = free().simulate(start, {"A": 1.0, "C": 0.5}, 3.0)
+    assert not found.ended
+    assert found.q[-1, 1] == pytest.approx(-2.0, abs=1e-9)
+    assert max(found.drift.values()) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("initial", "values", "t_end", "message"),
+    [
+        ({}, TOP, 1.0, "missing initial values: phi, theta, psi, phi_dot, theta_dot, psi_dot"),
+        (REST | {"theta": 1}, {"A": 1}, 1.0, "missing parameters: C, g, l, m"),
+        (REST | {"theta": 1, "chi": 1}, TOP, 1.0, "unknown initial values: chi"),
+        (REST, TOP, 1.0, "starts at a pole"),
+        (REST | {"theta": 1}, TOP | {"C": 9.0}, 1.0, "principal moments"),
+        (REST | {"theta": 1}, TOP, -1.0, "expected a positive number of seconds"),
+    ],
+)
+def test_what_a_simulation_cannot_begin_with_is_said(initial, values, t_end, message):
+    with pytest.raises(rs.RigidsymError, match=message):
+        top().simulate(initial, values, t_end)
+
+
+def test_a_derivation_without_forces_cannot_be_simulated():
+    with pytest.raises(rs.RigidsymError, match="has no equations of motion"):
+        rs.derive("ZXZ", ("angular_velocity_body",)).simulate({}, {}, 1.0)
+
+
+def test_the_command_writes_a_table_and_a_picture(tmp_path):
+    out, plot = tmp_path / "top.csv", tmp_path / "top.svg"
+    sets = [f"--set={name}={value}" for name, value in TOP.items()]
+    options = ["--initial=theta=0.5", "--initial=psi_dot=20", "--time=1", "--samples=50"]
+    given = ["simulate", "heavy_symmetric_top", *sets, *options]
+    done = call(*given, "--out", str(out), "--plot", str(plot), cwd=tmp_path)
+    assert "momentum_psi  drift" in done.stdout
+    table = np.genfromtxt(out, delimiter=",", names=True)
+    assert table.shape == (50,)
+    assert table["theta"][0] == 0.5
+    assert plot.read_text(encoding="utf-8").startswith("<?xml")
+    wrong = call("simulate", "heavy_symmetric_top", "--set", "A", cwd=tmp_path, status=2)
+    assert "expected NAME=NUMBER" in wrong.stderr
