@@ -10,12 +10,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rigidsym.errors import TemplateFault
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
+from rigidsym.system.templates import SandboxedTemplates
 
 _PACKAGE = Path(__file__).resolve().parent.parent
 _DEPTH = 2  # a template is named by its file, or by its folder and file
@@ -63,15 +61,13 @@ def overridden_by(own: Path) -> Iterator[None]:
         _OWN.reset(token)
 
 
-def environment(**options: Any) -> Environment:
+def environment(**options: Any) -> SandboxedTemplates:
     """A Jinja2 environment over the templates; `options` are Jinja2's, delimiters for instance.
 
     Templates are sandboxed and do not escape: each kind of
     document escapes its own text before it reaches a template. An undefined name, bad syntax or
     a forbidden access raises TemplateFault with the template, the line and the names there are.
     """
-    from rigidsym.system.templates import SandboxedTemplates
-
     return SandboxedTemplates(template, **options)
 
 
