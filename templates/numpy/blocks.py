@@ -1,3 +1,68 @@
+def _longest(block, dtype, shape):
+    """The number of orientations of a block: all that is alive at one time fits a cache."""
+    held = block.__code__.co_nlocals + prod(shape)
+    return max(min(_LONGEST, _CACHE // held) // dtype.itemsize, _SHORTEST)
+
+
+def _are_alike(arrays):
+    """Whether the axes before the last are the same."""
+    return all(array.shape[:-1] == arrays[0].shape[:-1] for array in arrays[1:])
+
+
+def _columns(array, dtype):
+    """The components of an array, each a contiguous copy in the given type."""
+    if array.ndim < 3:
+        return np.array(array.T, dtype, order="C")
+    axes = (array.ndim - 1, *range(array.ndim - 1))
+    return np.array(array.transpose(axes), dtype, order="C")
+
+
+def _quiet():
+    """A way to call functions without warnings: a context costs less than np.errstate."""
+    if int(np.__version__.split(".")[0]) > 1:
+        from contextvars import copy_context
+
+        context = copy_context()
+        context.run(np.seterr, all="ignore")
+        return lambda function, *arguments: context.copy().run(function, *arguments)
+    return np.errstate(all="ignore")(lambda function, *arguments: function(*arguments))
+
+
+_quietly = _quiet()
+
+
+def _compute(result, leading, block, scalar, arrays, shape, out, threads):
+    """Fill the result by the scalar twin, by one call of the block, or by many."""
+    dtype, count = result.dtype, prod(leading)
+    if count <= _FEWEST and dtype is _DOUBLE and _are_alike(arrays):
+        rows = zip(
+            *[array.reshape(count, array.shape[-1]).tolist() for array in arrays]
+        )
+        values = [scalar(*[c for part in row for c in part]) for row in rows]
+        result[...] = np.array(values).reshape(result.shape)
+    elif count <= _SHORTEST or count <= _longest(block, dtype, shape):
+        columns, views = [], count < _FEW and out is None
+        for array in arrays:
+            if views and array.ndim < 3 and array.dtype is dtype:
+                columns.extend(array.T)
+            else:
+                columns.extend(_columns(array, dtype))
+        _quietly(_evaluate, result, block, columns, shape)
+    else:
+        inputs = [_unshared(array, out) for array in arrays]
+        _fill(result, block, inputs, shape, threads)
+
+
+def _place(result, values, shape):
+    """Write entries, one array each, to where they belong."""
+    if len(shape) == 1:
+        for k, value in enumerate(values):
+            result[..., k] = value
+    else:
+        for entry, value in zip(np.ndindex(shape), values):
+            result[(..., *entry)] = value
+
+
 def _fill(result, block, arrays, shape, threads):
     """Go through the leading axes of all arrays together, a cacheful at a time.
 
@@ -5,23 +70,18 @@ def _fill(result, block, arrays, shape, threads):
     """
     leading = result.shape[: result.ndim - len(shape)]
     wide = [np.broadcast_to(a, (*leading, a.shape[-1])) for a in arrays]
-    inputs = [np.moveaxis(a, -1, 0) for a in wide]
-    outputs = [result[(..., *entry)] for entry in np.ndindex(shape)]
-    held = block.__code__.co_nlocals + prod(shape)  # values alive at one time
-    longest = min(_LONGEST, _CACHE // held) // result.itemsize
+    longest = _longest(block, result.dtype, shape)
     if threads > 1:  # longer blocks, as many for each: they wait less for one another
         rounds = -(-prod(leading) // (4 * longest * threads))
         longest = max(longest, -(-prod(leading) // (rounds * threads)))
 
-    def apart(array, place):
-        return np.array(array[(slice(None), *place)], result.dtype, order="C")
-
     def work(places):
         with np.errstate(all="ignore"):
             for place in places:
-                components = [c for array in inputs for c in apart(array, place)]
-                for output, value in zip(outputs, block(*components)):
-                    output[place] = value
+                parts = [_columns(array[place], result.dtype) for array in wide]
+                _place(
+                    result[place], block(*[c for part in parts for c in part]), shape
+                )
 
     places = list(_places(leading, longest))
     if threads == 1:
@@ -80,14 +140,16 @@ def _pool():
 
 
 def _places(shape, longest):
-    """Where the blocks are: indices into the leading axes, at most `longest` points each."""
+    """Where the blocks are: indices into the leading axes, at most `longest` points each.
+
+    Blocks are equally long, so that none is short enough for another way to compute.
+    """
     first, row = shape[0], prod(shape[1:])
     if row > longest:
         for k in range(first):
             for place in _places(shape[1:], longest):
                 yield (k, *place)
     else:
-        blocks = -(-first * row // longest)
-        step = -(-first // blocks)
-        for k in range(0, first, step):
-            yield (slice(k, k + step),)
+        blocks = -(-first // (longest // row))
+        for k in range(blocks):
+            yield (slice(k * first // blocks, (k + 1) * first // blocks),)

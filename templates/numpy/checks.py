@@ -1,5 +1,9 @@
 def _checked(name, value):
-    """The argument as a plain array, or an error that names it and what it should be."""
+    """The argument as a plain array of native floats or of integers, or an error."""
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise TypeError(
+            f"{name}: got masked entries; fill them, or leave their rows out"
+        )
     try:
         array = np.asarray(value)
     except ValueError as error:
@@ -8,9 +12,9 @@ def _checked(name, value):
         raise TypeError(
             f"{name}: got dtype {array.dtype}; expected float64, float32 or integers"
         )
-    if array.ndim == 0 or array.shape[-1] != len(_COMPONENTS[name]):
+    if array.shape[-1:] != _SHAPES[name]:
         raise ValueError(f"{name}: got shape {array.shape}; {_expected(name)}")
-    return array
+    return array.astype(_SINGLE, copy=False) if array.dtype.char == "f" else array
 
 
 def _expected(name):
@@ -18,22 +22,18 @@ def _expected(name):
     return f"expected (..., {len(components)}), the last axis {', '.join(components)}"
 
 
-def _leading_shape(arrays):
+def _leading_shape(arguments):
     """The shape that the axes before the last broadcast to."""
-    shapes = {array.shape[:-1] for array in arrays.values()}
-    if len(shapes) == 1:
-        return shapes.pop()
+    shapes = {name: _checked(name, value).shape for name, value in arguments.items()}
     try:
-        return np.broadcast_shapes(*shapes)
+        return np.broadcast_shapes(*(shape[:-1] for shape in shapes.values()))
     except ValueError as error:
-        given = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        given = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
         raise ValueError(f"axes before the last do not broadcast: {given}") from error
 
 
-def _result(out, shape, dtype):
-    """A new array, or `out` where it is what the result needs."""
-    if out is None:
-        return np.empty(shape, dtype)
+def _checked_out(out, shape, dtype):
+    """`out` if it is what the result needs, or an error."""
     if not isinstance(out, np.ndarray):
         raise TypeError(f"out: got {type(out).__name__}; expected a NumPy array")
     if out.dtype != dtype:

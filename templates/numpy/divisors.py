@@ -9,12 +9,14 @@ def _or_nan(value, scale, power=1):
 
     Without a scale, where it is at most the smallest normal number over eps.
     """
-    limits = np.finfo(value.dtype)
-    if scale is None:
-        lost = np.abs(value) <= limits.tiny / limits.eps
-    else:
-        lost = np.abs(value) <= limits.eps**power * np.abs(scale)
-    return np.where(lost, limits.dtype.type(np.nan), value) if lost.any() else value
+    eps, least = (2.0**-23, 2.0**-103) if value.dtype.char == "f" else (_EPS, _LEAST)
+    limit = least if scale is None else eps**power * np.abs(scale)
+    lost = np.abs(value) <= limit
+    return (
+        np.where(lost, value.dtype.type(np.nan), value)
+        if np.count_nonzero(lost)
+        else value
+    )
 
 
 def _or_nan_scalar(value, scale, power=1):

@@ -16,10 +16,10 @@ def _sin_cos(angle):
 
     In double precision both follow from one tangent t of half the angle, as 2t/(1 + t²)
     and (1 - t²)/(1 + t²): NumPy's tan costs no more than its sin, and on processors with
-    AVX-512 a sixth of it. The sine keeps its relative accuracy at multiples of pi. In
-    single precision NumPy's own sin and cos are the fastest.
+    AVX-512 a sixth of it. The sine keeps its relative accuracy at multiples of pi. For
+    few angles and in single precision NumPy's own sin and cos are the fastest.
     """
-    if angle.dtype == np.float32:
+    if angle.size < _FEW or angle.dtype == np.float32:
         return np.sin(angle), np.cos(angle)
     t = np.multiply(0.5, angle)
     np.tan(t, out=t)
@@ -34,7 +34,7 @@ def _sin_cos(angle):
 
 def _sin(angle):
     """The sine alone, as in `_sin_cos`."""
-    if angle.dtype == np.float32:
+    if angle.size < _FEW or angle.dtype == np.float32:
         return np.sin(angle)
     t = np.tan(0.5 * angle)
     return (t + t) / (1.0 + t * t)
@@ -42,7 +42,7 @@ def _sin(angle):
 
 def _cos(angle):
     """The cosine alone, as in `_sin_cos`."""
-    if angle.dtype == np.float32:
+    if angle.size < _FEW or angle.dtype == np.float32:
         return np.cos(angle)
     t = np.tan(0.5 * angle)
     square = t * t
@@ -51,6 +51,6 @@ def _cos(angle):
 
 def _sharp(cosine, angle):
     """The cosine for a divisor: within 5 eps of its own size, however small, by np.cos."""
-    if angle.dtype == np.float32:
+    if angle.size < _FEW or angle.dtype == np.float32:
         return cosine
     return np.cos(angle, out=cosine, where=np.abs(cosine) < 0.25)

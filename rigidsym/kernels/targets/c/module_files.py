@@ -24,7 +24,7 @@ def module_files(program: Program, kernels: Sequence[Kernel]) -> dict[str, str]:
         types=[(p.real, p.suffix) for p in PRECISIONS],
         most_types=max(len(function["types"].split(",")) for function in functions),
     )
-    face = numpy.module_text(program, "c/module.py.jinja", fill="_fill_compiled", name=name)
+    face = numpy.module_text(program, "c/module.py.jinja", compute="_compute_compiled", name=name)
     return {f"{name}_c.py": face, f"{name}_module.c": glue}
 
 

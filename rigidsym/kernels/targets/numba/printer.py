@@ -37,7 +37,6 @@ def render(program: Program) -> dict[str, str]:
     text = numpy.module_text(
         program,
         TEMPLATE,
-        fill="_fill_compiled",
         reach=f"{found.reach:.0f}.0",
         two_over_pi=repr(2 / pi),
         magic=repr(1.5 * 2.0**52),  # a float of this size has no fraction

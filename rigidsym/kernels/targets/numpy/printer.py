@@ -38,12 +38,12 @@ def module_text(
     program: Program,
     template: str = TEMPLATE,
     *,
-    fill: str = "_fill",
+    compute: str = "_compute",
     **more: object,
 ) -> str:
     """The text of a module, in a template that may extend this one and needs more.
 
-    `fill` is the function there that goes through the orientations.
+    `compute` is the function there that computes all orientations.
     """
     kernels = list(map(_fitted, program.kernels))
     unwrap = [unwrap_text(program.unwrapping, _block)] if program.unwrapping else []
@@ -57,7 +57,7 @@ def module_text(
         functions=list(map(_function, kernels)),
         has_parts=any(kernel.parts for kernel in kernels),
         helpers="".join(f"\n\n{text}" for text in (*_helpers(kernels), *unwrap)),
-        fill=fill,
+        compute=compute,
         **more,
     )
 
