@@ -360,3 +360,94 @@ def test_modes_that_change_values_are_refused_or_have_no_effect(sources, compile
         run(compiler, *flags.split(), "-c", source.name, "-o", "taken.o", cwd=sources)
         run(compiler, "modes.o", "taken.o", "-o", "modes", "-lm", cwd=sources)
         assert float(run("./modes", cwd=sources)) < 4e-16, flags
+
+
+def every_second(array):
+    wide = np.full((2 * len(array), *array.shape[1:]), np.nan)
+    wide[::2] = array
+    return wide[::2]
+
+
+LAYOUTS = {
+    "rows": np.asarray,
+    "columns": np.asfortranarray,
+    "every second row": every_second,
+    "backwards": lambda a: a[::-1].copy()[::-1],
+    "components backwards": lambda a: a[:, ::-1].copy()[:, ::-1],
+    "one row": lambda a: a[:1],
+    "one": lambda a: a[0],
+    "none": lambda a: a[:0],
+    "single precision": lambda a: a.astype(np.float32),
+    "other byte order": lambda a: a.astype(">f8"),
+    "integers": lambda a: a.astype(np.int64),
+    "list": lambda a: a.tolist(),
+    "three axes": lambda a: a.reshape(len(a), 1, -1),
+    "unaligned": lambda a: np.frombuffer(b"x" + a.tobytes(), "u1")[1:].view(float).reshape(a.shape),
+}
+
+
+@pytest.fixture(scope="module")
+def both():
+    motion = rs.derive("ZXZ", only=["angular_velocity_body", "rotation_matrix"])
+    return motion.kernels("c").load(), motion.kernels().load()
+
+
+@pytest.mark.parametrize("second", LAYOUTS)
+@pytest.mark.parametrize("first", LAYOUTS)
+def test_any_layout_gives_what_numpy_gives(both, first, second):
+    q, q_dot = np.random.default_rng(2).uniform(-3, 3, (2, 7, 3))
+    q, q_dot = LAYOUTS[first](q), LAYOUTS[second](q_dot)
+    compiled, plain = both
+    try:
+        expected = plain.angular_velocity_body(q, q_dot)
+    except ValueError as error:
+        with pytest.raises(ValueError, match=re.escape(str(error))):
+            compiled.angular_velocity_body(q, q_dot)
+        return
+    found = compiled.angular_velocity_body(q, q_dot)
+    assert (found.shape, found.dtype) == (expected.shape, expected.dtype)
+    assert found.flags.c_contiguous
+    atol = 1e-6 if found.dtype == np.float32 else 1e-14
+    np.testing.assert_allclose(found, expected, atol=atol)
+    out = np.full((*expected.shape, 2), np.nan, expected.dtype)[..., 0]
+    assert compiled.angular_velocity_body(q, q_dot, out=out) is out
+    np.testing.assert_array_equal(out, found)
+
+
+@pytest.mark.parametrize("shift", [0, 1, 3, 10])
+def test_a_call_at_once_sees_that_out_overlaps(both, shift):
+    compiled, _ = both
+    memory = np.random.default_rng(3).uniform(-3, 3, 3 * 40 + 10)
+    q, out = memory[:120].reshape(-1, 3), memory[shift : shift + 120].reshape(-1, 3)
+    q_dot = np.ones((40, 3))
+    expected = compiled.angular_velocity_body(q.copy(), q_dot)
+    assert compiled.angular_velocity_body(q, q_dot, out=out) is out
+    np.testing.assert_array_equal(out, expected)
+
+
+@pytest.mark.parametrize(
+    "out",
+    [
+        np.empty((5, 3, 3)),
+        np.empty((5, 3, 3), order="F"),
+        np.empty((5, 3, 6))[..., ::2],
+        np.empty((5, 6, 3))[:, ::2],
+        np.empty((10, 3, 3))[::-2],
+    ],
+    ids=["rows", "columns", "entries apart", "rows apart", "backwards"],
+)
+def test_a_matrix_fills_an_out_of_any_strides(both, out):
+    compiled, _ = both
+    q = np.random.default_rng(4).uniform(-3, 3, (5, 3))
+    assert compiled.rotation_matrix(q, out=out) is out
+    np.testing.assert_array_equal(out, compiled.rotation_matrix(q))
+
+
+def test_outs_are_refused_as_in_numpy(both):
+    compiled, plain = both
+    q = np.zeros((5, 3))
+    for out in (np.empty((3, 5)), np.empty((5, 3), np.float32), [0.0], np.empty((5, 3), ">f8")):
+        with pytest.raises((TypeError, ValueError)) as expected:
+            plain.angular_velocity_body(q, q, out=out)
+        with pytest.raises(expected.type, match=re.escape(str(expected.value))):
+            compiled.angular_velocity_body(q, q, out=out)

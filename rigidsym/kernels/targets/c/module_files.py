@@ -23,8 +23,15 @@ def module_files(program: Program, kernels: Sequence[Kernel]) -> dict[str, str]:
         functions=functions,
         types=[(p.real, p.suffix) for p in PRECISIONS],
         most_types=max(len(function["types"].split(",")) for function in functions),
+        most_arguments=max(function["arguments"] for function in functions),
     )
-    face = numpy.module_text(program, "c/module.py.jinja", compute="_compute_compiled", name=name)
+    face = numpy.module_text(
+        program,
+        "c/module.py.jinja",
+        compute="_compute_compiled",
+        at_once="_compiled.{}_at_once",
+        name=name,
+    )
     return {f"{name}_c.py": face, f"{name}_module.c": glue}
 
 
@@ -35,6 +42,10 @@ def _ufunc(kernel: Kernel) -> dict[str, Any]:
     return {
         "name": kernel.name,
         "arguments": len(kernel.arguments),
+        "widths": ", ".join(str(len(a.components)) for a in kernel.arguments),
+        "axes": len(kernel.shape),
+        "shape": ", ".join(map(str, kernel.shape)) or "0",
+        "entries": len(kernel.outputs),
         "places": range(len(kernel.arguments) + 1),  # of the arguments and the result
         "signature": f"{inputs}->({len(kernel.outputs)})",
         "types": ", ".join(t for t in each for _ in range(len(kernel.arguments) + 1)),

@@ -39,11 +39,13 @@ def module_text(
     template: str = TEMPLATE,
     *,
     compute: str = "_compute",
+    at_once: str = "",
     **more: object,
 ) -> str:
     """The text of a module, in a template that may extend this one and needs more.
 
-    `compute` is the function there that computes all orientations.
+    `compute` is the function there that computes all orientations, `at_once` that of each kernel
+    which is tried first.
     """
     kernels = list(map(_fitted, program.kernels))
     unwrap = [unwrap_text(program.unwrapping, _block)] if program.unwrapping else []
@@ -54,7 +56,7 @@ def module_text(
         imports=_import(_imports(kernels)),
         exports=python.lines(f'"{name}",' for name in sorted(exports)),
         components=python.lines(map(python.entry, program.arguments)),
-        functions=list(map(_function, kernels)),
+        functions=[_function(kernel, at_once) for kernel in kernels],
         has_parts=any(kernel.parts for kernel in kernels),
         helpers="".join(f"\n\n{text}" for text in (*_helpers(kernels), *unwrap)),
         compute=compute,
@@ -109,7 +111,7 @@ def _exports(kernels: Sequence[Kernel]) -> Iterator[str]:
         yield f"{kernel.name}_scalar"
 
 
-def _function(kernel: Kernel) -> Function:
+def _function(kernel: Kernel, at_once: str) -> Function:
     block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
     given = [python.passed(argument, "np") for argument in kernel.arguments]
     each = ((argument, name) for argument in kernel.arguments for name in argument.components)
@@ -118,7 +120,11 @@ def _function(kernel: Kernel) -> Function:
     return Function(
         signature=bracketed(0, f"def {kernel.name}(", [*python.taken(kernel), "*", *OPTIONS], "):"),
         about=docstring(python.about_kernel(kernel), indent=4),
-        body=_body(kernel, [block, scalar, shape, *("out", "threads"), *given]),
+        body=_body(
+            kernel,
+            [block, scalar, shape, *("out", "threads"), *given],
+            at_once.format(kernel.name),
+        ),
         ufunc=f'{kernel.name}.signature = "{python.ufunc(kernel)}"',
         scalar_signature=bracketed(0, f"def {scalar}(", floats, "):"),
         scalar_about=docstring(
@@ -137,12 +143,30 @@ def _block(kernel: Kernel) -> str:
     return "\n".join([signature, *lines, _tuple(4, "return ", _outputs(kernel))])
 
 
-def _body(kernel: Kernel, arguments: Sequence[str]) -> str:
-    """The call that computes the result; several results are parts of one array."""
-    if not kernel.parts:
+def _body(kernel: Kernel, arguments: Sequence[str], at_once: str) -> str:
+    """The call that computes the result; several results are parts of one array.
+
+    `at_once` is a function that may give the result, or None, with less ado.
+    """
+    result = "both" if kernel.parts else "result"
+    lines = []
+    if at_once:
+        vectors = [argument.name for argument in kernel.arguments]
+        lines = [
+            f"    {result} = None",
+            "    if threads == 1:",
+            bracketed(8, f"{result} = {at_once}(", [*vectors, "out"], ")"),
+            f"    if {result} is None:",
+            bracketed(8, f"{result} = _apply(", arguments, ")"),
+        ]
+    elif kernel.parts:
+        lines = [bracketed(4, f"{result} = _apply(", arguments, ")")]
+    else:
         return bracketed(4, "return _apply(", arguments, ")")
-    call = bracketed(4, "both = _apply(", arguments, ")")
-    return f"{call}\n{bracketed(4, 'return _parted(', ['both', *map(str, kernel.parts)], ')')}"
+    if kernel.parts:
+        parts = [result, *map(str, kernel.parts)]
+        return "\n".join([*lines, bracketed(4, "return _parted(", parts, ")")])
+    return "\n".join([*lines, f"    return {result}"])
 
 
 def _nesting(kernel: Kernel) -> str:

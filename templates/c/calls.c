@@ -1,0 +1,144 @@
+/* Calls that need nothing of Python: arrays of one native type, in one axis or two, are computed at
+   once. Of all others None is returned, and the Python function looks at them. */
+
+enum { MOST = 16, FREE = 4096 }; /* arguments; orientations from which others may run meanwhile */
+
+/* Where an array begins, how many rows it has (0: it is one), and its steps in bytes. */
+typedef struct {
+    char *data;
+    npy_intp rows, step, stride;
+} Rows;
+
+static int rows_of(PyObject *given, const int type, const npy_intp width, Rows *found)
+{
+    PyArrayObject *array = (PyArrayObject *)given;
+    if (!PyArray_CheckExact(given) || PyArray_TYPE(array) != type || !PyArray_ISBEHAVED_RO(array)) {
+        return 0;
+    }
+    const int axes = PyArray_NDIM(array);
+    if (axes < 1 || axes > 2 || PyArray_DIM(array, axes - 1) != width) {
+        return 0;
+    }
+    found->data = PyArray_BYTES(array);
+    found->rows = axes == 2 ? PyArray_DIM(array, 0) : 0;
+    found->step = axes == 2 ? PyArray_STRIDE(array, 0) : 0;
+    found->stride = PyArray_STRIDE(array, axes - 1);
+    const npy_intp size = PyArray_ITEMSIZE(array);
+    return !(axes == 2 && found->rows == 0) && !(found->step % size) && !(found->stride % size);
+}
+
+/* The same of an array to be filled, which must have the result's shape and regular entries. */
+static int rows_of_out(
+    PyObject *given, const int type, const int axes, const npy_intp *shape, const int leading,
+    Rows *found)
+{
+    PyArrayObject *array = (PyArrayObject *)given;
+    if (!PyArray_CheckExact(given) || PyArray_TYPE(array) != type || !PyArray_ISBEHAVED(array)
+        || PyArray_NDIM(array) != axes || !PyArray_CompareLists(PyArray_DIMS(array), shape, axes)) {
+        return 0;
+    }
+    const npy_intp size = PyArray_ITEMSIZE(array);
+    found->data = PyArray_BYTES(array);
+    found->rows = leading ? shape[0] : 0;
+    found->step = leading ? PyArray_STRIDE(array, 0) : 0;
+    found->stride = axes > leading ? PyArray_STRIDE(array, axes - 1) : size;
+    if (axes == leading + 2 && PyArray_STRIDE(array, leading) != shape[axes - 1] * found->stride) {
+        return 0;
+    }
+    return !(found->step % size) && !(found->stride % size);
+}
+
+/* Whether memory from the first to the last byte of one is also that of the other. */
+static int may_overlap(const Rows *one, const npy_intp width, const Rows *other, const npy_intp many)
+{
+    const Rows *both[2] = { one, other };
+    const npy_intp widths[2] = { width, many };
+    char *low[2], *high[2];
+    for (int k = 0; k < 2; k++) {
+        const npy_intp steps[2] = {
+            (both[k]->rows > 0 ? both[k]->rows - 1 : 0) * both[k]->step,
+            (widths[k] - 1) * both[k]->stride,
+        };
+        low[k] = high[k] = both[k]->data;
+        for (int i = 0; i < 2; i++) {
+            *(steps[i] < 0 ? &low[k] : &high[k]) += steps[i];
+        }
+        high[k] += sizeof(double);
+    }
+    return low[0] < high[1] && low[1] < high[0];
+}
+
+/* function(*arrays, out): the result, or None. */
+static PyObject *call_at_once(PyObject *self, PyObject *const *given, const Py_ssize_t many)
+{
+    const struct kernel *kernel = &table[PyLong_AsLong(self)];
+    const int count = kernel->arguments;
+    Rows rows[MOST + 1];
+    npy_intp shape[3], leading = 0;
+    int axes = 0;
+    if (many != count + 1 || !PyArray_CheckExact(given[0])) {
+        Py_RETURN_NONE;
+    }
+    const int type = PyArray_TYPE((PyArrayObject *)given[0]);
+    if (type != NPY_DOUBLE && type != NPY_FLOAT) {
+        Py_RETURN_NONE;
+    }
+    for (int k = 0; k < count; k++) {
+        if (!rows_of(given[k], type, kernel->widths[k], &rows[k])) {
+            Py_RETURN_NONE;
+        }
+        if (rows[k].rows > leading) {
+            leading = rows[k].rows;
+        }
+    }
+    for (int k = 0; k < count; k++) { /* one row serves all */
+        if (rows[k].rows == 1 && leading > 1) {
+            rows[k].step = 0;
+        } else if (rows[k].rows && rows[k].rows != leading) {
+            Py_RETURN_NONE;
+        }
+    }
+    if (leading) {
+        shape[axes++] = leading;
+    }
+    for (int k = 0; k < kernel->axes; k++) {
+        shape[axes++] = kernel->shape[k];
+    }
+    PyObject *result = given[count];
+    if (result == Py_None) {
+        result = PyArray_SimpleNew(axes, shape, type);
+        if (result == NULL) {
+            return NULL;
+        }
+    } else {
+        Py_INCREF(result);
+    }
+    Rows *out = &rows[count];
+    if (!rows_of_out(result, type, axes, shape, leading > 0, out)) {
+        Py_DECREF(result);
+        Py_RETURN_NONE;
+    }
+    for (int k = 0; k < count && given[count] != Py_None; k++) {
+        if (may_overlap(&rows[k], kernel->widths[k], out, kernel->entries)) {
+            Py_DECREF(result);
+            Py_RETURN_NONE;
+        }
+    }
+    char *data[MOST + 1];
+    npy_intp steps[2 * (MOST + 1)], orientations = leading ? leading : 1;
+    for (int k = 0; k <= count; k++) {
+        data[k] = rows[k].data;
+        steps[k] = rows[k].step;
+        steps[count + 1 + k] = rows[k].stride;
+    }
+    PyThreadState *state = orientations < FREE ? NULL : PyEval_SaveThread();
+    kernel->loops[type == NPY_FLOAT](data, &orientations, steps, NULL);
+    if (state != NULL) {
+        PyEval_RestoreThread(state);
+    }
+    return result;
+}
+
+static PyMethodDef at_once = {
+    "call_at_once", (PyCFunction)(void (*)(void))call_at_once, METH_FASTCALL, NULL,
+};
