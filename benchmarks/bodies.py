@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from benchmarks.measure import Settings, Spread, interleaved, ratios, run_process
 from benchmarks.report import Cell, Column, Figure, Report, Table
-from rigidsym.data.mass.inertia import inertia_of
+from rigidsym.data.mass.point_masses import inertia_of
 
 PARTICLES = 10_000_000
 MOST_SECONDS = 5.0  # for all solids together
@@ -40,7 +40,7 @@ import sys, time
 import numpy as np
 path, name = sys.argv[1:]
 from benchmarks.bodies import FORMULAS
-from rigidsym.data.mass.inertia import inertia_of
+from rigidsym.data.mass.point_masses import inertia_of
 def peak():  # of this process alone; what getrusage says is taken over from its parent
     with open("/proc/self/status") as status:
         return next(int(line.split()[1]) for line in status if line.startswith("VmHWM"))

@@ -14,7 +14,7 @@ from benchmarks.measure import Settings, Spread, interleaved, peak_memory, run_p
 from benchmarks.report import Column, Figure, Report, Table, spread_columns
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.motion import derive
-from rigidsym.tools.identify.identify import identify_file
+from rigidsym.tools.identify.identification import identify_file
 from rigidsym.tools.identify.readings import Reading
 from rigidsym.tools.identify.turns import Array
 

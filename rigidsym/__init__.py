@@ -16,7 +16,7 @@ import typing as _typing
 from rigidsym.version import __version__ as __version__
 
 _NAMES = {
-    "data.mass.inertia": "inertia_of",
+    "data.mass.point_masses": "inertia_of",
     "data.mass.principal_axes": "principal_axes_of",
     "errors": "NotARotation RigidsymError",
     "mechanics.derivation": "Derivation",
@@ -31,13 +31,14 @@ _NAMES = {
     "models.rotation_text": "rotation_from",
     "models.vectors": "GibbsVector ModifiedRodrigues RotationVector",
     "motion": "Motion derive",
-    "tools.identify.identify": "Identification identify",
+    "tools.identify.identification": "identify",
+    "tools.identify.report": "Identification",
 }
 _HOMES = {name: module for module, names in _NAMES.items() for name in names.split()}
 __all__ = sorted([*_HOMES, "__version__", "kernels"])
 
 if _typing.TYPE_CHECKING:
-    from rigidsym.data.mass.inertia import inertia_of as inertia_of
+    from rigidsym.data.mass.point_masses import inertia_of as inertia_of
     from rigidsym.data.mass.principal_axes import principal_axes_of as principal_axes_of
     from rigidsym.errors import NotARotation as NotARotation, RigidsymError as RigidsymError
     from rigidsym.mechanics.derivation import Derivation as Derivation
@@ -77,10 +78,8 @@ if _typing.TYPE_CHECKING:
         RotationVector as RotationVector,
     )
     from rigidsym.motion import Motion as Motion, derive as derive, kernels as kernels
-    from rigidsym.tools.identify.identify import (
-        Identification as Identification,
-        identify as identify,
-    )
+    from rigidsym.tools.identify.identification import identify as identify
+    from rigidsym.tools.identify.report import Identification as Identification
 
 
 def __getattr__(name: str) -> _typing.Any:

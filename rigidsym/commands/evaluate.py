@@ -18,8 +18,8 @@ from rigidsym.models.rotation import RotationModel
 from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import integrated, read
 from rigidsym.system.progress import bar
-from rigidsym.tools.evaluate.evaluate import Evaluated, evaluation
-from rigidsym.tools.evaluate.functions import derived_for
+from rigidsym.tools.evaluate.callables import derived_for
+from rigidsym.tools.evaluate.evaluation import Evaluated, evaluation
 
 
 @make("rigidsym eval ZYX log.csv --degrees --out rates.npy")

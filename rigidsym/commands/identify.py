@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike
 
 from rigidsym.commands.command import command as make
 from rigidsym.system.progress import bar
-from rigidsym.tools.identify.identify import Identification, identify_file, identify_source
+from rigidsym.tools.identify.identification import identify_file, identify_source
 from rigidsym.tools.identify.readings import ANGLE_NAMES
+from rigidsym.tools.identify.report import Identification
 from rigidsym.tools.identify.samples import OptionError, SampleError
 from rigidsym.tools.identify.sources import from_arrays, parts_missing
 

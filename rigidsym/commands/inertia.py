@@ -9,8 +9,8 @@ from pathlib import Path
 import click
 
 from rigidsym.commands.command import command as make, message
-from rigidsym.data.mass.inertia import inertia_of
 from rigidsym.data.mass.mesh import ENDINGS, mesh_inertia, read_mesh_file
+from rigidsym.data.mass.point_masses import inertia_of
 from rigidsym.data.mass.properties import MassProperties
 from rigidsym.system.progress import bar
 

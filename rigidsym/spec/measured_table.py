@@ -29,7 +29,7 @@ _COORDINATE = "coordinate of the centre of mass", "m"
 
 def read_cloud(reader: BodyReader) -> Known | None:
     """particles = "cloud.npy": particles in NPY, CSV or Parquet."""
-    from rigidsym.data.mass.inertia import inertia_of
+    from rigidsym.data.mass.point_masses import inertia_of
 
     table = reader.table
     columns = table.texts("columns", "names of the columns")

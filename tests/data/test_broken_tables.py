@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 import rigidsym as rs
 from helpers.mutations import mutated
 from rigidsym.errors import RigidsymError
-from rigidsym.tools.evaluate.evaluate import evaluation
-from rigidsym.tools.identify.identify import identify_file
+from rigidsym.tools.evaluate.evaluation import evaluation
+from rigidsym.tools.identify.identification import identify_file
 
 MUTATIONS = 60  # of each kind of file
 ANGLES = np.random.default_rng(1).uniform(-60, 60, (4, 3))

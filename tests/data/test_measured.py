@@ -14,8 +14,8 @@ from click.testing import CliRunner
 
 from rigidsym.commands.cli import commands
 from rigidsym.data.mass.blocks import BLOCK, block_of, cloud_of
-from rigidsym.data.mass.inertia import inertia_of
 from rigidsym.data.mass.mesh import Mesh, mesh_inertia, read_mesh_file
+from rigidsym.data.mass.point_masses import inertia_of
 from rigidsym.data.mass.principal_axes import principal_axes_of
 from rigidsym.errors import BodyError
 
@@ -214,7 +214,7 @@ def test_memory_stays_bounded(tmp_path):
     table.flush()
     code = (
         "import sys\n"
-        "from rigidsym.data.mass.inertia import inertia_of\n"
+        "from rigidsym.data.mass.point_masses import inertia_of\n"
         "def peak():\n"
         "    lines = open('/proc/self/status').read().splitlines()\n"
         "    return next(int(line.split()[1]) for line in lines if line.startswith('VmHWM'))\n"

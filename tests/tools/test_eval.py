@@ -13,7 +13,7 @@ import rigidsym as rs
 from helpers.log_files import COUNT, NAMES, VELOCITY, WRITERS, logged, read, run
 from rigidsym.data.readers import reader_of
 from rigidsym.errors import DataError
-from rigidsym.tools.evaluate.evaluate import evaluation
+from rigidsym.tools.evaluate.evaluation import evaluation
 
 
 @pytest.fixture(scope="module")
@@ -192,7 +192,7 @@ def test_what_needs_no_rows_is_refused(motion, table, tmp_path):
     np.save(tmp_path / "given.npy", table)
     paths = tmp_path / "given.npy", tmp_path / "r.npy"
     given = dict.fromkeys(NAMES[:3], 0.1)
-    with pytest.raises(DataError, match="the same for every row"):
+    with pytest.raises(DataError, match="every row has the same result"):
         evaluation(motion, ("rotation_matrix",), *paths, columns=NAMES, given=given)
     ball = rs.derive("ZXZ", body=rs.principal_moments(1, 1, 1, mass=1))
     with pytest.raises(DataError, match="inertia_tensor takes no input"):

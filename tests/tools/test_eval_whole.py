@@ -16,7 +16,7 @@ from numpy.testing import assert_array_equal
 import rigidsym as rs
 from helpers.log_files import COUNT, VELOCITY, WRITERS, command, logged, read, run
 from rigidsym.data import writers
-from rigidsym.tools.evaluate.evaluate import evaluation
+from rigidsym.tools.evaluate.evaluation import evaluation
 
 
 @pytest.fixture(scope="module")

@@ -26,7 +26,7 @@ from helpers.conventions import (
     together,
 )
 from rigidsym.tools.identify.readings import SEQUENCES, VELOCITIES, Reading, Velocity, distinct
-from rigidsym.tools.identify.turns import Table, angle_between, quaternion_of
+from rigidsym.tools.identify.turns import ReadingTable, angle_between, quaternion_of
 from rigidsym.tools.identify.velocity import angular_velocities
 
 BOTH = pytest.mark.parametrize("passive", [False, True], ids=["active", "passive"])
@@ -182,7 +182,7 @@ def test_aliases_give_the_same_data(reading):
 
 
 def test_all_answers_are_different_functions():
-    table = Table(list(distinct((False, True))))
+    table = ReadingTable(list(distinct((False, True))))
     (given,) = table.as_given(np.array([[35.0, 65.0, 80.0]]))
     closeness = np.abs(given @ given.T)
     np.fill_diagonal(closeness, 0)
@@ -195,7 +195,7 @@ def test_the_sequences_are_those_of_the_package():
 
 def test_the_table_gives_the_rotations_of_scipy():
     angles = np.random.default_rng(3).uniform(-170, 170, (5, 3))
-    table = Table(EVERY)
+    table = ReadingTable(EVERY)
     given = table.as_given(angles)
     for k in range(0, len(EVERY), 37):
         expected = rotation(EVERY[k], angles)
@@ -207,7 +207,7 @@ def test_the_table_gives_the_rotations_of_scipy():
 def test_quaternions_are_given_in_the_order_of_the_data():
     readings = some(20, seed=12, layouts=(False, True), velocities=(None,))
     for reading in readings:
-        (given,) = Table([reading]).as_given(np.array([GENERIC[reading.degrees]]))[0]
+        (given,) = ReadingTable([reading]).as_given(np.array([GENERIC[reading.degrees]]))[0]
         expected = attitude(reading, GENERIC[reading.degrees])["quaternion"]
         np.testing.assert_allclose(given * np.sign(given @ expected), expected, atol=1e-14)
 

@@ -11,9 +11,9 @@ from scipy.spatial.transform import Rotation
 import rigidsym as rs
 from helpers.conventions import GENERIC, holds, omega, rotation, sample
 from rigidsym.errors import DataError
-from rigidsym.tools.identify.columns import by_name, by_width
-from rigidsym.tools.identify.identify import identify_file
+from rigidsym.tools.identify.identification import identify_file
 from rigidsym.tools.identify.readings import VELOCITIES, Reading
+from rigidsym.tools.identify.sample_columns import by_name, by_width
 from rigidsym.tools.identify.samples import SampleError
 from rigidsym.tools.identify.sources import BLOCK, from_file
 from rigidsym.tools.identify.tolerance import rounding_of

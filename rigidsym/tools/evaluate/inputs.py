@@ -8,7 +8,7 @@ from math import pi
 from rigidsym.data.columns import ColumnNames, counted
 from rigidsym.errors import DataError, RequestError
 from rigidsym.text.names import offer
-from rigidsym.tools.evaluate.functions import Argument, is_angle
+from rigidsym.tools.evaluate.callables import FunctionArgument, is_angle
 from rigidsym.tools.evaluate.work import Input
 from rigidsym.tools.spellings import groups_of, of_component
 
@@ -16,7 +16,7 @@ DEGREE = pi / 180
 
 
 def inputs_of(
-    arguments: Sequence[Argument],
+    arguments: Sequence[FunctionArgument],
     header: ColumnNames | None,
     width: int,
     *,
@@ -64,7 +64,7 @@ def _factor(header: ColumnNames | None, column: int, unit: str, *, degrees: bool
     return DEGREE if degrees and is_angle(unit) else 1.0
 
 
-def _by_order(arguments: Sequence[Argument], width: int) -> tuple[int, ...]:
+def _by_order(arguments: Sequence[FunctionArgument], width: int) -> tuple[int, ...]:
     wanted = [name for argument in arguments for name in argument.names]
     if width != len(wanted):
         raise DataError(
@@ -74,7 +74,7 @@ def _by_order(arguments: Sequence[Argument], width: int) -> tuple[int, ...]:
     return tuple(range(width))
 
 
-def _by_name(arguments: Sequence[Argument], header: ColumnNames) -> tuple[int, ...]:
+def _by_name(arguments: Sequence[FunctionArgument], header: ColumnNames) -> tuple[int, ...]:
     columns: list[int] = []
     missing: list[str] = []
     for argument in arguments:

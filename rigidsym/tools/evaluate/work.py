@@ -33,7 +33,7 @@ class Input:
 
 
 @dataclass(frozen=True, slots=True)
-class Output:
+class ResultColumn:
     """One column of a result."""
 
     name: str
@@ -47,12 +47,12 @@ class Output:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Work:
-    """Functions of a generated module on rows of numbers."""
+    """Callables of a generated module on rows of numbers."""
 
     kernels: KernelModule
     calls: tuple[tuple[str, tuple[str, ...]], ...]  # functions, with the names of their arrays
     inputs: Mapping[str, Input]  # by the names of the arrays
-    outputs: tuple[Output, ...]
+    outputs: tuple[ResultColumn, ...]
     threads: int = 1
 
     def of(self, table: Table) -> Table:

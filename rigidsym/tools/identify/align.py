@@ -10,11 +10,11 @@ import numpy as np
 
 from rigidsym.tools.identify.frames import PERMUTATIONS, Frames, Matrix, multiplied, transposed
 from rigidsym.tools.identify.readings import Reading
-from rigidsym.tools.identify.samples import Block
+from rigidsym.tools.identify.samples import SampleBlock
 from rigidsym.tools.identify.tolerance import Tolerance
 from rigidsym.tools.identify.turns import (
     Array,
-    Table,
+    ReadingTable,
     angle_between,
     matrix_of,
     quaternion_of,
@@ -25,7 +25,7 @@ _ANGLES = np.array([[0.3, 0.9, -1.4], [20.0, 35.0, 50.0], [-1.1, 0.6, 0.8]])  # 
 _MOST_COUNTED = 4  # samples: data of one motion are not independent
 
 
-def aligned(table: Table, block: Block, tolerance: Tolerance) -> list[Reading]:
+def aligned(table: ReadingTable, block: SampleBlock, tolerance: Tolerance) -> list[Reading]:
     """The readings that fit the data of a block in other frames, each in its plainest words.
 
     Frames whose axes are permuted and reversed go before misalignments, for which at least two
@@ -52,7 +52,7 @@ def _by_chance(readings: int, tolerance: Tolerance, samples: int) -> float:
     return readings * share ** min(samples, _MOST_COUNTED) if samples > 0 else float(readings)
 
 
-def _permuted(table: Table, right: Array, allowed: Array) -> Iterator[Reading]:
+def _permuted(table: ReadingTable, right: Array, allowed: Array) -> Iterator[Reading]:
     """Data that are a reading times a permutation of axes, (4, n, readings)."""
     known = quaternion_of(np.array(PERMUTATIONS))
     nearest = np.abs(np.einsum("kc,cr->kr", known, right[:, 0])).argmax(axis=0)
@@ -69,7 +69,7 @@ def _different(readings: Sequence[Reading]) -> list[Reading]:
     ordered = sorted(readings, key=Reading.plainness)
     if len(ordered) < 2:
         return ordered
-    values = Table(ordered).as_given(_ANGLES)  # (n, readings, 4)
+    values = ReadingTable(ordered).as_given(_ANGLES)  # (n, readings, 4)
     same = (np.abs(np.einsum("nri,nsi->nrs", values, values)) > 1 - 1e-9).all(axis=0)
     return [reading for k, reading in enumerate(ordered) if not same[k, :k].any()]
 
@@ -96,7 +96,7 @@ def _plainest(readings: Sequence[Reading]) -> Reading:
 
 
 def _misaligned(
-    table: Table, constants: Array, allowed: Array, *, is_right: bool
+    table: ReadingTable, constants: Array, allowed: Array, *, is_right: bool
 ) -> Iterator[Reading]:
     """Data that are a reading times one rotation, the mean of those of the samples."""
     first = constants[:, :1]

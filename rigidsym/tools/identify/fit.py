@@ -14,10 +14,10 @@ from rigidsym.system.progress import Progress
 from rigidsym.tools.identify.align import aligned
 from rigidsym.tools.identify.calls import calls
 from rigidsym.tools.identify.readings import VELOCITIES, Reading, distinct
-from rigidsym.tools.identify.samples import SLACK, Block, SampleError, check
-from rigidsym.tools.identify.sources import Source
+from rigidsym.tools.identify.samples import SLACK, SampleBlock, SampleError, check
+from rigidsym.tools.identify.sources import SampleSource
 from rigidsym.tools.identify.tolerance import Tolerance, check_tolerance, tolerances
-from rigidsym.tools.identify.turns import Array, Table
+from rigidsym.tools.identify.turns import Array, ReadingTable
 from rigidsym.tools.identify.velocity import angular_velocities, as_given
 
 _AT_ONCE = 1 << 17  # rows times readings
@@ -59,7 +59,7 @@ class Outcome:
 
 
 def fit(
-    source: Source, tolerance: float | None = None, progress: Progress | None = None
+    source: SampleSource, tolerance: float | None = None, progress: Progress | None = None
 ) -> Outcome:
     """The readings that fit the samples or, if none does, the nearest.
 
@@ -81,7 +81,7 @@ def fit(
     return Outcome(answers=tally.answers(source), tolerance=chosen, scale=scale)
 
 
-def _good(source: Source, slack: float) -> Iterator[Block]:
+def _good(source: SampleSource, slack: float) -> Iterator[SampleBlock]:
     """Every block; raises SampleError after the last if one of them had faults."""
     faults: list[str] = []
     count = 0
@@ -95,7 +95,7 @@ def _good(source: Source, slack: float) -> Iterator[Block]:
         raise SampleError(faults, count=count)
 
 
-def _scale(block: Block) -> float:
+def _scale(block: SampleBlock) -> float:
     """The largest |Ω|, or the largest rate if all Ω are zero."""
     if block.omega is None or block.rates is None:
         return 1.0
@@ -110,12 +110,12 @@ class _Candidates:
         self.readings = tuple(readings)
         orientations = list(dict.fromkeys(reading.orientation for reading in readings))
         velocities = list(dict.fromkeys(r.velocity for r in readings if r.velocity))
-        self._table, self._velocities = Table(orientations), velocities
+        self._table, self._velocities = ReadingTable(orientations), velocities
         numbers = {reading: number for number, reading in enumerate(orientations)}
         self._orientation = np.array([numbers[reading.orientation] for reading in readings])
         self._velocity = [velocities.index(r.velocity) for r in readings if r.velocity]
 
-    def residuals(self, block: Block, scale: float) -> tuple[Array, Array]:
+    def residuals(self, block: SampleBlock, scale: float) -> tuple[Array, Array]:
         """Angles to the data in radians, and |difference of Ω| over the scale: (n, readings)."""
         angles = self._table.residuals(block.angles, block.orientation())[:, self._orientation]
         if block.rates is None or block.omega is None:
@@ -127,12 +127,12 @@ class _Candidates:
 
 
 @cache
-def _everything(layouts: tuple[bool | None, ...]) -> Table:
-    return Table(sorted(distinct(layouts), key=Reading.plainness))
+def _everything(layouts: tuple[bool | None, ...]) -> ReadingTable:
+    return ReadingTable(sorted(distinct(layouts), key=Reading.plainness))
 
 
 def _narrowed(
-    source: Source, block: Block, asked: float | None, scale: float
+    source: SampleSource, block: SampleBlock, asked: float | None, scale: float
 ) -> tuple[Tolerance, list[Reading]]:
     """The readings that fit a few rows, or only the nearest, and the tolerance for the rest."""
     table = _everything(source.columns.layouts)
@@ -157,7 +157,7 @@ def _narrowed(
 
 
 def _with_velocities(
-    orientations: Sequence[Reading], block: Block, scale: float, tolerance: float | None
+    orientations: Sequence[Reading], block: SampleBlock, scale: float, tolerance: float | None
 ) -> list[Reading]:
     """Each reading of the orientation with every reading of Ω that fits, or with the nearest."""
     if block.omega is None:
@@ -179,14 +179,14 @@ class _Tally:
         self._share, self._row = np.full(len(readings), -1.0), np.zeros(len(readings), np.intp)
         self._fitting, self._samples = np.zeros(len(readings), np.intp), 0
 
-    def add(self, block: Block) -> None:
+    def add(self, block: SampleBlock) -> None:
         """Take these rows into account, a few at a time if there are many candidates."""
         at_once = max(1, _AT_ONCE // len(self._share))
         for start in range(0, len(block), at_once):
             self._add(block.at(slice(start, start + at_once)))
         self._samples += len(block)
 
-    def _add(self, block: Block) -> None:
+    def _add(self, block: SampleBlock) -> None:
         angles, velocities = self._candidates.residuals(block, self._scale)
         shares = np.maximum(angles / self._allowed, velocities / self._allowed_velocity)
         self._fitting += (shares <= 1).sum(axis=0)
@@ -196,7 +196,7 @@ class _Tally:
         self._row = np.where(worse, block.rows[shares.argmax(axis=0)], self._row)
         self._share = np.maximum(self._share, shares.max(axis=0))
 
-    def answers(self, source: Source) -> tuple[Answer, ...]:
+    def answers(self, source: SampleSource) -> tuple[Answer, ...]:
         """The candidates that fit every row, or only the nearest."""
         fitting = np.flatnonzero(self._fitting == self._samples)
         if not len(fitting):

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from math import degrees
 from textwrap import indent
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from rigidsym.tools.identify.fit import Answer
 from rigidsym.tools.identify.readings import Reading
 from rigidsym.tools.identify.separate import FurtherSample, Separation
-
-if TYPE_CHECKING:
-    from rigidsym.tools.identify.fit import Answer
-    from rigidsym.tools.identify.identify import Identification
+from rigidsym.tools.identify.tolerance import Tolerance
 
 SCHEMA = "rigidsym.identification"
 SCHEMA_VERSION = 1
@@ -20,15 +19,43 @@ _MOST_SHOWN = 6
 _ACCEPTABLE = 0.2  # radians; no tolerance is suggested for a nearest reading further off
 
 
-def text(found: Identification, *, everything: bool = False) -> str:
-    """The text for a terminal, in 80 columns unless the names of the angles are long."""
+@dataclass(frozen=True, kw_only=True)
+class Identification:
+    """Every reading that fits, the plainest first; if none does, the nearest."""
+
+    answers: tuple[Answer, ...]
+    nearest: Answer | None  # if nothing fits
+    tolerance: Tolerance
+    samples: int
+    tried: int  # readings that differ as functions of the data
+    names: tuple[str, ...]  # of the angle columns
+    converted: tuple[str, ...]  # columns whose unit was converted
+    has_velocity: bool  # rates and Ω were given
+    further: Separation | None  # None if one reading is left, and if nothing separates them
+
+    @property
+    def fits(self) -> bool:
+        return bool(self.answers)
+
+    def text(self, *, everything: bool = False) -> str:
+        """The report of `rigidsym identify`; with `everything`, that of --all."""
+        return "\n".join(_text(self, everything=everything))
+
+    def record(self) -> dict[str, Any]:
+        """The report of `rigidsym identify --json`, as plain data."""
+        return _record(self)
+
+    def __str__(self) -> str:
+        return self.text()
+
+
+def _text(found: Identification, *, everything: bool) -> Iterator[str]:
+    """The lines of the report, of 80 columns unless the names of the angles are long."""
     if found.nearest:
-        lines = _no_fit(found, found.nearest)
-    elif len(found.answers) == 1:
-        lines = _single(found, found.answers[0])
-    else:
-        lines = _several(found, everything=everything)
-    return "\n".join(lines)
+        return _no_fit(found, found.nearest)
+    if len(found.answers) == 1:
+        return _single(found, found.answers[0])
+    return _several(found, everything=everything)
 
 
 def _single(found: Identification, answer: Answer) -> Iterator[str]:
@@ -185,7 +212,7 @@ def _wrapped(words: str, head: str, width: int = 80) -> Iterator[str]:
     yield line
 
 
-def record(found: Identification) -> dict[str, Any]:
+def _record(found: Identification) -> dict[str, Any]:
     """Everything as dictionaries, lists, texts and numbers."""
     tolerance = found.tolerance
     return {

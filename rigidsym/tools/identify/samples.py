@@ -45,7 +45,7 @@ class OptionError(SampleError):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Block:
+class SampleBlock:
     """Some rows of the data, as given."""
 
     rows: NDArray[np.intp]  # their numbers in the data, (n,)
@@ -75,9 +75,9 @@ class Block:
     def matrices(self) -> Array:
         return self.attitude.reshape(-1, 3, 3)
 
-    def at(self, which: slice | NDArray[np.bool_]) -> Block:
+    def at(self, which: slice | NDArray[np.bool_]) -> SampleBlock:
         """Some of the rows."""
-        return Block(
+        return SampleBlock(
             rows=self.rows[which],
             angles=self.angles[which],
             attitude=self.attitude[which],
@@ -102,8 +102,8 @@ class Block:
 
 @np.errstate(all="ignore")  # numbers that overflow here are far from a rotation
 def check(
-    block: Block, place: Callable[[int], str], slack: float = SLACK
-) -> tuple[Block, list[str], int]:
+    block: SampleBlock, place: Callable[[int], str], slack: float = SLACK
+) -> tuple[SampleBlock, list[str], int]:
     """The good rows, the first faults of the others, and the number of faults.
 
     Faults are numbers that are missing or not finite, matrices that are not rotations, and
@@ -125,7 +125,7 @@ def check(
     return rest.at(turns), said, len(faults)
 
 
-def _turns(block: Block, slack: float) -> NDArray[np.bool_]:
+def _turns(block: SampleBlock, slack: float) -> NDArray[np.bool_]:
     """Whether each matrix or quaternion is a rotation."""
     good = block.defects() <= slack
     if block.is_matrix:
@@ -133,7 +133,7 @@ def _turns(block: Block, slack: float) -> NDArray[np.bool_]:
     return np.asarray(good)
 
 
-def _what_is_wrong(block: Block, k: int) -> str:
+def _what_is_wrong(block: SampleBlock, k: int) -> str:
     defect = float(block.defects()[k])
     if not block.is_matrix:
         length = float(np.linalg.norm(block.attitude[k]))

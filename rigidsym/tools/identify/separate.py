@@ -11,7 +11,7 @@ import numpy as np
 
 from rigidsym.tools.identify.fit import Outcome
 from rigidsym.tools.identify.readings import Reading
-from rigidsym.tools.identify.turns import Array, Table, angle_between
+from rigidsym.tools.identify.turns import Array, ReadingTable, angle_between
 from rigidsym.tools.identify.velocity import angular_velocities, as_given
 
 Triple = tuple[float, float, float]
@@ -69,7 +69,7 @@ def _angles(orientations: Sequence[Reading], clear: float) -> tuple[list[Triple]
     candidates = _candidates(orientations)
     if len(orientations) == 1:
         return candidates[:1], pi
-    quaternions = Table(orientations).as_given(np.array(candidates))
+    quaternions = ReadingTable(orientations).as_given(np.array(candidates))
     chosen: list[int] = []
     closeness = np.ones((len(orientations), len(orientations)))
     difference = 0.0

@@ -14,9 +14,9 @@ from rigidsym.data.chunk import Chunk, TableReader
 from rigidsym.data.columns import names_for
 from rigidsym.data.readers import ArrayReader, reader_of
 from rigidsym.errors import DataError
-from rigidsym.tools.identify.columns import Columns, by_name, by_width
 from rigidsym.tools.identify.readings import ANGLE_NAMES
-from rigidsym.tools.identify.samples import Block, SampleError
+from rigidsym.tools.identify.sample_columns import Columns, by_name, by_width
+from rigidsym.tools.identify.samples import SampleBlock, SampleError
 
 BLOCK = 16384  # rows that are in memory at once
 SPREAD = 64  # rows that are looked at first
@@ -30,7 +30,7 @@ _SHAPES = {
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Source:
+class SampleSource:
     """The samples of a table, which can be read from the beginning more than once."""
 
     reader: TableReader
@@ -46,16 +46,16 @@ class Source:
         """How messages name a row."""
         return self.reader.place(row) if self.reader.source else f"sample {row + 1}"
 
-    def blocks(self) -> Iterator[Block]:
+    def blocks(self) -> Iterator[SampleBlock]:
         """All rows."""
         for chunk in self.reader.chunks(self.columns.used, BLOCK):
             yield self._block(chunk)
 
-    def spread(self) -> Block:
+    def spread(self) -> SampleBlock:
         """A few rows from all over the data."""
         return self._block(self.reader.spread(self.columns.used, SPREAD))
 
-    def _block(self, chunk: Chunk) -> Block:
+    def _block(self, chunk: Chunk) -> SampleBlock:
         if self.drops_missing:
             chunk = chunk.at(np.asarray(~np.isnan(chunk.table).any(axis=1)))
         columns = self.columns
@@ -65,7 +65,7 @@ class Source:
         at = np.cumsum([3, len(columns.attitude), len(columns.rates)])
         angles, attitude, rates, omega = np.split(table, at, axis=1)
         has_velocity = bool(columns.rates)
-        return Block(
+        return SampleBlock(
             rows=chunk.rows,
             angles=angles,
             attitude=attitude,
@@ -77,7 +77,7 @@ class Source:
 
 def from_file(
     path: Path, names: Sequence[str] | None = None, *, drops_missing: bool = False
-) -> Source:
+) -> SampleSource:
     """Samples from an NPY, Parquet or text file.
 
     `names` are those of the columns, with `-` for one to leave out. Raises SampleError for a file
@@ -91,12 +91,12 @@ def from_file(
         raise
     except DataError as error:
         raise SampleError([str(error)]) from None
-    return Source(reader=reader, columns=columns, drops_missing=drops_missing)
+    return SampleSource(reader=reader, columns=columns, drops_missing=drops_missing)
 
 
 def from_arrays(
     given: Mapping[str, ArrayLike | None], names: Sequence[str] = ANGLE_NAMES
-) -> Source:
+) -> SampleSource:
     """Samples from Python; raises SampleError for shapes that do not belong together."""
     arrays: dict[str, NDArray[Any]] = {}
     faults: list[str] = []
@@ -120,7 +120,7 @@ def from_arrays(
     columns = by_width(width if "omega" in arrays else width - 6)
     order = [arrays[name] for name in _SHAPES if name in arrays]
     named = replace(columns, names=tuple(names))
-    return Source(reader=ArrayReader(*order), columns=named)
+    return SampleSource(reader=ArrayReader(*order), columns=named)
 
 
 def _shaped(name: str, value: ArrayLike) -> tuple[NDArray[Any], list[str]]:

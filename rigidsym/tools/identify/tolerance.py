@@ -12,7 +12,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from rigidsym.tools.identify.samples import Block, SampleError
+from rigidsym.tools.identify.samples import SampleBlock, SampleError
 from rigidsym.tools.identify.turns import Array
 
 FLOOR = 1e-6  # the least tolerance, since data may have been in single precision
@@ -39,7 +39,7 @@ class Tolerance:
 
 
 def tolerances(
-    asked: float | None, block: Block, coarseness: float, scale: float
+    asked: float | None, block: SampleBlock, coarseness: float, scale: float
 ) -> Iterator[Tolerance]:
     """Tolerances to try, one after the other, until a reading fits.
 
@@ -80,7 +80,7 @@ def check_tolerance(asked: float | None) -> None:
         raise SampleError([f"the tolerance is an angle between 0 and π radians, got {asked:g}"])
 
 
-def _attitude(block: Block) -> float:
+def _attitude(block: SampleBlock) -> float:
     """The largest rotation by which rounding has moved one of the matrices or quaternions."""
     defects = block.defects()
     rounding = np.where(

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 _AXES = "XYZ"
 
 
-class Table:
+class ReadingTable:
     """Many readings as arrays; each is rewritten with active turns about turning axes."""
 
     def __init__(self, readings: Sequence[Reading]) -> None:

@@ -3,49 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from numpy.typing import ArrayLike
 
 from rigidsym.system.progress import Progress
-from rigidsym.tools.identify import report
-from rigidsym.tools.identify.fit import Answer, fit
+from rigidsym.tools.identify.fit import fit
 from rigidsym.tools.identify.readings import ANGLE_NAMES, VELOCITIES, distinct
-from rigidsym.tools.identify.separate import Separation, separation
-from rigidsym.tools.identify.sources import Source, from_arrays, from_file
-from rigidsym.tools.identify.tolerance import Tolerance
-
-
-@dataclass(frozen=True, kw_only=True)
-class Identification:
-    """Every reading that fits, the plainest first; if none does, the nearest."""
-
-    answers: tuple[Answer, ...]
-    nearest: Answer | None  # if nothing fits
-    tolerance: Tolerance
-    samples: int
-    tried: int  # readings that differ as functions of the data
-    names: tuple[str, ...]  # of the angle columns
-    converted: tuple[str, ...]  # columns whose unit was converted
-    has_velocity: bool  # rates and Ω were given
-    further: Separation | None  # None if one reading is left, and if nothing separates them
-
-    @property
-    def fits(self) -> bool:
-        return bool(self.answers)
-
-    def text(self, *, everything: bool = False) -> str:
-        """The report of `rigidsym identify`; with `everything`, that of --all."""
-        return report.text(self, everything=everything)
-
-    def record(self) -> dict[str, Any]:
-        """The report of `rigidsym identify --json`, as plain data."""
-        return report.record(self)
-
-    def __str__(self) -> str:
-        return self.text()
+from rigidsym.tools.identify.report import Identification
+from rigidsym.tools.identify.separate import separation
+from rigidsym.tools.identify.sources import SampleSource, from_arrays, from_file
 
 
 def identify(
@@ -100,7 +67,7 @@ def identify_file(
 
 
 def identify_source(
-    source: Source, *, tolerance: float | None = None, progress: Progress | None = None
+    source: SampleSource, *, tolerance: float | None = None, progress: Progress | None = None
 ) -> Identification:
     """The same for any source of samples."""
     outcome = fit(source, tolerance, progress)

@@ -12,7 +12,7 @@ import numpy as np
 
 from rigidsym.data.chunk import TableReader
 from rigidsym.data.mass.blocks import BLOCK, Block, Cloud, block_of, cloud_of, named
-from rigidsym.data.mass.particles import ParticleColumns
+from rigidsym.data.mass.particle_columns import ParticleColumns
 from rigidsym.data.mass.principal_axes import principal_axes_of
 from rigidsym.data.mass.properties import MassProperties
 from rigidsym.data.readers import ArrayReader, npy_reader, reader_of

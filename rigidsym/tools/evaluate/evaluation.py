@@ -16,7 +16,7 @@ from rigidsym.errors import DataError, RequestError
 from rigidsym.motion import Motion
 from rigidsym.system.cluster import on_cluster
 from rigidsym.system.progress import Progress
-from rigidsym.tools.evaluate.functions import functions_of
+from rigidsym.tools.evaluate.callables import functions_of
 from rigidsym.tools.evaluate.inputs import inputs_of
 from rigidsym.tools.evaluate.work import Work
 
@@ -87,7 +87,7 @@ def evaluation(
     rows: int = ROWS,
     scheduler: str | None = None,
 ) -> Evaluation:
-    """Functions of a motion for each row of a file: NPY, Parquet, or text with separators.
+    """Callables of a motion for each row of a file: NPY, Parquet, or text with separators.
 
     `quantities` are quantities or conversions (`quaternion`, `from_quaternion`,
     `from_rotation_matrix`). `source` and `path` may be binary streams of text with commas. Columns
@@ -100,14 +100,7 @@ def evaluation(
     Raises DataError for a file or columns that do not fit, RequestError for a request that cannot
     be met, such as an unknown ending of the result, and QuantityError.
     """
-    named = source if isinstance(source, Path) else Path("standard input")
-    output = None if isinstance(path, Path) else path
-    place = path if isinstance(path, Path) else Path("standard output")
-    if output is None:
-        check_ending(place)
-        if place.resolve() == named.resolve():
-            raise RequestError(f"{place}: the result would replace the file that is read")
-    reader = reader_of(source) if isinstance(source, Path) else TextReader(named, source)
+    reader, path, output = _opened(source, path)
     functions = functions_of(motion, quantities, target, degrees=degrees)
     try:
         names = reader.names if columns is None else names_for(columns, reader.width)
@@ -115,13 +108,13 @@ def evaluation(
         used, inputs = inputs_of(
             functions.arguments, header, reader.width, given=given or {}, degrees=degrees
         )
-        kept = tuple(_kept(header, name) for name in keep)
+        kept = dict(_kept(header, name) for name in keep)
     except RequestError:
         raise
     except DataError as error:
-        raise DataError(f"{named}: {error}") from None
+        raise DataError(f"{reader.source}: {error}") from None
     if not used:
-        raise RequestError(f"{named}: no column is used; the results are the same for every row")
+        raise RequestError(f"{reader.source}: no column is used; every row has the same result")
     work = Work(
         kernels=functions.kernels,
         calls=functions.calls,
@@ -129,15 +122,14 @@ def evaluation(
         outputs=functions.outputs,
         threads=threads,
     )
-    free = [name for a in functions.arguments if inputs[a.name].columns for name in a.names]
     return Evaluation(
         reader=reader,
         columns=used,
-        names=tuple(free),
-        kept=kept,
-        kept_names=() if header is None else tuple(header.names[column] for column in kept),
+        names=tuple(n for a in functions.arguments if inputs[a.name].columns for n in a.names),
+        kept=tuple(kept),
+        kept_names=tuple(kept.values()),
         work=work,
-        path=place,
+        path=path,
         rows=rows,
         missing=missing,
         scheduler=scheduler,
@@ -145,9 +137,27 @@ def evaluation(
     )
 
 
-def _kept(header: ColumnNames | None, name: str) -> int:
+def _opened(
+    source: Path | BinaryIO, path: Path | BinaryIO
+) -> tuple[TableReader, Path, BinaryIO | None]:
+    """The reader of a source, the path of the result, and the stream in place of it."""
+    reader: TableReader
+    if isinstance(source, Path):
+        reader = reader_of(source)
+    else:
+        reader = TextReader(Path("standard input"), source)
+    if not isinstance(path, Path):
+        return reader, Path("standard output"), path
+    check_ending(path)
+    if isinstance(source, Path) and path.resolve() == source.resolve():
+        raise RequestError(f"{path}: the result would replace the file that is read")
+    return reader, path, None
+
+
+def _kept(header: ColumnNames | None, name: str) -> tuple[int, str]:
+    """A column to keep, and its name in the file."""
     if header is None:
         raise DataError("the columns have no names for --keep; --columns gives them")
     if (column := header.find([name])) is None:
         raise DataError(f"no column {name} among {', '.join(header.names)}")
-    return column
+    return column, header.names[column]

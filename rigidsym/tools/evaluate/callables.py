@@ -11,13 +11,13 @@ from rigidsym.errors import QuantityError, RequestError
 from rigidsym.kernels.module import KernelModule
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.motion import Motion
-from rigidsym.tools.evaluate.work import Output
+from rigidsym.tools.evaluate.work import ResultColumn
 
 CONVERSIONS = ("quaternion", "from_quaternion", "from_rotation_matrix")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Argument:
+class FunctionArgument:
     """A vector or matrix that a function takes, with a name and a unit for each component."""
 
     name: str
@@ -26,8 +26,8 @@ class Argument:
     shape: tuple[int, ...] = (-1,)
 
 
-_QUATERNION = Argument(name="quaternion", names=("qw", "qx", "qy", "qz"), units=("",) * 4)
-_MATRIX = Argument(
+_QUATERNION = FunctionArgument(name="quaternion", names=("qw", "qx", "qy", "qz"), units=("",) * 4)
+_MATRIX = FunctionArgument(
     name="matrix",
     names=tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)),
     units=("",) * 9,
@@ -36,13 +36,13 @@ _MATRIX = Argument(
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Functions:
-    """Functions of one module, their arguments, and the columns of their results."""
+class Callables:
+    """Callables of one module, their arguments, and the columns of their results."""
 
     kernels: KernelModule
     calls: tuple[tuple[str, tuple[str, ...]], ...]  # each with the names of its arguments
-    arguments: tuple[Argument, ...]  # of all of them
-    outputs: tuple[Output, ...]
+    arguments: tuple[FunctionArgument, ...]  # of all of them
+    outputs: tuple[ResultColumn, ...]
 
 
 def derived_for(names: Sequence[str]) -> tuple[str, ...]:
@@ -50,7 +50,7 @@ def derived_for(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name not in CONVERSIONS) or ("rotation_matrix",)
 
 
-def functions_of(motion: Motion, names: Sequence[str], target: str, *, degrees: bool) -> Functions:
+def functions_of(motion: Motion, names: Sequence[str], target: str, *, degrees: bool) -> Callables:
     """Some functions of a motion, which has derived what they need.
 
     Raises QuantityError for an unknown name, and RequestError for a quantity without inputs.
@@ -61,16 +61,16 @@ def functions_of(motion: Motion, names: Sequence[str], target: str, *, degrees: 
     calls = tuple((name, _inputs(chosen, kernels, name)) for name in names)
     wanted = {argument for _, taken in calls for argument in taken}
     known = [
-        *(Argument(name=a.name, names=a.names, units=a.units) for a in chosen.arguments),
+        *(FunctionArgument(name=a.name, names=a.names, units=a.units) for a in chosen.arguments),
         _QUATERNION,
         _MATRIX,
     ]
     outputs = tuple(
-        Output(name, unit, degrees and is_angle(unit))
+        ResultColumn(name, unit, degrees and is_angle(unit))
         for function in names
         for name, unit in _results(chosen, function)
     )
-    return Functions(
+    return Callables(
         kernels=kernels,
         calls=calls,
         arguments=tuple(argument for argument in known if argument.name in wanted),

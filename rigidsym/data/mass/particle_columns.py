@@ -20,7 +20,7 @@ _AXES = ("x", "y", "z")
 _MASSES = ("m", "mass", "masses")
 
 
-class Particles(NamedTuple):
+class ParticleBlock(NamedTuple):
     """Some particles, in kg and m."""
 
     masses: Array | None  # (n,); None: 1 kg each
@@ -85,7 +85,7 @@ class ParticleColumns:
 
     def read(
         self, reader: TableReader, start: int = 0, stop: int | None = None
-    ) -> Iterator[Particles]:
+    ) -> Iterator[ParticleBlock]:
         """Blocks of the particles of a table, or of some rows of an array."""
         bounds = (start, stop) if isinstance(reader, ArrayReader) else ()
         for chunk in reader.chunks(self.columns, BLOCK, (), *bounds):
@@ -93,4 +93,4 @@ class ParticleColumns:
             if any(factor != 1 for factor in self.factors):
                 table *= np.array(self.factors)[:, None]
             masses = table[3] if len(table) == 4 else None
-            yield Particles(masses, table[:3], int(chunk.rows[0]), chunk.share)
+            yield ParticleBlock(masses, table[:3], int(chunk.rows[0]), chunk.share)
