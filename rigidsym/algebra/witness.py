@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import lru_cache
+from operator import add, mul, sub
 from typing import Any
 
 import sympy as sp
@@ -30,7 +31,7 @@ from rigidsym.algebra.ring import Monomial
 _BITS = 240  # behind the point of the numbers of a check
 _SMALL_BITS = 166  # a number below 2^−166, some 10^−50, is zero
 _POINTS = 3  # at which a claim may be refuted
-Rows = list[list[Any]]
+Rows = Sequence[Sequence[Any]]
 Example = tuple[tuple[sp.Expr, sp.Expr], ...]
 
 
@@ -105,44 +106,20 @@ class Check:
         values = values_of_parts(work, self._generators)
         self._values = [int(work.context.ldexp(value, _BITS)) for value in values]
         self._monomials: dict[Monomial, int] = {}
-        self._known: dict[RingMatrix, Rows] = {}
 
-    def disagrees(self, residual: RingMatrix) -> bool:
-        """Whether a matrix that the ring takes for zero is certainly not zero here."""
+    def disagrees(self, residual: RingMatrix, known: dict[RingMatrix, Rows]) -> bool:
+        """Whether a matrix that the ring takes for zero is certainly not zero here.
+
+        `known` remembers the values of matrices from one claim to the next.
+        """
         small = 1 << (_BITS - _SMALL_BITS)
-        rows = self._rows(residual, self._known, self._element, lambda a, b: (a * b) >> _BITS)
-        self._known.clear()
+        rows = _values(residual, known, self._element, _shifted)
         if all(-small < entry < small for row in rows for entry in row):
             return False
         work = self._configuration.intervals(self._generators)
         values = values_of_parts(work, self._generators)
-        bounds = self._rows(residual, {}, lambda e: value_of(e, values, work), lambda a, b: a * b)
+        bounds = _values(residual, {}, lambda e: value_of(e, values, work), lambda entry: entry)
         return any(0 not in work.number(entry) for row in bounds for entry in row)
-
-    def _rows(
-        self,
-        matrix: RingMatrix,
-        known: dict[RingMatrix, Rows],
-        element: Callable[[PolyElement], Any],
-        times: Callable[[Any, Any], Any],
-    ) -> Rows:
-        """The values of a matrix, from those of the matrices that it was made of."""
-        if matrix in known:
-            return known[matrix]
-        if matrix.origin is None:
-            found = [[element(entry) for entry in row] for row in matrix.rows]
-        else:
-            sign, (first, *others) = matrix.origin
-            rows = self._rows(first, known, element, times)
-            if sign == "T":
-                found = [list(row) for row in zip(*rows, strict=True)]
-            elif sign == "*":
-                factor = element(others[0])
-                found = [[times(entry, factor) for entry in row] for row in rows]
-            else:
-                found = _combined(sign, rows, self._rows(others[0], known, element, times), times)
-        known[matrix] = found
-        return found
 
     def _element(self, element: PolyElement) -> int:
         total = 0
@@ -161,13 +138,42 @@ class Check:
         return value
 
 
-def _combined(sign: str, first: Rows, second: Rows, times: Callable[[Any, Any], Any]) -> Rows:
-    if sign == "@":
-        columns = list(zip(*second, strict=True))
-        return [[sum(map(times, row, column)) for column in columns] for row in first]
-    factor = 1 if sign == "+" else -1
-    pairs = zip(first, second, strict=True)
-    return [[a + factor * b for a, b in zip(*rows, strict=True)] for rows in pairs]
+def _shifted(product: int) -> int:
+    return product >> _BITS
+
+
+def _values(
+    matrix: RingMatrix,
+    known: dict[RingMatrix, Rows],
+    element: Callable[[PolyElement], Any],
+    settled: Callable[[Any], Any],
+) -> Rows:
+    """The values of a matrix from those it was made of; `settled` takes sums of products."""
+    if matrix in known:
+        return known[matrix]
+    found: Rows
+    if matrix.origin is None:
+        found = [list(map(element, row)) for row in matrix.rows]
+    else:
+        sign, (first, *others) = matrix.origin
+        rows = _values(first, known, element, settled)
+        if sign == "T":
+            found = list(zip(*rows, strict=True))
+        elif sign == "*":
+            factor = element(others[0])
+            found = [[settled(entry * factor) for entry in row] for row in rows]
+        else:
+            second = _values(others[0], known, element, settled)
+            if sign == "@":
+                columns = list(zip(*second, strict=True))
+                found = [
+                    [settled(sum(map(mul, row, column))) for column in columns] for row in rows
+                ]
+            else:
+                change = add if sign == "+" else sub
+                found = [list(map(change, *pair)) for pair in zip(rows, second, strict=True)]
+    known[matrix] = found
+    return found
 
 
 def value_of(element: PolyElement, values: Sequence[Any], work: RealValues) -> Any:

@@ -18,7 +18,14 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.rational import Rationals
 from rigidsym.algebra.signs import Bounds, sign_within
-from rigidsym.algebra.witness import Check, Example, Witness, check_for, witness_for
+from rigidsym.algebra.witness import (
+    Check,
+    Example,
+    Rows,
+    Witness,
+    check_for,
+    witness_for,
+)
 from rigidsym.errors import Defect, DerivationError, NotARotation
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof
@@ -68,6 +75,7 @@ class Prover:
         self.subject = subject
         self.codec = codec
         self.witness = self._witness()
+        self._values: dict[RingMatrix, Rows] = {}  # at a real point, of the factors of residuals
 
     def vanishes(
         self, residual: RingMatrix, claim: Formula, *, divided_by: PolyElement | None = None
@@ -134,7 +142,7 @@ class Prover:
 
         Raises Defect if the values disagree.
         """
-        if self.subject.pullback is None and self._check.disagrees(residual):
+        if self.subject.pullback is None and self._check.disagrees(residual, self._values):
             raise Defect(
                 f"{self.subject.name}: {claim.text} is proved, and yet is false at a point; this "
                 "is a defect of rigidsym, please report it"
