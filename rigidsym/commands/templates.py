@@ -15,9 +15,9 @@ from rigidsym.system.files import write_text
 @click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
 def command(folder: Path) -> None:
     """Copy the shipped templates into DIR, to change them there; see --templates of `derive`."""
-    shipped = [f"{name}.jinja" for name in resources.names("templates", ".jinja")]
+    shipped = [f"{name}.jinja" for name in resources.names(resources.NOTES, ".jinja")]
     taken = [name for name in shipped if (folder / name).exists()]
     if taken:
         raise click.ClickException(f"{folder} already has {', '.join(taken)}; nothing was copied")
     for name in shipped:
-        click.echo(write_text(folder / name, resources.text("templates", name)))
+        click.echo(write_text(folder / name, resources.text(resources.NOTES, name)))

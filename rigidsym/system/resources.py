@@ -18,11 +18,12 @@ from rigidsym.system.templates import SandboxedTemplates
 _PACKAGE = Path(__file__).resolve().parent.parent
 _DEPTH = 2  # a template is named by its file, or by its folder and file
 _OWN: ContextVar[Path | None] = ContextVar("own templates", default=None)
+NOTES = "templates/notes"  # those that users may replace
 _HOMES = (_PACKAGE / "_data", _PACKAGE.parent)
 
 
 def folder(kind: str) -> Path:
-    """The folder of one kind, "templates" or "derivations".
+    """The folder of one kind: "templates", "templates/notes" or "derivations".
 
     Raises FileNotFoundError, with the places searched, if the package came without it.
     """
@@ -50,7 +51,7 @@ def overridden_by(own: Path) -> Iterator[None]:
 
     Raises TemplateFault, with their names, if the folder holds none of the templates.
     """
-    known = names("templates", ".jinja")
+    known = names(NOTES, ".jinja")
     if not any((own / f"{name}.jinja").is_file() for name in known):
         listed = ", ".join(f"{name}.jinja" for name in known)
         raise TemplateFault(f"{own} holds none of the templates: {listed}")
@@ -72,8 +73,8 @@ def environment(**options: Any) -> SandboxedTemplates:
 
 
 def template(name: str) -> tuple[str, str]:
-    """(text, file) of one template: "note.tex.jinja", the user's own if there is one, or one of a
-    target of kernels, "numpy/module.py.jinja", which is always the shipped one.
+    """(text, file) of one template: "note.tex.jinja" of a note, the user's own if there is one, or
+    of another folder, "numpy/module.py.jinja", which is always the shipped one.
 
     Raises FileNotFoundError if there is none and for a name that leads out of the folder, and
     UnicodeDecodeError if it is not text.
@@ -81,6 +82,8 @@ def template(name: str) -> tuple[str, str]:
     path = Path(name)
     if path.is_absolute() or ".." in path.parts or len(path.parts) > _DEPTH:
         raise FileNotFoundError(f"{name} is not the name of a file among the templates")
-    own = _OWN.get() if len(path.parts) == 1 else None
-    path = own / name if own is not None and (own / name).is_file() else folder("templates") / name
+    is_of_notes = len(path.parts) == 1
+    own = _OWN.get() if is_of_notes else None
+    shipped = folder(NOTES if is_of_notes else "templates") / name
+    path = own / name if own is not None and (own / name).is_file() else shipped
     return path.read_text(encoding="utf-8"), str(path)

@@ -103,8 +103,8 @@ def test_a_folder_without_templates_is_an_error(tmp_path: Path):
 
 
 def test_the_shipped_templates_are_short():
-    for name in resources.names("templates", ".jinja"):
-        assert len(resources.text("templates", f"{name}.jinja").splitlines()) < 200
+    for name in resources.names(resources.NOTES, ".jinja"):
+        assert len(resources.text(resources.NOTES, f"{name}.jinja").splitlines()) < 200
 
 
 # --- commands ---
@@ -115,7 +115,7 @@ def test_templates_are_copied_out_and_used_again(tmp_path: Path):
     done = run.invoke(commands, ["templates", str(tmp_path / "own")])
     assert done.exit_code == 0, done.output
     copies = {file.name for file in (tmp_path / "own").iterdir()}
-    assert copies == {f"{name}.jinja" for name in resources.names("templates", ".jinja")}
+    assert copies == {f"{name}.jinja" for name in resources.names(resources.NOTES, ".jinja")}
     own = tmp_path / "own" / "note.html.jinja"
     own.write_text(own.read_text("utf-8").replace("</main>", "<p>Mine</p></main>"), "utf-8")
     made = run.invoke(

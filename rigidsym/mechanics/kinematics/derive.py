@@ -103,7 +103,7 @@ class _Kinematics:
     def spin_matrix(self) -> Found:
         spin, symbol = self._shown_spin, claims.spin_of(self._shown_symbol)
         proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol)), *self._composed()]
-        because = "The derivative is multiplied by the transpose; the product is skew"
+        because = "Multiplying the derivative by the transpose gives a skew matrix"
         if self.model.passive:
             operator = claims.is_operator(BODY.omega, symbol, "-")
             proofs.append(self.prove.vanishes(spin + hat(self.values.omega_body), operator))
