@@ -171,3 +171,87 @@ def test_derivatives_of_conversions(angle):
     functions = module("rotation_vector", "jax")
     back = jax.jacobian(lambda v: functions.from_quaternion(functions.quaternion(v)))
     np.testing.assert_allclose(back(angle * np.array([0.6, 0.0, 0.8])), np.eye(3), atol=1e-14)
+
+
+SANITIZED = """
+#include <math.h>
+#include <stdlib.h>
+#include "%s"
+static double value(int k)
+{
+    const double odd[] = {0.0, -0.0, NAN, INFINITY, 1e300, -1e-310, 0.3, 3.14159, -2.0, 1.0, 0.5};
+    return odd[(k * 7 + k / 11) %% 11];
+}
+int main(void)
+{
+    for (int rows = 0; rows < 70; rows += rows < 5 ? 1 : 13) {
+        for (int stride = 1; stride < 3; stride++) {
+%s
+        }
+    }
+    return 0;
+}
+"""
+
+
+def _sanitized_call(name: str, sizes: list[int]) -> str:
+    """A call of the array function, with arrays on the heap of just the size that it may touch."""
+    real, array = ("float", "_arrayf") if name.endswith("f") else ("double", "_array")
+    lines, given = [], []
+    for k, size in enumerate(sizes):
+        row = f"({size} * stride + 1)"
+        length = f"(rows ? (size_t)((rows - 1) * {row} + ({size} - 1) * stride + 1) : 0)"
+        lines.append(f"{real} *a{k} = malloc({length} * sizeof({real}) + 1);")
+        lines.append(
+            f"for (size_t n = 0; n < {length}; n++) a{k}[n] = ({real})value((int)n + rows);"
+        )
+        given += [f"a{k}", row, "stride"]
+    function = name.removesuffix("f") if real == "float" else name
+    lines.append(f"{function}{array}((size_t)rows, {', '.join(given)});")
+    lines += [f"free(a{k});" for k in range(len(sizes))]
+    return "{" + " ".join(lines) + "}"
+
+
+@pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
+@pytest.mark.parametrize("text", ["ZXZ", "axis_angle", CONSTANTS, MIRRORED])
+def test_sanitizers_find_nothing_in_conversions(text, tmp_path):
+    """Odd sizes, offsets, steps and strides, with zeros, NaN and infinities among the inputs."""
+    source = motion(text).kernels("c", conversions=True).write(tmp_path).with_suffix(".h")
+    declared = re.findall(r"^void (\w+)\(([^;]*\[\d+\])\s*\);", source.read_text(), re.MULTILINE)
+    calls = [
+        _sanitized_call(name, [int(size) for size in re.findall(r"\[(\d+)\]", given)])
+        for name, given in declared
+        if "_from_" in name or "_quaternion" in name
+    ]
+    assert len(calls) == 6  # three functions in two types
+    main = tmp_path / "main.c"
+    main.write_text(SANITIZED % (source.name, "\n".join(calls)), encoding="utf-8")
+    flags = ("-std=c99", "-g", "-O1", "-fsanitize=address,undefined,float-cast-overflow")
+    made = tmp_path / "main"
+    files = (source.with_suffix(".c"), main)
+    command = ("gcc", *flags, "-fno-sanitize-recover=all", *files, "-o", made, "-lm")
+    subprocess.run(command, check=True)
+    subprocess.run([made], check=True)
+
+
+@pytest.mark.parametrize("target", ["numpy", "c", "numba"])
+@pytest.mark.parametrize("text", ["ZXZ", "rotation_vector", CHAIN])
+def test_out_and_threads_change_no_bit(text, target):
+    if TARGETS[target].missing:
+        pytest.skip(f"{target} needs {TARGETS[target].missing}")
+    functions, random = module(text, target), np.random.default_rng(1)
+    q = random.uniform(-3, 3, size=(50_001, 3))
+    p = functions.quaternion(q)
+    matrix = functions.rotation_matrix(q)
+    for name, array in (
+        ("from_quaternion", p),
+        ("from_rotation_matrix", matrix),
+        ("quaternion", q),
+    ):
+        function = getattr(functions, name)
+        expected = function(array)
+        out = np.full(expected.shape[::-1], np.nan).T  # columns side by side
+        assert function(array, out=out, threads=2) is out
+        np.testing.assert_array_equal(out, expected)
+        strided = np.concatenate([array, array], axis=-1)[..., : array.shape[-1]]
+        np.testing.assert_array_equal(function(strided[::-1])[::-1], expected)
