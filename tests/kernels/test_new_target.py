@@ -26,7 +26,7 @@ from rigidsym.kernels.targets.text.infix import infix
 RESERVED = frozenset({"theta"})
 
 
-def render(program, conversions=None):
+def render(program):
     names = {name: name.upper() for name in FUNCTIONS}
     lines = []
     for kernel in program.kernels:
