@@ -81,7 +81,7 @@ class Report:
     figures: tuple[Figure, ...]
     notes: tuple[str, ...] = ()
     data: tuple[dict[str, Cell], ...] = ()  # for programs, where the tables are too coarse
-    documented: Table | None = None  # goes into docs/reference/measured.md, between its marks
+    documented: Table | None = None  # goes into a page of docs/reference/, between its marks
 
     def text(self) -> str:
         parts = [[self.title, "=" * len(self.title)], *(list(t.lines()) for t in self.tables)]

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from benchmarks.measure import Settings
     from benchmarks.report import Report
 
-MEASURED = Path(__file__).resolve().parent.parent / "docs" / "reference" / "measured.md"
+DOCS = Path(__file__).resolve().parent.parent / "docs" / "reference"
+PAGES = {"rosetta": DOCS / "rosetta.md", "kernels": DOCS / "measured.md"}
 NAMES = (
     "derivation",
     "form",
@@ -34,6 +35,7 @@ NAMES = (
     "identify",
     "bodies",
     "notes",
+    "rosetta",
 )
 
 
@@ -52,7 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if given.docs:
         for name, report in reports.items():
             if report.documented is not None:
-                write_table(MEASURED, name, report.documented.markdown())
+                write_table(PAGES[name], name, report.documented.markdown())
     if given.json:
         plain = {name: asdict(report) for name, report in reports.items()}
         whole = {"schema": 1, "machine": machine(), "benchmarks": plain}

@@ -18,6 +18,7 @@ from benchmarks import (
     kernels,
     peers,
     precision,
+    rosetta,
     run,
     sympy_forms,
 )
@@ -302,6 +303,18 @@ def test_wrong_arguments_are_usage_errors(wrong, capsys):
         run.main(wrong)
     assert exit_.value.code == 2
     assert "error: argument" in capsys.readouterr().err
+
+
+# rosetta
+
+
+def test_packages_that_are_installed_are_identified_and_others_left_empty():
+    scipy = next(call for call in rosetta.CALLS if call.package == "scipy")
+    _, _, convention, product = rosetta.row(scipy)
+    assert convention == "xyz extrinsic, active, radians, columns (a, b, c)"
+    assert product == "Rz(c) Ry(b) Rx(a)"
+    missing = rosetta.Call("no-such-package", "no_such_package", "f(a)", lambda module: module)
+    assert rosetta.row(missing) == ("no-such-package", "`f(a)`", "", "")
 
 
 # bodies
