@@ -39,10 +39,11 @@ function treeOf(faces) {
   const plane = faces[faces.length >> 1];
   const tree = { normal: plane.normal, here: [], front: [], back: [] };
   for (const face of faces) {
-    const [front, back] = split(face, plane);
-    if (front.points.length > 2) tree.front.push(front);
-    if (back.points.length > 2) tree.back.push(back);
-    if (face === plane || (!front.points.length && !back.points.length)) tree.here.push(face);
+    // the plane's own face is on it, though rounding may have bent it a little
+    const [front, back] = face === plane ? [null, null] : split(face, plane);
+    if (front?.points.length > 2) tree.front.push(front);
+    if (back?.points.length > 2) tree.back.push(back);
+    if (!front?.points.length && !back?.points.length) tree.here.push(face);
   }
   return { ...tree, front: treeOf(tree.front), back: treeOf(tree.back) };
 }

@@ -155,3 +155,12 @@ def test_what_is_nearer_is_drawn_later_also_where_parts_pierce_each_other():
     assert is_bar[-1]
     assert is_bar[0]  # its other half is behind
     assert sum(is_bar) > len(alone)  # the plate has cut the bar
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_every_shape_can_be_drawn_from_any_side(name):
+    """Also where rounding has bent the faces a little."""
+    shape = SHAPES[name]()
+    for angles in ([0, 0], [90, 0], [37, 58]):
+        frame = Rotation.from_euler("ZX", angles, degrees=True).as_matrix().T
+        assert colors_from_the_back(shape, frame)
