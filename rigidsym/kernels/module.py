@@ -39,9 +39,10 @@ class KernelModule:
         return self.files[self.main]
 
     def load(self) -> ModuleType:
-        """The functions as a Python module, without a file of the user's.
+        """The functions as a Python module, without writing the files.
 
-        Raises MissingTool or MissingExtra where what the target needs for it is not installed.
+        A compiled module is kept in the user's cache folder (XDG_CACHE_HOME), so that each source
+        is compiled once. Raises MissingTool or MissingExtra if a tool or package is not installed.
         """
         return printer(self.target).load(self.name, self.files)
 

@@ -451,3 +451,22 @@ def test_outs_are_refused_as_in_numpy(both):
             plain.angular_velocity_body(q, q, out=out)
         with pytest.raises(expected.type, match=re.escape(str(expected.value))):
             compiled.angular_velocity_body(q, q, out=out)
+
+
+def test_a_source_is_compiled_once_and_kept_in_the_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    kernels = rs.derive("ZXZ", only=["rotation_matrix"]).kernels("c")
+    first = kernels.load()
+    (kept,) = (tmp_path / "rigidsym" / "c").iterdir()
+    monkeypatch.setattr(c_build, "_compile", None)  # nothing is compiled any more
+    again = kernels.load()
+    assert again.__file__ == str(kept / f"{NAME}_c.py")
+    q = [0.1, 0.2, 0.3]
+    np.testing.assert_array_equal(first.rotation_matrix(q), again.rotation_matrix(q))
+
+
+def test_without_a_cache_folder_modules_are_built_all_the_same(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    module = rs.derive("x(phi)", only=["rotation_matrix"]).kernels("c").load()
+    assert module.rotation_matrix([0.0]).tolist() == np.eye(3).tolist()

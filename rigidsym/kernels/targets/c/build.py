@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import atexit
 import os
+import platform
 import shutil
 import subprocess
 import sys
 import sysconfig
 import tempfile
 from collections.abc import Mapping
+from contextlib import suppress
+from hashlib import sha256
 from importlib import import_module, invalidate_caches
 from pathlib import Path
 from types import ModuleType
@@ -62,12 +65,53 @@ def build(source: Path, *, portable: bool = False) -> Path:
 
 
 def load_built(name: str, files: Mapping[str, str]) -> ModuleType:
-    """The module of some files, built in a folder that goes away with the process."""
-    folder = Path(tempfile.mkdtemp(prefix="rigidsym-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    """The module of some files, compiled once a machine and kept in the user's cache folder.
+
+    If that folder cannot be written, the module is built in one that goes away with the process.
+    """
+    try:
+        home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rigidsym" / "c"
+        home.mkdir(parents=True, exist_ok=True)
+        draft = Path(tempfile.mkdtemp(dir=home, prefix="."))
+    except (OSError, RuntimeError):  # no permission, or no home
+        draft = Path(tempfile.mkdtemp(prefix="rigidsym-"))
+        atexit.register(shutil.rmtree, draft, ignore_errors=True)
+        return imported(_built_in(draft, name, files))
+    kept = home / _key(files)
+    try:
+        if not kept.is_dir():
+            _built_in(draft, name, files)
+            with suppress(OSError):  # another process was faster, with the same content
+                draft.rename(kept)
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+    return imported(kept / f"{name}_c.py")
+
+
+def _built_in(folder: Path, name: str, files: Mapping[str, str]) -> Path:
     for file, text in files.items():
         (folder / file).write_text(text, encoding="utf-8")
-    return imported(build(folder / f"{name}.c"))
+    return build(folder / f"{name}.c")
+
+
+def _key(files: Mapping[str, str]) -> str:
+    """The name of the folder of a build: a digest of all that it depends on."""
+    import numpy as np
+
+    program = Path(compiler())
+    state = program.stat()
+    parts = [*files.items(), _FLAGS, _OF_THIS_PROCESSOR, str(program), state.st_mtime_ns]
+    parts += [np.__version__, sysconfig.get_config_var("EXT_SUFFIX"), sys.version, _processor()]
+    return sha256(repr(parts).encode()).hexdigest()[:32]
+
+
+def _processor() -> str:
+    """The instructions that -march=native stands for, as far as the system says."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor()
+    return next((line for line in lines if line.startswith(("flags", "Features"))), "")
 
 
 def imported(module: Path) -> ModuleType:
