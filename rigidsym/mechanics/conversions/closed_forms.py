@@ -78,8 +78,8 @@ def _differences(first: Sequence[sp.Expr], second: Sequence[sp.Expr]) -> Parts:
     return tuple(a - b for a, b in zip(first, second, strict=True))
 
 
-_KEPT = "The sign of the quaternion is kept; from a matrix, the scalar is not negative."
-_SHORT = "The quaternion and its negative give the same, the turn by at most π."
+_KEPT = "The sign of the quaternion is kept; from a matrix, the scalar is at least 0."
+_SHORT = "The quaternion and its negative give the same coordinates, those of a turn by at most π."
 
 
 def _quaternion(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:

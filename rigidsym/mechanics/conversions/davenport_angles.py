@@ -74,8 +74,8 @@ class DavenportAngles:
         return (
             f"{first} and {third} are in (−π, π], {middle} is in [{_text(low)}, {_text(high)}]. "
             f"At a pole, the ends of that interval, only the sum or the difference of {first} and "
-            f"{third} is determined: there {last} is 0. What is within 8 eps (radians) of a pole "
-            "counts as there."
+            f"{third} is determined: there {last} is 0. Orientations within 8 eps (radians) of "
+            "a pole count as poles."
         )
 
 

@@ -237,18 +237,15 @@ def _branch(model: RotationModel, rule: TurnChain) -> Iterator[str]:
             "length π that holds 0 and ends where the triangle is flat."
         )
         if not rule.mirror:
-            yield (
-                "Where only the sum or the difference of the outer angles is determined, the last "
-                "is 0."
-            )
+            yield "If only the sum or difference of the outer angles is determined, the last is 0."
     elif len(rule.solved) == 1:
         yield "The angle of the turn is in (−π, π]."
     else:
         yield "The angles of the turns are in (−π, π]."
     if len(rule.solved) == 2:
-        yield "Where only their sum or their difference is determined, the last is 0."
+        yield "If only their sum or their difference is determined, the last is 0."
     if rule.mirror:
-        yield "Where any outer angle gives the rotation, it is 0."
+        yield "If any outer angle gives the rotation, it is 0."
     if rule.inverse != sp.eye(len(names)) or any(offset != 0 for offset in rule.offsets):
         yield f"From {'them follow' if len(names) > 1 else 'it follows'} {_listed(names)}."
     if rule.kept:
@@ -259,8 +256,8 @@ def _branch(model: RotationModel, rule: TurnChain) -> Iterator[str]:
         )
     if rule.mirror or not rule.is_across:
         yield (
-            "These turns need not reach every rotation: one that is further than √eps (radians) "
-            "from all that they reach gives NaN."
+            "These turns need not reach every rotation: one further than √eps (radians) from all "
+            "reachable ones gives NaN."
         )
 
 

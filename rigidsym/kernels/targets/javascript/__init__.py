@@ -3,7 +3,7 @@
 from rigidsym.kernels.targets import Target
 
 TARGET = Target(
-    about="NAME.mjs: an ES module without dependencies",
+    about="NAME.mjs: an ES module without dependencies; no unwrap",
     ending=".mjs",
     programs=("node",),
     has_single=False,
