@@ -7,6 +7,7 @@ import sympy as sp
 
 import rigidsym as rs
 from rigidsym.errors import BodyError
+from rigidsym.models import solids
 from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.distribution import Composite, Part, Particle, Particles, Solid
 from rigidsym.models.solids import shaped
@@ -93,3 +94,18 @@ def test_plain_numbers_make_a_solid():
 def test_floating_point_moments_are_refused_when_the_body_is_made():
     with pytest.raises(BodyError, match=r"2\.5.* is a floating-point number.*5/2"):
         rs.principal_moments(1, 2, 2.5)
+
+
+def test_a_new_solid_is_one_entry(monkeypatch):
+    def wedge(u, v, w, side, height):
+        return (u, v, w), (u, v, w), ((0, side), (0, side - u), (0, height)), None
+
+    lengths = tuple(
+        solids.Length(key=key, names=(name,), about=key)
+        for key, name in (("side", "a"), ("h", "h"))
+    )
+    entry = solids.Shape(title="Wedge", about="at the origin", lengths=lengths, form=wedge)
+    monkeypatch.setattr(solids, "SHAPES", {**solids.SHAPES, "wedge": entry})
+    body = rs.solid("wedge")
+    assert rs.derive("ZXZ", ["inertia_tensor"], body=body).is_proved
+    assert body.centre == sp.ImmutableMatrix([a / 3, a / 3, h / 2])
