@@ -128,7 +128,7 @@ def test_a_wrong_file_tells_all_faults_and_writes_nothing(tmp_path):
         (("derive", "ZxZ"), 2, "do not mix"),
         (("derive", "ZXZ", "--angles", "a,a,b"), 2, "three different names"),
         (("derive", "ZXZ", "--angles", "phi,theta"), 2, "three different names"),
-        (("derive", "ZXZ", "--angles", "phi,theta,1x"), 2, "'1x' cannot be a name"),
+        (("derive", "ZXZ", "--angles", "phi,theta,1x"), 2, "'1x' is not a valid name"),
         (("derive",), 2, "Missing argument"),
         (("derive", "ZXZ", "--frobnicate"), 2, "No such option"),
         (("run", "no_such_file"), 3, "no such file"),
