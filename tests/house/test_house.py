@@ -16,10 +16,14 @@ from house.figures import (
     ORDER,
     House,
     circles,
+    classes_twice,
     files_beside_folders,
+    files_twice,
     floors,
+    lazy_imports,
     lines,
     upward,
+    walk,
 )
 
 HOUSE = House(Path(rigidsym.__file__).parent)
@@ -104,7 +108,18 @@ def test_the_house_can_be_drawn_on_one_page():
     assert len(files_beside_folders(HOUSE)) <= 7
     assert len(HOUSE.rooms()) <= 20
     assert floors(arrows) <= 10
-    assert len(arrows) <= 80
+    assert len(arrows) <= 90  # the plan had 80, before the rooms `formula` and `simulation`
+
+
+def test_what_the_plan_still_asks_for_does_not_grow():
+    """Goals: at most 25 imports inside functions, no class name twice, 80 files on a walk."""
+    assert len(lazy_imports(HOUSE)) <= 35
+    assert len(classes_twice(HOUSE)) <= 6
+    assert len(files_twice(HOUSE)) <= 6
+
+
+def test_a_derivation_walks_through_few_files(tmp_path):
+    assert walk("derive", "ZXZ", "--out", str(tmp_path)).files <= 120
 
 
 @pytest.mark.parametrize("room", INSIDE)
