@@ -12,6 +12,7 @@ import click
 from rigidsym.commands.command import command as make, message
 from rigidsym.commands.options import names_of
 from rigidsym.data.chunk import Missing
+from rigidsym.data.columns import counted
 from rigidsym.errors import ModelError
 from rigidsym.mechanics.derive import Body
 from rigidsym.models.rotation import RotationModel
@@ -80,7 +81,9 @@ def command(
     named = {"angles": angles, "columns": columns, "keep": keep}
     options |= {key: names_of(text) for key, text in named.items() if text is not None}
     made = evaluated(rotation, file, out, **options)
-    click.echo(f"{made.path}: {made.rows} rows; {', '.join(made.columns)}", err=str(out) == "-")
+    click.echo(
+        f"{made.path}: {counted(made.rows, 'row')}; {', '.join(made.columns)}", err=str(out) == "-"
+    )
 
 
 def evaluated(

@@ -51,3 +51,9 @@ WRITERS = {".npy": _as_npy, ".csv": _as_text, ".parquet": _as_parquet}
 def read(path: Path) -> np.ndarray:
     reader = reader_of(path)
     return np.concatenate([chunk.table for chunk in reader.chunks(range(reader.width))])
+
+
+def velocities(kernel, table: np.ndarray, rows: int) -> np.ndarray:
+    """Ω′ of a log, so many rows at a time: the last bit of a kernel may depend on their number."""
+    parts = [table[start : start + rows] for start in range(0, len(table), rows)]
+    return np.concatenate([kernel(part[:, :3], part[:, 3:]) for part in parts])

@@ -26,7 +26,7 @@ class Input:
         """The argument of each row, (rows, *shape), in the units of the functions."""
         if not self.columns:
             return np.array(self.given, table.dtype).reshape(self.shape)
-        values = table[:, list(self.columns)]
+        values = table[:, self.columns[0] : self.columns[-1] + 1]  # they were read in this order
         if any(factor != 1 for factor in self.factors):
             values = values * np.array(self.factors).astype(table.dtype)
         return values.reshape(len(table), *self.shape)
