@@ -30,6 +30,7 @@ NAMES = (
     "catalogue",
     "cold_start",
     "kernels",
+    "sizes",
     "accuracy",
     "precision",
     "identify",

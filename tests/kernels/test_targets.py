@@ -12,6 +12,7 @@ import sys
 import numpy as np
 import pytest
 
+import rigidsym as rs
 from helpers.target_modules import (
     EPS,
     FOUR,
@@ -214,3 +215,19 @@ def test_a_missing_package_is_named_with_its_extra(monkeypatch):
     with pytest.raises(MissingExtra, match=r"pip install 'rigidsym\[numba\]'"):
         kernels.load()
     assert TARGETS["numba"].missing == "the package numba"
+
+
+@pytest.mark.skipif(bool(TARGETS["numba"].missing), reason=TARGETS["numba"].missing)
+def test_neither_threads_nor_the_place_in_a_batch_change_a_bit_of_numba():
+    motion = rs.derive("rotation_vector", only=["rotation_rate"])
+    rotation_rate = motion.kernels("numba").load().rotation_rate
+    q, q_dot = np.random.default_rng(1).uniform(-3, 3, (2, 100_003, 3))
+    found = rotation_rate(q, q_dot)
+    np.testing.assert_array_equal(rotation_rate(q, q_dot, threads=2), found)
+    np.testing.assert_array_equal(rotation_rate(q[5:], q_dot[5:]), found[5:])
+
+
+def test_a_module_with_no_argument_but_those_of_conversions_is_printed():
+    motion = rs.derive("axis_angle", only=["principal_axes"], body=rs.solid("cylinder"))
+    for target in TARGETS:
+        assert motion.kernels(target, conversions=True).source
