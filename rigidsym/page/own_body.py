@@ -88,11 +88,23 @@ def _solids(what: Distribution) -> Iterator[Solid]:
         yield what
 
 
+def _values_of(
+    symbols: Sequence[sp.Symbol], expressions: Sequence[sp.Expr]
+) -> Callable[..., list[float]]:
+    """The expressions as a function of numbers for the symbols; no text is compiled."""
+
+    def values(*given: float) -> list[float]:
+        known = dict(zip(symbols, map(sp.Float, given), strict=True))
+        return [float(expression.xreplace(known)) for expression in expressions]
+
+    return values
+
+
 def _map(solid: Solid, numbers: Numbers) -> Map:
     """The point of a solid for coordinates that run from 0 to 1."""
-    place = sp.lambdify(solid.coordinates, list(solid.place.xreplace(numbers)), "math")
+    place = _values_of(solid.coordinates, [part.xreplace(numbers) for part in solid.place])
     bounds = [
-        sp.lambdify(solid.coordinates[:k], [sp.S(b).xreplace(numbers) for b in pair], "math")
+        _values_of(solid.coordinates[:k], [sp.S(b).xreplace(numbers) for b in pair])
         for k, pair in enumerate(solid.bounds)
     ]
 
