@@ -13,6 +13,7 @@ from rigidsym.kernels.ir import (
     Argument,
     Call,
     Choice,
+    Compare,
     Guarded,
     Kernel,
     Name,
@@ -26,7 +27,8 @@ from rigidsym.kernels.targets.text.remarks import bound, cost, headline, poles, 
 from rigidsym.kernels.targets.text.statements import calls
 from rigidsym.system import resources
 
-RESERVED = frozenset({*FUNCTIONS, "nan", "l", "O", "I"})  # linters refuse the last three
+_UNWELCOME = ("l", "O", "I")  # linters refuse these names
+RESERVED = frozenset({*FUNCTIONS, *_UNWELCOME, "nan", "max", "min"})
 
 
 def module_from(name: str, source: str) -> ModuleType:
@@ -65,6 +67,8 @@ def where_line(indent: int, name: str, choice: Choice, library: str) -> str:
 def choice_lines(indent: int, name: str, choice: Choice) -> str:
     """x1 = x0 if x0 > 0.0 else 0.0, or the same in three lines."""
     condition, then, otherwise = (infix(part, {}) for part in parts(choice))
+    if extreme := _extreme(choice):
+        return f"{' ' * indent}{name} = {extreme}({otherwise}, {then})"
     line = f"{' ' * indent}{name} = {then} if {condition} else {otherwise}"
     if len(line) <= WIDTH:
         return line
@@ -108,6 +112,17 @@ def unpacked(names: Sequence[str], value: str) -> str:
     left = f"({names[0]},)" if len(names) == 1 else ", ".join(names)
     line = f"    {left} = {value}"
     return line if len(line) <= WIDTH else exploded(4, "(", names, f") = {value}")
+
+
+def _extreme(choice: Choice) -> str:
+    """max or min, if the choice between a and b is max(b, a) or min(b, a), for NaN too."""
+    condition, then, otherwise = parts(choice)
+    if not isinstance(condition, Compare) or condition.relation not in ("<", ">"):
+        return ""
+    sides = parts(condition)
+    if (then, otherwise) not in (sides, sides[::-1]):
+        return ""
+    return "max" if (condition.relation == ">") == (then == condition.left) else "min"
 
 
 # arguments
