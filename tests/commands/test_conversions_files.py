@@ -139,7 +139,7 @@ def test_a_note_shows_them_before_the_proofs(text):
     module = motion.kernels(conversions=True).source
     assert f"Equation ({number}) of the note" in module
     latex = motion.note(conversions=True).latex()
-    assert r"4\,\mathbf{p}\mathbf{p}^{\mathsf T}" in latex
+    assert r"4 \mathbf{p}\,\mathbf{p}^{\mathsf T}" in latex
     is_offered = motion.conversions.inverse is not None
     assert (r"from\_\allowbreak quaternion" in latex) is is_offered
     without = [section.title for section in motion.note().document.sections]

@@ -143,7 +143,7 @@ def test_the_notebook_says_what_the_markdown_says():
 def test_the_program_of_a_notebook_runs_beside_its_module(tmp_path: Path, sequence):
     motion = derived(sequence)
     (tmp_path / f"{motion.name}.py").write_text(motion.kernels().source, encoding="utf-8")
-    cells = nbformat.reads(motion.note().notebook(), as_version=4).cells
+    cells = nbformat.reads(motion.note(style="audit").notebook(), as_version=4).cells
     (program,) = (cell.source for cell in cells if cell.cell_type == "code")
     *lines, last = program.splitlines()
     code = "\n".join([*lines, f"print(repr({last}))"])

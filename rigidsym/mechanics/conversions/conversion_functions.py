@@ -290,7 +290,7 @@ def _of_rotation_vector(derivation: Derivation, number_in_note: int) -> Conversi
         [ConversionInput(argument=q)],
         values,
         [Where(none, sp.S.One, sp.cos(length / 2)), *(factor * part for part in q.symbols)],
-        "unit quaternion of the rotation, scalar first: cos n/2 and v sin(n/2)/n",
+        "unit quaternion of the rotation, scalar first: cos(n/2) and v sin(n/2)/n",
         f"Equation ({number_in_note}) of the note; accurate at every length.",
     )
 

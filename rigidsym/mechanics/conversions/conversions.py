@@ -200,7 +200,7 @@ def _step_of_turns(model: RotationModel) -> Step:
         model,
         codec,
         shown,
-        "Each turn by β about e is the quaternion cos β/2 + e sin β/2; they are multiplied from "
+        "Each turn by β about e is the quaternion cos(β/2) + e sin(β/2); they are multiplied from "
         "left to right.",
     )
 
@@ -250,9 +250,9 @@ def _by_turns(model: RotationModel, rule: DavenportAngles) -> InverseConversion:
         rule=rule,
         because="C is the fixed turn about the second axis that takes the first to the third. In "
         "the frame of the first two axes and their cross product, the quaternion of R C is "
-        "κ (cos β′/2 cos σ, cos β′/2 sin σ, sin β′/2 cos δ, sin β′/2 sin δ): β′ is the middle "
+        "κ (cos(β′/2) cos σ, cos(β′/2) sin σ, sin(β′/2) cos δ, sin(β′/2) sin δ): β′ is the middle "
         "angle and that of C, σ half the sum and δ half the difference of the outer angles. "
-        "So σ = atan2(a₁, a₀), δ = atan2(a₃, a₂), and tan β′/2 is the quotient of the lengths of "
+        "So σ = atan2(a₁, a₀), δ = atan2(a₃, a₂), and tan(β′/2) is the quotient of the lengths of "
         "(a₂, a₃) and (a₀, a₁).",
         branch=rule.branch,
         proofs=_vanishing(model, davenport_claims(model, rule)),

@@ -26,8 +26,8 @@ class Half:
     """p± and m±, in one plane, by their components along a vector of it and across."""
 
     given: Vector  # of p±
-    by_cosine: Vector  # of m±, the coefficients of cos β/2
-    by_sine: Vector  # the coefficients of sin β/2
+    by_cosine: Vector  # of m±, the coefficients of cos(β/2)
+    by_sine: Vector  # the coefficients of sin(β/2)
     square: sp.Expr  # of the vector's length
 
     def compared(self, turned: Vector) -> Vector:
@@ -149,7 +149,7 @@ def middle_of_half(
     """The one of the triangle's two middle angles for which the fixed half of p is that of m.
 
     Returns the angle, and how far the fixed half is from what the turns reach. The components of
-    m± are a matrix times cos β/2 and sin β/2: an ellipse. By its first component alone follows a
+    m± are a matrix times cos(β/2) and sin(β/2): an ellipse. By its first component alone follows a
     third angle to choose from, for the triangle is none where e₂ is e₁ or e₃. Then steps of least
     squares (Gauss, Newton) compare the fixed halves, and the lengths of the free ones, which tell
     more where these are short.
