@@ -55,6 +55,8 @@ def _compute(result, leading, block, scalar, arrays, shape, out, threads):
 
 def _place(result, values, shape):
     """Write entries, one array each, to where they belong."""
+    if len(shape) == 2 and result.flags.c_contiguous:
+        result, shape = result.reshape(*result.shape[:-2], prod(shape)), shape[:1]
     if len(shape) == 1:
         for k, value in enumerate(values):
             result[..., k] = value
