@@ -6,6 +6,7 @@ those that shrink to lines and those that meet, as at the angles 0 and 2π.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice, pairwise, permutations, product
 from math import hypot, isfinite
@@ -19,6 +20,7 @@ from rigidsym.page.shapes import BLUE, BRONZE, GOLD, GREY, HOLE, RED, Color, Fac
 
 Numbers = Mapping[sp.Symbol, sp.Float]
 Map = Callable[..., Vector]
+Evaluator = Callable[[Sequence[float]], float]
 
 _PALETTE = (BLUE, GOLD, GREY, RED, BRONZE)
 _SIZE = 0.95  # of the body drawn, from its centre of mass
@@ -26,6 +28,7 @@ _LENGTHS = (1.0, 0.22, 0.3, 1.4, 0.6, 0.15, 0.8)  # of parameters without a valu
 _TWO_LENGTHS = (0.6, 1.0)
 _MOST_TRIES = 500
 _ROUND, _CURVED = 20, 8  # divisions of a coordinate within sines, and of any other that bends
+_IN_MATH = {"Abs": "fabs"}  # the functions that Python's math names otherwise
 _THICK = 0.03  # half the width of a line
 _PARTICLE = 0.09  # radius
 
@@ -88,35 +91,43 @@ def _solids(what: Distribution) -> Iterator[Solid]:
         yield what
 
 
-def _values_of(
-    symbols: Sequence[sp.Symbol], expressions: Sequence[sp.Expr]
-) -> Callable[..., list[float]]:
-    """The expressions as a function of numbers for the symbols; no text is compiled."""
-
-    def values(*given: float) -> list[float]:
-        known = dict(zip(symbols, map(sp.Float, given), strict=True))
-        return [float(expression.xreplace(known)) for expression in expressions]
-
-    return values
-
-
 def _map(solid: Solid, numbers: Numbers) -> Map:
     """The point of a solid for coordinates that run from 0 to 1."""
-    place = _values_of(solid.coordinates, [part.xreplace(numbers) for part in solid.place])
+    places = [_evaluator(part.xreplace(numbers), solid.coordinates) for part in solid.place]
     bounds = [
-        _values_of(solid.coordinates[:k], [sp.S(b).xreplace(numbers) for b in pair])
-        for k, pair in enumerate(solid.bounds)
+        [_evaluator(sp.S(bound).xreplace(numbers), solid.coordinates) for bound in pair]
+        for pair in solid.bounds
     ]
 
     def point(*shares: float) -> Vector:
         values: list[float] = []
-        for share, bound in zip(shares, bounds, strict=True):
-            low, high = bound(*values)
+        for share, pair in zip(shares, bounds, strict=True):
+            low, high = (bound(values) for bound in pair)
             values.append(low + share * (high - low))
-        x, y, z = place(*values)
+        x, y, z = (place(values) for place in places)
         return (x, y, z)
 
     return point
+
+
+def _evaluator(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> Evaluator:
+    """The value of an expression in floats, for values of the symbols in their order."""
+    if expression.is_number:
+        number = float(expression)
+        return lambda _: number
+    if expression.is_Symbol:
+        place = symbols.index(expression)
+        return lambda values: values[place]
+    parts = [_evaluator(part, symbols) for part in expression.args]
+    if expression.is_Add:
+        return lambda values: sum(part(values) for part in parts)
+    if expression.is_Mul:
+        return lambda values: math.prod(part(values) for part in parts)
+    if expression.is_Pow:
+        base, exponent = parts
+        return lambda values: base(values) ** exponent(values)
+    function = getattr(math, _IN_MATH.get(expression.func.__name__, expression.func.__name__))
+    return lambda values: function(*(part(values) for part in parts))
 
 
 def _is_proper(solid: Solid, numbers: Numbers) -> bool:
