@@ -46,7 +46,7 @@ def test_kernels_give_what_the_derivation_says(text):
         vectors = [motion.argument(name) for name in step.quantity.inputs]
         given = [np.array([float(values[s]) for s in vector.symbols]) for vector in vectors]
         found = getattr(module, step.quantity.name)(*[np.stack([g, g]) for g in given])
-        exact = np.array(evaluate(step.expression, values).tolist(), dtype=float)
+        exact = np.array(evaluate(motion.spelled(step.expression), values).tolist(), dtype=float)
         assert found.shape == (2, *step.shape)
         np.testing.assert_allclose(found[1].reshape(exact.shape), exact, rtol=1e-12, atol=1e-12)
 
