@@ -55,7 +55,7 @@ class MathmlPen(SheetPen):
     def spelt_sign(self, character: str, is_binary: bool) -> str:
         is_close = (not is_binary and character not in ",;") or character in "/·"
         space = ' lspace="0" rspace="0"' if is_close else ""
-        return f"<mo{space}>{character}</mo>"
+        return f"<mo{space}>{escape(character)}</mo>"
 
     def spelt_gap(self, before: Formula, after: Formula, is_thin: bool) -> str:
         return (

@@ -162,7 +162,7 @@ def test_vectors_are_printed_as_vectors():
     assert "Ω = v̇ + ((1 − cos n)/n²) v × v̇ + ((n − sin n)/n³) v × (v × v̇)" in shown
     assert "The vector is v = (v₁, v₂, v₃)." in shown
     assert "The length |v| is written n, so that n² = v·v and n \u1e45 = v·v\u0307." in shown
-    assert r"\mathbf{v}\times(\mathbf{v}\times\dot{\mathbf{v}})" in motion.note().latex()
+    assert r"\mathbf{v} \times (\mathbf{v} \times \dot{\mathbf{v}})" in motion.note().latex()
     assert "The vector is" not in show(motion_of("lecture_angles"), width=120)
 
 

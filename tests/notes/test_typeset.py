@@ -72,13 +72,13 @@ def test_chains_compile_without_a_warning(axis):
     [
         ("[3,1,-1](psi) [0,-2,3](roll_rate) [2,1,-2](theta)", "Written out, the components"),
         ("[3,-1,-3](phi + pi/6) [-3,3,-3](theta)", r"{\freely\begin{align*}"),
-        ("davenport", r"from\_\allowbreak quaternion(\allowbreak p, parameters)"),
+        ("davenport", r"from\_\allowbreak quaternion(\allowbreak quaternion, parameters)"),
     ],
 )
 def test_what_a_page_has_no_room_for_goes_on_on_the_next(text, says):
     """Displays higher than a page, names in the text, words of which no part is in the fonts."""
     motion = rs.derive(rotation_from(text, passive=True))
-    written = motion.note(conversions=True).latex()
+    written = motion.note(conversions=True, style="audit").latex()
     assert says in written
     assert "[U+" not in written
     assert typeset(written).warnings == ()

@@ -20,7 +20,7 @@ from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.formula.scalars import formula_of, matrix_of
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
-BOX = 1.05  # ems that the box around a result takes
+BOX = 0.96  # ems that the box around a result takes
 
 Done = Literal["", "abbreviated", "listed"]
 
