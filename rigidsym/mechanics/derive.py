@@ -94,17 +94,20 @@ def derive(
             of_motion, integrals = _of_forces(model, whole, forces, only)
             found |= of_motion
             arguments = {**arguments, **{a.name: a for a in arguments_of_motion(model)}}
-    definitions = turns.definitions([step.expression for step in found.values()]) if turns else ()
+    has_rates = not only or not OF_RATES.isdisjoint(only)
+    singularities = _singularities(values, turns) if has_rates else None
+    named = [*(step.expression for step in found.values())]
+    named += singularities.minors if singularities else ()
+    definitions = turns.definitions(named) if turns else ()
     constants = set(arguments["parameters"].symbols) if "parameters" in arguments else set()
     constants |= _resting_on(constants, definitions)
-    has_rates = not only or not OF_RATES.isdisjoint(only)
     return Derivation(
         name=model.name,
         title=model.title,
         model=model,
         arguments=tuple(arguments.values()),
         steps=tuple(_numbered(found, _table(values), constants)),
-        singularities=_singularities(values, turns) if has_rates else None,
+        singularities=singularities,
         body=whole,
         definitions=definitions,
         first_integrals=integrals,

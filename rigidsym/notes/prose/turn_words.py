@@ -117,7 +117,7 @@ def sum_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
         )
     )
     yield Equation(sides=(sum_of_turns(model, letters),))
-    if len(model.turns) > _MOST_WRITTEN:
+    if len(model.turns) > _MOST_WRITTEN or any(turn.components for turn in model.turns):
         return
     yield Paragraph(
         ("Each axis has been moved by the turns to its left. In space components the axes are",)
