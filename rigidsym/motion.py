@@ -112,9 +112,9 @@ class Motion(Derivation):
         """The motion from t = 0 to `t_end` seconds, with the drift of its first integrals.
 
         `initial` holds coordinates and rates by name (theta, theta_dot), `parameters` every
-        constant; for the options see `rigidsym.simulation.integrate.simulate`.
+        constant; for the options see `rigidsym.simulation.solver.simulate`.
         """
-        from rigidsym.simulation.integrate import simulate
+        from rigidsym.simulation.solver import simulate
 
         return simulate(self, initial, parameters, t_end, **options)
 

@@ -157,10 +157,10 @@ def _of_forces(
     model: RotationModel, body: RigidBody, forces: Forces, only: Collection[str]
 ) -> tuple[dict[str, Found], tuple[FirstIntegral, ...]]:
     """The equations of motion, and what is constant along it."""
-    from rigidsym.mechanics.dynamics.derive import Motion
+    from rigidsym.mechanics.dynamics.derive import EquationsOfMotion
     from rigidsym.mechanics.dynamics.lagrange import Lagrange
 
-    motion = Motion(Lagrange(model, body, forces))
+    motion = EquationsOfMotion(Lagrange(model, body, forces))
     found = dict(motion.steps([n for n in DYNAMICS_QUANTITIES if not only or n in only]))
     return found, tuple(motion.first_integrals())
 

@@ -10,7 +10,7 @@ from sympy.physics.mechanics import LagrangesMethod
 
 import rigidsym as rs
 from helpers.witness import agree, evaluate, mp
-from rigidsym.mechanics.dynamics.derive import Motion
+from rigidsym.mechanics.dynamics.derive import EquationsOfMotion
 from rigidsym.mechanics.dynamics.lagrange import Lagrange
 from rigidsym.models.forces import Forces
 
@@ -137,7 +137,7 @@ def test_a_wrong_bias_is_refuted():
     work = Lagrange(rs.EulerAngles("ZXZ"), rs.principal_moments(A, A, C), Forces())
     work.gyroscopic = work.gyroscopic.scale(work.ring.one + work.ring.one)
     with pytest.raises(rs.RigidsymError, match="is false"):
-        Motion(work).bias_vector()
+        EquationsOfMotion(work).bias_vector()
 
 
 @pytest.mark.parametrize(

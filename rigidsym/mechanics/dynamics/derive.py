@@ -23,7 +23,7 @@ from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import dynamics as claims
 
 
-class Motion:
+class EquationsOfMotion:
     """The steps of one rotation, one body and the forces on it."""
 
     def __init__(self, work: Lagrange) -> None:
@@ -179,6 +179,6 @@ class Motion:
                     )
 
 
-_STEPS: Mapping[str, Callable[[Motion], Found]] = MappingProxyType(
-    {name: getattr(Motion, name) for name in claims.DYNAMICS_QUANTITIES}
+_STEPS: Mapping[str, Callable[[EquationsOfMotion], Found]] = MappingProxyType(
+    {name: getattr(EquationsOfMotion, name) for name in claims.DYNAMICS_QUANTITIES}
 )
