@@ -13,10 +13,10 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
-from rigidsym.tools.identify.identify import identify
 
 from benchmarks.measure import Settings
 from benchmarks.report import Cell, Column, Report, Table
+from rigidsym.tools.identify.identification import identify
 
 A, B, C = 0.3, 0.9, -1.4  # angles, in radians, that no symmetry confuses
 

@@ -120,7 +120,7 @@ class Motion(Derivation):
 
     def page(self, *, with_kernels: bool = True) -> str:
         """One HTML file that needs no network: the note, and a figure with sliders."""
-        from rigidsym.page.page import print_page
+        from rigidsym.page.print_page import print_page
 
         return print_page(self, self.note(with_kernels=with_kernels).document)
 

@@ -190,7 +190,7 @@ def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
         if ending in spec.note or (ending == "tex" and PDF in spec.note):
             yield f"{spec.name}.{ending}", note.render(ending)
     if PAGE in spec.note:
-        from rigidsym.page.page import print_page
+        from rigidsym.page.print_page import print_page
 
         yield page_name(spec.name), print_page(motion, note.document)
 

@@ -17,7 +17,7 @@ from rigidsym.commands.options import (
     with_options,
 )
 from rigidsym.commands.page import write_files
-from rigidsym.kernels.targets.c.build import build
+from rigidsym.kernels.targets.c.compiling import build
 from rigidsym.pipeline import integrated, read
 
 

@@ -211,7 +211,7 @@ def count(expressions: Iterable[Expression]) -> Operations:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Argument:
+class KernelArgument:
     """An array of inputs and the names of its components, row by row."""
 
     name: str
@@ -243,7 +243,7 @@ class Kernel:
     """
 
     name: str
-    arguments: tuple[Argument, ...]
+    arguments: tuple[KernelArgument, ...]
     assignments: tuple[Assignment, ...]
     outputs: tuple[Expression, ...]
     shape: tuple[int, ...]
@@ -325,7 +325,7 @@ class Unwrapping:
     """How coordinates are made continuous along a trajectory."""
 
     kind: str  # "turns", "quaternion", "axis_angle", "rotation_vector" or "modified_rodrigues"
-    arguments: tuple[Argument, ...]
+    arguments: tuple[KernelArgument, ...]
     remarks: tuple[str, ...]
     # Of turns: their angles from the coordinates, and the coordinates from the angles. Three
     # turns are followed by what the two sets of angles of one rotation are to each other.
@@ -341,7 +341,7 @@ class Program:
     title: str
     convention: tuple[str, ...]  # sentences
     source: str  # where the rotation comes from
-    arguments: tuple[Argument, ...]  # all that occur, in the order of a signature
+    arguments: tuple[KernelArgument, ...]  # all that occur, in the order of a signature
     kernels: tuple[Kernel, ...]
     remarks: tuple[str, ...] = ()  # paragraphs for the head of the module
     unwrapping: Unwrapping | None = None

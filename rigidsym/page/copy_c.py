@@ -7,11 +7,11 @@ from functools import partial
 
 from rigidsym.kernels.ir import (
     FUNCTIONS,
-    Argument,
     Call,
     Expression,
     Guarded,
     Kernel,
+    KernelArgument,
     Name,
     Number,
     names_in,
@@ -19,7 +19,7 @@ from rigidsym.kernels.ir import (
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.text import statements
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.layout import WIDTH, bracketed, filled
+from rigidsym.kernels.targets.text.python_layout import WIDTH, bracketed, filled
 from rigidsym.page.copy_series import orders_of
 
 _show = partial(infix, functions={name: name for name in FUNCTIONS})
@@ -65,7 +65,7 @@ def _expressions(kernel: Kernel) -> Iterator[Expression]:
     yield from kernel.outputs
 
 
-def _taken(argument: Argument, used: set[str]) -> Iterator[str]:
+def _taken(argument: KernelArgument, used: set[str]) -> Iterator[str]:
     """The components that are used; a compiler warns of others."""
     taken = [
         f"{name} = {argument.name}[{place}]"

@@ -9,7 +9,7 @@ from rigidsym.kernels.ir import FUNCTIONS, Call, Guarded, Kernel, Name, Number
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.text import python, statements
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.layout import (
+from rigidsym.kernels.targets.text.python_layout import (
     WIDTH,
     assignment_lines,
     bracketed,

@@ -8,7 +8,7 @@ from textwrap import fill
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.targets.text import statements
-from rigidsym.kernels.targets.text.layout import WIDTH
+from rigidsym.kernels.targets.text.python_layout import WIDTH
 from rigidsym.system import resources
 
 _TEMPLATES = {"python": "page/series.py.jinja", "c": "page/series.c.jinja"}

@@ -28,12 +28,12 @@ def locate(text: str) -> dict[Path, int]:
 
     `text` must be valid TOML.
     """
-    reader = _Reader(text)
+    reader = _LineReader(text)
     reader.document()
     return reader.lines
 
 
-class _Reader:
+class _LineReader:
     def __init__(self, text: str) -> None:
         self.lines: dict[Path, int] = {}
         self._text = text

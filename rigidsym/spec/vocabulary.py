@@ -18,7 +18,7 @@ class NotationChoice(Protocol):
         """Raise ModelError for a model whose names could be confused with this notation."""
 
 
-class DerivativeRequest(Protocol):
+class RequestedDerivative(Protocol):
     """A derivative of a quantity; its text is "QUANTITY by VECTOR"."""
 
     @property
@@ -35,4 +35,4 @@ class Vocabulary:
     styles: tuple[str, ...]  # of a note, the default first
     notation: Callable[..., NotationChoice]  # raises ModelError for names of frames
     choices: Mapping[str, tuple[str, ...]]  # of [notation], the default first
-    derivative: Callable[[str], DerivativeRequest]  # raises KernelError
+    derivative: Callable[[str], RequestedDerivative]  # raises KernelError

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from rigidsym.errors import TemplateFault
-from rigidsym.system.templates import SandboxedTemplates
+from rigidsym.system.sandbox import SandboxedTemplates
 
 _PACKAGE = Path(__file__).resolve().parent.parent
 _DEPTH = 2  # a template is named by its file, or by its folder and file

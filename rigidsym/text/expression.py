@@ -4,7 +4,7 @@ The text is read in three passes. `_tokens` cuts it into numbers, names and oper
 every other character. `_check_order` checks that values and operators alternate and that brackets
 close. The rest goes to Python's ast with each name and number masked, since Python would take
 `lambda` for a keyword, normalise letters (NFKC) and round 0.1; the walk finds the original text of
-a name or number by its column. The arithmetic is that of `rigidsym.text.limits`.
+a name or number by its column. The arithmetic is that of `rigidsym.text.bounds`.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import NamedTuple
 import sympy as sp
 
 from rigidsym.errors import ExpressionError
-from rigidsym.text.limits import FUNCTIONS, Sized, apply, operate
+from rigidsym.text.bounds import FUNCTIONS, Sized, apply, operate
 from rigidsym.text.names import GREEK_LETTERS, offer, spelled
 
 MOST_CHARACTERS = 2000
@@ -57,7 +57,7 @@ def parse_expression(text: str, names: Mapping[str, sp.Expr]) -> sp.Expr:
     """The expression in a text, with the declared names, `pi` and numbers.
 
     Numbers are exact (0.1 is 1/10), Greek letters are short for their names (φ for phi), and
-    exponents are rational numbers. Known functions: `rigidsym.text.limits.FUNCTIONS`.
+    exponents are rational numbers. Known functions: `rigidsym.text.bounds.FUNCTIONS`.
 
     Raises ExpressionError, with the column, for any other text and for one that is too large.
     """

@@ -10,7 +10,7 @@ from difflib import get_close_matches
 import sympy as sp
 
 from rigidsym.errors import ExpressionError
-from rigidsym.text.limits import FUNCTIONS
+from rigidsym.text.bounds import FUNCTIONS
 
 _LONGEST = 40
 _FEW = 10  # known names that a message lists

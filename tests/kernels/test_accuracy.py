@@ -63,7 +63,7 @@ def test_large_angles_are_right_or_refused(target, size):
         symbols = [s for vector in step.quantity.inputs for s in few().argument(vector).symbols]
         for row, *point in zip(functions(target)[name](*arrays), *arrays, strict=True):
             values = dict(zip(symbols, map(mp.mpf, np.concatenate(point).tolist()), strict=True))
-            truth = list(evaluate(motion.spelled(step.expression), values))
+            truth = list(evaluate(few().spelled(step.expression), values))
             if np.isnan(row).any():
                 theta = mp.mpf(float(point[0][1]))
                 assert abs(mp.sin(theta)) <= EPS * abs(theta)

@@ -342,7 +342,7 @@ def test_every_claim_is_proved_and_said(case):
     assert ("need not reach every rotation" in branch) is not case.reaches_all
     assert ("kept at the values given" in branch) is bool(case.kept)
     claims = [proof.claim.text for proof in found.proofs]
-    assert "p₊ = exp(e₁ σ) m₊" in claims
+    assert "p₊ = e^(e₁ σ) m₊" in claims
     rule = found.inverse.rule
     assert any(claim.startswith("R = ") for claim in claims) is bool(rule.before + rule.right)
 

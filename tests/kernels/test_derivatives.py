@@ -313,7 +313,7 @@ def test_an_unknown_quantity_on_the_command_line_is_a_fault_of_usage(tmp_path):
     options = ["--derivative", "angular_velocity:q", "--out", str(tmp_path)]
     done = CliRunner().invoke(commands, ["derive", "ZXZ", *options])
     assert isinstance(done.exception, QuantityError)
-    assert "--derivative: no quantity 'angular_velocity'; did you mean" in str(done.exception)
+    assert "--derivative: no quantity 'angular_velocity'\ndid you mean" in str(done.exception)
     assert not list(tmp_path.iterdir())
 
 

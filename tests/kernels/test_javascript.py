@@ -18,7 +18,7 @@ from helpers.motions import derived
 from helpers.target_modules import FOUR, KINEMATICS, error, given as given_at
 from helpers.witness import evaluate, mp
 from rigidsym.errors import MissingTool
-from rigidsym.kernels.ir import Argument, Kernel, Name, Negative
+from rigidsym.kernels.ir import Kernel, KernelArgument, Name, Negative
 from rigidsym.kernels.targets.javascript import printer as javascript
 from rigidsym.motion import derive
 
@@ -198,7 +198,7 @@ def test_text_in_a_title_stays_in_its_comment():
 
 
 def test_a_component_may_be_called_as_its_vector_is():
-    vector = Argument(name="q", components=("q",), units=("rad",), about="")
+    vector = KernelArgument(name="q", components=("q",), units=("rad",), about="")
     kernel = Kernel(
         name="minus", arguments=(vector,), assignments=(), outputs=(Negative(Name("q")),), shape=()
     )

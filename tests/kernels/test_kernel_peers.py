@@ -89,5 +89,7 @@ def test_two_workers_of_a_cluster_share_the_chunks(tmp_path, monkeypatch):
         client.upload_file(str(path))
         chunked = da.from_array(q, chunks=(100, 3))
         found = da.apply_gufunc(matrix, matrix.signature, chunked, output_dtypes=float)
-        assert_array_equal(found.compute(), matrix(q))
+        # the last bit of a kernel may depend on the number of rows
+        expected = np.concatenate([matrix(q[k : k + 100]) for k in range(0, 1000, 100)])
+        assert_array_equal(found.compute(), expected)
         assert len(client.scheduler_info()["workers"]) == 2

@@ -19,7 +19,7 @@ from rigidsym.kernels.lowering.read import Reader
 from rigidsym.kernels.lowering.schedule import write
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.layout import assignment_lines, bracketed
+from rigidsym.kernels.targets.text.python_layout import assignment_lines, bracketed
 
 A, B, C, D = sp.symbols("a b c d")
 INPUTS = {symbol: symbol.name for symbol in (A, B, C, D)}
@@ -338,7 +338,9 @@ def test_operations_are_counted_as_written():
 
 KERNEL = ir.Kernel(
     name="area",
-    arguments=(ir.Argument(name="q", components=("a", "b"), units=("m", "m"), about="sides"),),
+    arguments=(
+        ir.KernelArgument(name="q", components=("a", "b"), units=("m", "m"), about="sides"),
+    ),
     assignments=(Assignment("x0", Product((Name("a"), Name("b")))),),
     outputs=(Name("x0"),),
     shape=(1,),

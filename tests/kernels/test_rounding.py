@@ -12,7 +12,7 @@ from helpers.errors_of_kernels import SPECIAL
 from helpers.motions import derived
 from helpers.target_modules import EVERY, row_by_row
 from helpers.witness import evaluate, mp
-from rigidsym.kernels.ir import Argument, Assignment, Call, Kernel, Name, Number, Product, Sum
+from rigidsym.kernels.ir import Assignment, Call, Kernel, KernelArgument, Name, Number, Product, Sum
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.lowering.rounding import rounding
 from rigidsym.kernels.targets import TARGETS
@@ -24,7 +24,7 @@ A, B, ONE, TENTH = Name("a"), Name("b"), Number(Fraction(1)), Number(Fraction(1,
 def kernel(*values) -> Kernel:
     """Assignments x0, x1, ... of two inputs; the last one is the output."""
     lines = tuple(Assignment(f"x{k}", value) for k, value in enumerate(values))
-    q = Argument(name="q", components=("a", "b"), units=("", ""), about="")
+    q = KernelArgument(name="q", components=("a", "b"), units=("", ""), about="")
     return Kernel(
         name="k", arguments=(q,), assignments=lines, outputs=(Name(lines[-1].name),), shape=()
     )
@@ -111,4 +111,4 @@ def test_measured_errors_are_within_the_bounds_in_every_target(rotation, target)
     for dtype in (np.float64, np.float32)[: 1 + TARGETS[target].has_single]:
         found = ratios(rs.derive(rotation), target, dtype, 32)
         assert all(ratio <= 1.0 for ratio in found.values()), found
-        assert found["angular_velocity_space"] > 0.04  # the bounds are not idle
+        assert found["angular_velocity_space"] > 0.01  # the bounds are not idle

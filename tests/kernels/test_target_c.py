@@ -20,7 +20,7 @@ from helpers.target_modules import STRICT
 from helpers.witness import mp
 from rigidsym.errors import CheckError, MissingTool
 from rigidsym.kernels.lowering.sincos import reduction, two_over_pi
-from rigidsym.kernels.targets.c import build as c_build
+from rigidsym.kernels.targets.c import compiling as c_build
 from rigidsym.kernels.targets.c.precision import PRECISIONS
 
 REQUIRED = os.environ.get("RIGIDSYM_REQUIRE_COMPILERS") == "1"  # then they fail, not skip

@@ -21,7 +21,7 @@ from helpers.pages import NAME, carried, main_of, note_in, odd_page, page_of, sc
 from rigidsym.commands.cli import commands
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN
-from rigidsym.page.page import MODULES, MOST_BYTES
+from rigidsym.page.print_page import MODULES, MOST_BYTES
 from rigidsym.pipeline import output_of, read_spec
 from rigidsym.system import resources
 

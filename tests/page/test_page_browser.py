@@ -19,7 +19,7 @@ from helpers.pages import OTHERS, carried, copied, main_of, motion_of, note_in, 
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN
-from rigidsym.page.page import MOST_BYTES
+from rigidsym.page.print_page import MOST_BYTES
 from rigidsym.pipeline import output_of, read_spec
 
 DRAWN = ("ZXZ", "YZY", "xyz", "z(phi) x(theta) z(psi) y(delta)", "axis_angle")

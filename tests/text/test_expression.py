@@ -13,8 +13,8 @@ from hypothesis import example, given, settings, strategies as st
 
 from rigidsym.errors import ExpressionError
 from rigidsym.models.so3 import time_function
+from rigidsym.text.bounds import FUNCTIONS, Sized, operate
 from rigidsym.text.expression import MOST_CHARACTERS, parse_expression, parse_turns
-from rigidsym.text.limits import FUNCTIONS, Sized, operate
 
 PHI, THETA, LAMBDA = (time_function(name) for name in ("phi", "theta", "lambda"))
 M, G = sp.symbols("m g", positive=True)

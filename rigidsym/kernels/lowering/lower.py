@@ -105,8 +105,8 @@ def _roots(derivation: Derivation) -> list[sp.Expr]:
     return list(sp.ordered(p for p in powers if p.is_number and p.exp.is_Rational))
 
 
-def _named(vector: Vector, names: Names) -> ir.Argument:
-    return ir.Argument(
+def _named(vector: Vector, names: Names) -> ir.KernelArgument:
+    return ir.KernelArgument(
         name=vector.name,
         components=tuple(names.fresh(name) for name in vector.names),
         units=vector.units,
@@ -190,7 +190,7 @@ class _Lowering:
             unit=function.unit,
         )
 
-    def _taken(self, given: ConversionInput) -> ir.Argument:
+    def _taken(self, given: ConversionInput) -> ir.KernelArgument:
         """An argument of a conversion; the coordinates that are kept are called as in q."""
         name, symbols = given.argument.name, given.argument.symbols
         if name not in self.arguments:

@@ -23,7 +23,7 @@ _LETTERS = ("n", "l", "r")  # one that nothing in the model is called by is take
 
 
 @dataclass(frozen=True, slots=True)
-class Length:
+class VectorLength:
     """The length n of a vector, as a symbol in place of its components."""
 
     components: tuple[sp.Expr, ...]  # functions of time
@@ -52,7 +52,7 @@ class Length:
 
 
 @lru_cache(maxsize=64)
-def length_of(model: RotationModel) -> Length | None:
+def length_of(model: RotationModel) -> VectorLength | None:
     """The length that comes up in the matrix of a model: of its vector, or of all coordinates."""
     if not model.vector:
         return None
@@ -60,7 +60,7 @@ def length_of(model: RotationModel) -> Length | None:
     letter = next(letter for letter in _LETTERS if letter not in taken)
     for components in (model.vector, model.coordinates):
         symbol = _symbol(letter, components, model)
-        length = Length(components, symbol, sp.Symbol(f"{symbol.name}_dot"), letter)
+        length = VectorLength(components, symbol, sp.Symbol(f"{symbol.name}_dot"), letter)
         if any(symbol in length.shortened(entry).free_symbols for entry in model.matrix):
             return length
     return None
@@ -73,7 +73,7 @@ def _symbol(letter: str, components: Sequence[sp.Expr], model: RotationModel) ->
 
 
 @lru_cache(maxsize=4096)
-def _shortened(node: sp.Expr, length: Length) -> sp.Expr:
+def _shortened(node: sp.Expr, length: VectorLength) -> sp.Expr:
     if not node.args or not node.has(*length.components):
         return node
     if node.is_Derivative or node in length.components:

@@ -15,7 +15,7 @@ from rigidsym.formula.symbol_names import named
 from rigidsym.formula.tree import Formula, Symbol
 from rigidsym.mechanics.derivation import Argument
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.formula.lengths import Length, length_of
+from rigidsym.notes.formula.lengths import VectorLength, length_of
 
 Place = tuple[int, int]  # order of the time derivative, index of the component
 
@@ -37,7 +37,7 @@ class Letters:
     names: Mapping[sp.Expr, Formula] = field(default_factory=dict)
     places: Mapping[sp.Expr, Place] = field(default_factory=dict)
     notation: Notation = DEFAULT
-    length: Length | None = None  # written in place of the components that make it up
+    length: VectorLength | None = None  # written in place of the components that make it up
 
     def shortened(self, expression: sp.Expr) -> sp.Expr:
         """What is printed in place of an expression: the same, with the length where it has one."""
@@ -68,7 +68,9 @@ def letters_of(
 
 
 @lru_cache(maxsize=64)
-def _letters(arguments: tuple[Argument, ...], notation: Notation, length: Length | None) -> Letters:
+def _letters(
+    arguments: tuple[Argument, ...], notation: Notation, length: VectorLength | None
+) -> Letters:
     return Letters(
         notation=notation,
         length=length,

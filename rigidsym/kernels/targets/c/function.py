@@ -20,7 +20,7 @@ from rigidsym.kernels.ir import (
 from rigidsym.kernels.targets.c.precision import PRECISIONS, Precision
 from rigidsym.kernels.targets.text import statements
 from rigidsym.kernels.targets.text.infix import infix, literal
-from rigidsym.kernels.targets.text.layout import bracketed
+from rigidsym.kernels.targets.text.python_layout import bracketed
 
 _FUNCTIONS = {name: name for name in FUNCTIONS} | {"choice": "{0} ? {1} : {2}", "nan": "NAN"}
 show = partial(infix, functions=_FUNCTIONS)
@@ -40,7 +40,7 @@ class Taken:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Function:
+class CFunction:
     """The pieces of text that stand for one kernel in the templates."""
 
     inputs: int
@@ -61,13 +61,13 @@ class Function:
         return {"signature": self.signature, "array_signature": self.array_signature}
 
 
-def function(prefix: str, kernel: Kernel) -> Function:
+def function(prefix: str, kernel: Kernel) -> CFunction:
     """The text of a kernel for both precisions; names begin with the prefix."""
     name = f"{prefix}_{kernel.name}"
     places = [f"{a.name}[{k}]" for a in kernel.arguments for k in range(len(a.components))]
     columns = [f"tile[{k}][j]" for k in range(len(places))]
     each = {p.suffix: p for p in PRECISIONS}
-    return Function(
+    return CFunction(
         inputs=len(places),
         outputs=len(kernel.outputs),
         arguments=tuple(_taken(kernel)),

@@ -13,12 +13,12 @@ from types import ModuleType
 from rigidsym.kernels.ir import Kernel, Program
 from rigidsym.kernels.lowering.sincos import two_over_pi
 from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.targets.c.function import Function, function, show
+from rigidsym.kernels.targets.c.function import CFunction, function, show
 from rigidsym.kernels.targets.c.module_files import module_files
 from rigidsym.kernels.targets.c.precision import PRECISIONS
 from rigidsym.kernels.targets.numpy import printer as numpy
 from rigidsym.kernels.targets.text import remarks, statements
-from rigidsym.kernels.targets.text.layout import filled
+from rigidsym.kernels.targets.text.python_layout import filled
 from rigidsym.system import resources
 
 _WORDS = (
@@ -45,7 +45,7 @@ def render(program: Program) -> dict[str, str]:
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
     """The Python module, built in a folder that goes away with the process."""
-    from rigidsym.kernels.targets.c.build import load_built
+    from rigidsym.kernels.targets.c.compiling import load_built
 
     return load_built(name, files)
 
@@ -58,7 +58,7 @@ def _fitted(kernel: Kernel) -> Kernel:
 def _source(
     program: Program,
     kernels: Sequence[Kernel],
-    functions: Sequence[Function],
+    functions: Sequence[CFunction],
 ) -> str:
     calls = [call for kernel in kernels for call in statements.calls_of(kernel).values()]
     orders = [call.order for call in calls if call.order is not None]
@@ -100,7 +100,7 @@ def _words() -> str:
 def _header(
     program: Program,
     kernels: Sequence[Kernel],
-    functions: Sequence[Function],
+    functions: Sequence[CFunction],
 ) -> str:
     about = [*_about(program), *remarks.remarks(kernels), *_beside(program)]
     return _template("c/header.h.jinja").render(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from rigidsym.kernels.targets.text.layout import filled
+from rigidsym.kernels.targets.text.python_layout import filled
 
 WIDTH = 88
 
@@ -33,7 +33,7 @@ class Vector:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Function:
+class JavaScriptFunction:
     """One kernel or conversion, in the pieces that the template places."""
 
     name: str

@@ -14,10 +14,10 @@ from types import ModuleType
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import (
     FUNCTIONS,
-    Argument,
     Call,
     Guarded,
     Kernel,
+    KernelArgument,
     Name,
     Number,
     Program,
@@ -27,7 +27,7 @@ from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.javascript.function import (
     WIDTH,
-    Function,
+    JavaScriptFunction,
     Paragraph,
     Vector,
     comment,
@@ -106,7 +106,7 @@ def _fitted(kernel: Kernel) -> Kernel:
     return narrowed(kernel, _show, line=WIDTH - len("  const ;"), output=room)
 
 
-def _function(kernel: Kernel) -> Function:
+def _function(kernel: Kernel) -> JavaScriptFunction:
     names = Names([*kernel.components, *(a.name for a in kernel.assignments), "out", "at"])
     vectors = tuple(_vector(names.fresh(a.name), a) for a in kernel.arguments)
     places = tuple(names.fresh(f"{vector.name}_at") for vector in vectors)
@@ -119,7 +119,7 @@ def _function(kernel: Kernel) -> Function:
         if name in used
     ]
     given = [f"  out[{placed('at', k)}] = {_show(e)};" for k, e in enumerate(kernel.outputs)]
-    return Function(
+    return JavaScriptFunction(
         name=kernel.name,
         about=comment(_about_kernel(kernel, vectors)),
         vectors=vectors,
@@ -130,7 +130,7 @@ def _function(kernel: Kernel) -> Function:
     )
 
 
-def _vector(name: str, argument: Argument) -> Vector:
+def _vector(name: str, argument: KernelArgument) -> Vector:
     distinct = list(dict.fromkeys(unit or "1" for unit in argument.units))
     units = distinct[0] if len(distinct) == 1 else ", ".join(u or "1" for u in argument.units)
     unit = f" in {units}" if any(argument.units) else ""

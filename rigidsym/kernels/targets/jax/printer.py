@@ -12,7 +12,12 @@ from rigidsym.kernels.ir import FUNCTIONS, Call, Choice, Guarded, Kernel, Progra
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.text import python, remarks, statements
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.layout import WIDTH, assignment_lines, bracketed, docstring
+from rigidsym.kernels.targets.text.python_layout import (
+    WIDTH,
+    assignment_lines,
+    bracketed,
+    docstring,
+)
 from rigidsym.system import resources
 
 TEMPLATE = "jax/module.py.jinja"

@@ -8,7 +8,7 @@ OPTIONS = ("out=None", "threads=1")  # of every function of arrays
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Function:
+class NumpyFunction:
     """The pieces of text that stand for one kernel in the template."""
 
     signature: str

@@ -9,11 +9,11 @@ from types import ModuleType
 from rigidsym.algebra.series import FIRST_SERIES
 from rigidsym.kernels.ir import FUNCTIONS, Call, Choice, Guarded, Kernel, Program
 from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.targets.numpy.function import OPTIONS, Function
+from rigidsym.kernels.targets.numpy.function import OPTIONS, NumpyFunction
 from rigidsym.kernels.targets.numpy.unwrap import unwrap_text
 from rigidsym.kernels.targets.text import python, remarks, statements
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.layout import (
+from rigidsym.kernels.targets.text.python_layout import (
     WIDTH,
     assignment_lines,
     bracketed,
@@ -111,13 +111,13 @@ def _exports(kernels: Sequence[Kernel]) -> Iterator[str]:
         yield f"{kernel.name}_scalar"
 
 
-def _function(kernel: Kernel, at_once: str) -> Function:
+def _function(kernel: Kernel, at_once: str) -> NumpyFunction:
     block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
     given = [python.passed(argument, "np") for argument in kernel.arguments]
     each = ((argument, name) for argument in kernel.arguments for name in argument.components)
     floats = [f"{name}{python.default(argument, '0.0')}" for argument, name in each]
     shape = str(kernel.shape)
-    return Function(
+    return NumpyFunction(
         signature=bracketed(0, f"def {kernel.name}(", [*python.taken(kernel), "*", *OPTIONS], "):"),
         about=docstring(python.about_kernel(kernel), indent=4),
         body=_body(

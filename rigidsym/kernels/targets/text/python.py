@@ -10,19 +10,19 @@ from types import ModuleType
 from rigidsym.algebra.series import series_of, taylor
 from rigidsym.kernels.ir import (
     FUNCTIONS,
-    Argument,
     Call,
     Choice,
     Compare,
     Guarded,
     Kernel,
+    KernelArgument,
     Name,
     Number,
     Program,
     parts,
 )
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.layout import WIDTH, bracketed, exploded
+from rigidsym.kernels.targets.text.python_layout import WIDTH, bracketed, exploded
 from rigidsym.kernels.targets.text.remarks import bound, cost, headline, poles, table
 from rigidsym.kernels.targets.text.statements import calls
 from rigidsym.system import resources
@@ -128,7 +128,7 @@ def _extreme(choice: Choice) -> str:
 # arguments
 
 
-def default(argument: Argument, value: str) -> str:
+def default(argument: KernelArgument, value: str) -> str:
     return f"={value}" if argument.is_optional else ""
 
 
@@ -137,7 +137,7 @@ def taken(kernel: Kernel) -> list[str]:
     return [f"{argument.name}{default(argument, 'None')}" for argument in kernel.arguments]
 
 
-def passed(argument: Argument, library: str) -> str:
+def passed(argument: KernelArgument, library: str) -> str:
     """What a function of arrays passes on: name=value."""
     name = value = argument.name
     if argument.is_matrix:
@@ -159,7 +159,7 @@ def helpers(kernels: Sequence[Kernel], library: str) -> list[str]:
 # tables at the head of a module
 
 
-def entry(argument: Argument) -> str:
+def entry(argument: KernelArgument) -> str:
     """A line of the table of components: "q": ("phi", "theta", "psi"),"""
     names = [f'"{name}"' for name in argument.components]
     line = f'"{argument.name}": {tuple_of(names)},'
