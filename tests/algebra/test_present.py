@@ -197,7 +197,7 @@ def test_a_form_with_another_value_is_not_returned(monkeypatch):
 def test_a_factor_lost_on_the_way_is_seen(monkeypatch):
     def without_bracket(terms, weights):
         return tuple(
-            present.Product(product.coefficient, product.powers)
+            present.FactoredTerm(product.coefficient, product.powers)
             for product in honest(terms, weights)
         )
 
