@@ -187,7 +187,6 @@ def test_parts_of_kernels_find_what_they_look_for():
         kernel_parts.memory(loaded, 20_000),
         kernel_parts.generation(kernels.motion(), ["numpy"], 1),
         kernel_parts.errors(["numpy"], 1),
-        kernel_parts.sizes_of_targets(),
     ):
         (table,), figures = part
         assert table.rows
