@@ -7,9 +7,14 @@ usage, 3 for a file with wrong content, 4 if an outside tool is missing.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import ClassVar
+
+_LONGEST = 40  # letters of a name that a message looks for
+_FEW = 10  # known names that a message lists
+_SHOWN = 3  # of more than a few
 
 
 def printable(text: str) -> str:
@@ -17,6 +22,17 @@ def printable(text: str) -> str:
     return "".join(
         c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode() for c in text
     )
+
+
+def offer(name: str, known: Iterable[str]) -> str:
+    """The end of a message about an unknown name: the nearest known ones, or a few of them."""
+    known = list(known)
+    near = get_close_matches(name, known, n=2) if len(name) <= _LONGEST else []
+    if near:
+        return f"did you mean {' or '.join(near)}?"
+    if len(known) <= _FEW:
+        return f"known: {', '.join(known)}" if known else "no names are known here"
+    return f"known: {', '.join(known[:_SHOWN])} and {len(known) - _SHOWN} more (`rigidsym list`)"
 
 
 class RigidsymError(Exception):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from rigidsym.errors import ModelError, QuantityError
+from rigidsym.errors import ModelError, QuantityError, offer
 from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, Notation as Notation
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import Body, derive as derivation_of
@@ -23,7 +23,6 @@ from rigidsym.models.forces import forces_on
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.system.limits import time_limit
-from rigidsym.text.names import offer
 
 if TYPE_CHECKING:
     from rigidsym.kernels.lowering.derivatives import Asked

@@ -12,14 +12,13 @@ from typing import Any
 
 import click
 
-from rigidsym.errors import KernelError, QuantityError
+from rigidsym.errors import KernelError, QuantityError, offer
 from rigidsym.formula.notation import CHOICES, DEFAULT
 from rigidsym.kernels.lowering.derivatives import read_requests
 from rigidsym.kernels.targets import check_target
 from rigidsym.motion import QUANTITIES
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.resources import overridden_by
-from rigidsym.text.names import offer
 
 MOST_LINES = 150  # that a terminal shows by default
 _OPTION = "click option"

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import click
 import numpy as np
+from numpy.typing import NDArray
 
 from rigidsym.commands.command import command as make
 from rigidsym.data.writers import check_ending, table_writer
 from rigidsym.pipeline import motion_of, read
-from rigidsym.simulation.trajectory import Trajectory
 from rigidsym.system.progress import bar
 
 
@@ -56,12 +56,10 @@ def command(
         found = motion.simulate(start, values, t_end, samples=samples, progress=progress)
     click.echo(found.report())
     if out is not None:
-        _write(found, out)
+        _write(found.columns(), out)
         click.echo(out)
     if plot is not None:
-        from rigidsym.simulation.plot import save_plot
-
-        click.echo(save_plot(found, plot))
+        click.echo(found.plot(plot))
 
 
 def _numbers(option: str, texts: Iterable[str]) -> dict[str, float]:
@@ -77,8 +75,7 @@ def _numbers(option: str, texts: Iterable[str]) -> dict[str, float]:
     return found
 
 
-def _write(found: Trajectory, path: Path) -> None:
-    columns = found.columns()
+def _write(columns: Mapping[str, NDArray[np.float64]], path: Path) -> None:
     names: Sequence[str] = tuple(columns)
     rows = np.column_stack([*columns.values()])
     with table_writer(path, names, rows.dtype) as writer:

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, Self
 
 import sympy as sp
 
-from rigidsym.errors import DerivationError, QuantityError
+from rigidsym.errors import DerivationError, QuantityError, offer
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.models.rotation import Citation, RotationModel
-from rigidsym.text.names import offer
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody

@@ -13,10 +13,9 @@ from types import MappingProxyType
 import sympy as sp
 from sympy import Rational, cos, pi, sin
 
-from rigidsym.errors import BodyError
+from rigidsym.errors import BodyError, offer
 from rigidsym.models.distribution import Bounds, Solid
 from rigidsym.models.so3 import symbolic
-from rigidsym.text.names import offer
 
 _HALF = Rational(1, 2)
 Geometry = tuple[Sequence[sp.Symbol], Sequence[sp.Expr], Sequence[Bounds], sp.Expr | None]

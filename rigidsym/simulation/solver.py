@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 import sympy as sp
 
-from rigidsym.errors import DerivationError, MissingExtra, ModelError
+from rigidsym.errors import DerivationError, MissingExtra, ModelError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.models.plausibility import check_inertia
 from rigidsym.simulation.trajectory import Array, Trajectory
-from rigidsym.text.names import offer
 
 METHODS = ("DOP853", "RK45", "Radau", "LSODA")
 _POLE = 1e-6  # of the singularity margin: nearer to a pole no digits are left
@@ -123,10 +122,11 @@ class _Problem:
         return set().union(*(expression.free_symbols for expression in held))
 
     def _check_body(self, values: Mapping[str, float]) -> None:
+        """A body with values for its parameters checks its moments when it is made."""
         body = self.derivation.body
         if body is not None:
-            known = {p.symbol: sp.Float(values[p.symbol.name]) for p in body.parameters}
-            check_inertia(body.name, body.inertia.xreplace(known))
+            known = (replace(p, value=values[p.symbol.name]) for p in body.parameters)
+            replace(body, parameters=tuple(known))
 
     def _given(self, name: str) -> list[list[float]]:
         """The parameters, if a function takes them."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -48,6 +49,14 @@ class Trajectory:
         width = max(map(len, self.first_integrals), default=0)
         lines += [f"  {name:{width}}  drift {value:.1e}" for name, value in self.drift.items()]
         return "\n".join(lines)
+
+    def plot(self, path: str | Path) -> Path:
+        """A picture of the motion: PNG, SVG or PDF by the ending. Needs Matplotlib."""
+        from rigidsym.simulation.plot import save_plot
+
+        angles = {name: self.q[:, k] for k, name in enumerate(self.coordinates)}
+        axis = self.rotation_matrix[:, :, 2]
+        return save_plot(Path(path), self.t, angles, axis, self.first_integrals)
 
     def _repr_pretty_(self, printer: Any, _: bool) -> None:
         printer.text(self.report())

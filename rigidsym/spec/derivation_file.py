@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rigidsym.errors import ExpressionError, Fault, KernelError, ModelError, SpecError
+from rigidsym.errors import ExpressionError, Fault, KernelError, ModelError, SpecError, offer
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.forces import forces_on
 from rigidsym.models.rotation import RotationModel
@@ -19,7 +19,6 @@ from rigidsym.spec.rotation_table import KEYS, read_rotation
 from rigidsym.spec.tables import MOST_CHARACTERS, Table, read_toml
 from rigidsym.spec.vocabulary import NotationChoice, Vocabulary
 from rigidsym.system import resources
-from rigidsym.text.names import offer
 
 A_PAIR_OF_FRAMES = 'two names such as ["inertial", "spacecraft"]'
 _OF_BOTH = ("title", "theory", "parameters", "body", "dynamics", "notation")

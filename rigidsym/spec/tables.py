@@ -9,10 +9,9 @@ import re
 import tomllib
 from collections.abc import Mapping, Sequence
 
-from rigidsym.errors import Fault, SpecError
+from rigidsym.errors import Fault, SpecError, offer
 from rigidsym.spec.faults import Faults, Source, described, dotted, shortened
 from rigidsym.spec.toml_lines import Path, locate
-from rigidsym.text.names import offer
 
 MOST_CHARACTERS = 50_000
 _LONGEST_LINE = 1000  # tomllib's time grows with the square of the dots in a key

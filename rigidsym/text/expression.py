@@ -18,9 +18,9 @@ from typing import NamedTuple
 
 import sympy as sp
 
-from rigidsym.errors import ExpressionError
+from rigidsym.errors import ExpressionError, offer
 from rigidsym.text.bounds import FUNCTIONS, Sized, apply, operate
-from rigidsym.text.names import GREEK_LETTERS, offer, spelled
+from rigidsym.text.names import GREEK_LETTERS, spelled
 
 MOST_CHARACTERS = 2000
 _DEEPEST = 50  # nested brackets

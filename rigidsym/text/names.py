@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Iterable
-from difflib import get_close_matches
 
 import sympy as sp
 
@@ -13,8 +11,6 @@ from rigidsym.errors import ExpressionError
 from rigidsym.text.bounds import FUNCTIONS
 
 _LONGEST = 40
-_FEW = 10  # known names that a message lists
-_SHOWN = 3  # of more than a few
 
 _GREEK = {
     "α": "alpha",
@@ -108,14 +104,3 @@ def _fault(name: str) -> str:
     if _ANGULAR_VELOCITY.fullmatch(name):
         return "it is a component of the angular velocity"
     return ""
-
-
-def offer(name: str, known: Iterable[str]) -> str:
-    """The end of a message about an unknown name: the nearest known ones, or a few of them."""
-    known = list(known)
-    near = get_close_matches(name, known, n=2) if len(name) <= _LONGEST else []
-    if near:
-        return f"did you mean {' or '.join(near)}?"
-    if len(known) <= _FEW:
-        return f"known: {', '.join(known)}" if known else "no names are known here"
-    return f"known: {', '.join(known[:_SHOWN])} and {len(known) - _SHOWN} more (`rigidsym list`)"

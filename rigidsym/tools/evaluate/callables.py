@@ -9,7 +9,6 @@ from itertools import product
 
 from rigidsym.errors import QuantityError, RequestError
 from rigidsym.kernels.module import KernelModule
-from rigidsym.mechanics.derivation import Derivation
 from rigidsym.motion import Motion
 from rigidsym.tools.evaluate.work import ResultColumn
 
@@ -98,7 +97,7 @@ def _inputs(motion: Motion, kernels: KernelModule, name: str) -> tuple[str, ...]
     return (first, *taken[1:])
 
 
-def _results(derivation: Derivation | Motion, name: str) -> Iterable[tuple[str, str]]:
+def _results(derivation: Motion, name: str) -> Iterable[tuple[str, str]]:
     """The names and units of the columns of a result, entries row by row."""
     if name == "quaternion":
         return zip(_QUATERNION.names, _QUATERNION.units, strict=True)

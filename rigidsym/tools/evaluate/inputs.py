@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from math import pi
 
 from rigidsym.data.columns import ColumnNames, counted
-from rigidsym.errors import DataError, RequestError
-from rigidsym.text.names import offer
+from rigidsym.errors import DataError, RequestError, offer
 from rigidsym.tools.evaluate.callables import FunctionArgument, is_angle
 from rigidsym.tools.evaluate.work import Input
 from rigidsym.tools.spellings import groups_of, of_component
