@@ -11,7 +11,7 @@ import sympy as sp
 from rigidsym.errors import ModelError
 from rigidsym.models.body import Parameter, RigidBody
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import TIME
+from rigidsym.models.so3 import TIME, symbolic
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 
@@ -66,6 +66,6 @@ def forces_on(
 
 def _read(given: sp.Expr | str | int, names: Mapping[str, sp.Expr]) -> sp.Expr:
     if not isinstance(given, str):
-        return sp.sympify(given, strict=True)
+        return symbolic(given, "a potential or a force")
     used = {name: names.get(name) or sp.Symbol(check_name(name)) for name in names_in(given)}
     return parse_expression(given, used)

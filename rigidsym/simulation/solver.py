@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from types import ModuleType
 from typing import Any
 
@@ -135,13 +136,13 @@ class _Problem:
 
     def slopes(self, y: Array) -> Array:
         """(q̇, q̈) of one state."""
-        more = [value for given in self._constants for value in given]
-        q_ddot = self.kernels.accelerations_scalar(*y.tolist(), *more)
+        q_ddot = self.kernels.accelerations_scalar(*y.tolist(), *self._constants)
         return np.array([*y[self.count :], *q_ddot])
 
-    @property
-    def _constants(self) -> list[list[float]]:
-        return self._given("accelerations")
+    @cached_property
+    def _constants(self) -> list[float]:
+        """The parameters of the accelerations, looked up once and not at every step."""
+        return [value for given in self._given("accelerations") for value in given]
 
     def _margin_event(self) -> Any:
         """The distance from a pole, for the integrator to stop at; never if there is none."""

@@ -18,7 +18,8 @@ from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form
 from rigidsym.mechanics.arguments import arguments_of, arguments_of_motion
 from rigidsym.mechanics.derivation import FirstIntegral, Found
-from rigidsym.mechanics.dynamics.lagrange import Lagrange, encoded
+from rigidsym.mechanics.dynamics.lagrange import Lagrange
+from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import dynamics as claims
 

@@ -16,21 +16,15 @@ from functools import cached_property
 
 import sympy as sp
 
-from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.errors import ModelError
 from rigidsym.mechanics.kinematics.rates import Inverse, right_inverse
-from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.kinematics.workspace import Values, encoded
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
-
-
-def encoded(codec: Codec, matrix: sp.MatrixBase) -> RingMatrix:
-    """A matrix over the ring of a codec."""
-    rows = [[codec.encode(entry) for entry in row] for row in matrix.tolist()]
-    return RingMatrix.of(codec.ring, rows)
 
 
 class Lagrange:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.mechanics.arguments import arguments_of
@@ -152,5 +152,10 @@ class Values:
         return RingMatrix.column(self.ring, entries)
 
     def encoded(self, matrix: sp.MatrixBase) -> RingMatrix:
-        rows = matrix.tolist()
-        return RingMatrix.of(self.ring, [[self.codec.encode(e) for e in row] for row in rows])
+        return encoded(self.codec, matrix)
+
+
+def encoded(codec: Codec, matrix: sp.MatrixBase) -> RingMatrix:
+    """A matrix over the ring of a codec."""
+    rows = [[codec.encode(entry) for entry in row] for row in matrix.tolist()]
+    return RingMatrix.of(codec.ring, rows)

@@ -14,7 +14,7 @@ import sympy as sp
 
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.kinematics.workspace import Values, encoded
 from rigidsym.models.rotation import Turn
 
 
@@ -54,8 +54,7 @@ def rate_map_of(values: Values) -> RateMap:
 @lru_cache(maxsize=64)
 def _encoded(codec: Codec, turn: Turn) -> tuple[RingMatrix, RingMatrix, RingMatrix]:
     """The matrix of a turn over the ring, its transpose, and the axis."""
-    rows = [[codec.encode(entry) for entry in row] for row in turn.matrix.tolist()]
-    matrix = RingMatrix.of(codec.ring, rows)
+    matrix = encoded(codec, turn.matrix)
     return matrix, matrix.T, RingMatrix.column(codec.ring, map(codec.encode, turn.direction))
 
 
