@@ -90,12 +90,7 @@ def test_a_killed_command_leaves_the_old_file_and_runs_again(tmp_path, how):
     result = tmp_path / "result.csv"  # slow to write, so that there is time to stop it
     result.write_text("old")
     asked = command("ZXZ", tmp_path / "given.npy", "--out", result)
-    with subprocess.Popen(
-        asked,
-        stderr=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    ) as process:
+    with subprocess.Popen(asked, stderr=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         while process.poll() is None and not any(
             path.stat().st_size > 4e6 for path in tmp_path.glob(".result.csv.*")
         ):
