@@ -22,7 +22,7 @@ from rigidsym.errors import ModelError
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation, Proof, Statement, Step
 from rigidsym.mechanics.kinematics.composition import hat, unhat
-from rigidsym.mechanics.lecture import bases, momenta, rigid_body
+from rigidsym.mechanics.lecture.equations import STATEMENTS
 from rigidsym.mechanics.particles import IN_BODY, MASS, ParticleSums
 from rigidsym.mechanics.prove import Conditions, Prover
 from rigidsym.models.quaternions import UnitQuaternion
@@ -44,7 +44,7 @@ def theory() -> tuple[Statement, ...]:
     work = _Theory()
     return tuple(
         replace(statement, proofs=work.proofs(statement), summands=work.summands(statement))
-        for statement in (*rigid_body.STATEMENTS, *bases.STATEMENTS, *momenta.STATEMENTS)
+        for statement in STATEMENTS
     )
 
 

@@ -1,0 +1,235 @@
+"""The lecture's equations 1 to 16 as it states them, and a reader of them.
+
+A block is one statement: its number, its name, its section; how it follows, with formulas between
+dollar signs; the sides of the equation, one a line behind `=`; and the claims to be proved, each
+behind its name. `^T` is the transpose. What is `summands` shows the matrix of the generic particle.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Statement
+from rigidsym.models.rotation import lecture
+
+_ITEM = re.compile(r"\n    (?=(?:=|\w+:) )(\S+) ")  # "=" or the name of a claim
+
+_EQUATIONS = r"""
+# The centre of mass and the kinetic energy
+1  centre_of_mass  1.1
+    A rigid body is a set of particles with masses $m_i$ at places $\mathbf{r}_i$,
+    $\sum_i m_i = M$. Their mean, weighted by the masses, is the centre of mass
+    = \mathbf{r}_C
+    = \frac{1}{M}\sum_i m_i\,\mathbf{r}_i
+    no_moment: \sum_i m_i(\mathbf{r}_i - \mathbf{r}_C) = \mathbf{0}
+    no_momentum: \sum_i m_i(\dot{\mathbf{r}}_i - \dot{\mathbf{r}}_C) = \mathbf{0}
+
+2  energy_splits  1.1
+    Seen from there a particle is at $\mathbf{x}_i$, where
+    $\mathbf{r}_i = \mathbf{r}_C + \mathbf{x}_i$. So $\sum_i m_i\,\mathbf{x}_i = \mathbf{0}$ at
+    all times, and $\sum_i m_i\,\dot{\mathbf{x}}_i = \mathbf{0}$: when the velocities are squared,
+    the cross term vanishes, and the energy splits into that of the total mass moving with the
+    centre of mass and that of the motion about it,
+    = E_K
+    = E_C + E_R
+    = \frac{1}{2}M|\dot{\mathbf{r}}_C|^2 + \frac{1}{2}\sum_i m_i|\dot{\mathbf{x}}_i|^2
+    no_mixed_energy: \sum_i m_i\,\dot{\mathbf{x}}_i\cdot\dot{\mathbf{r}}_C = 0
+    energy_splits: \frac{1}{2}\sum_i m_i|\dot{\mathbf{r}}_i|^2 = E_C + E_R
+
+# The inertia tensor
+3  velocity_of_particles  1.2
+    The particles keep their distances, so that by Euler's theorem the motion about the centre of
+    mass is a rotation, $\mathbf{x}_i = \mathbf{R}\,\mathbf{x}'_i$ with $\mathbf{x}'_i$ at rest.
+    The derivative of $\mathbf{R}\mathbf{R}^T = \mathbf{1}$ says that
+    $\frac{d\mathbf{R}}{dt}\mathbf{R}^T$ is skew. A skew matrix is a cross product; its vector is
+    the angular velocity $\boldsymbol{\Omega}$, and
+    = \dot{\mathbf{x}}_i
+    = \boldsymbol{\Omega}\times\mathbf{x}_i
+    skew: \frac{d\mathbf{R}}{dt}\mathbf{R}^T + \mathbf{R}\frac{d\mathbf{R}^T}{dt} = \mathbf{0}
+    turning: \frac{d\mathbf{R}}{dt}\mathbf{x}'_i =
+      \boldsymbol{\Omega}\times\mathbf{R}\mathbf{x}'_i
+
+4  inertia_of_particles  1.2
+    With $\boldsymbol{\Omega} = \sum_j \Omega_j\mathbf{e}_j$ in any orthonormal basis,
+    $E_R = \frac{1}{2}\sum_i m_i|\boldsymbol{\Omega}\times\mathbf{x}_i|^2$ is a quadratic form,
+    $E_R = \frac{1}{2}\boldsymbol{\Omega}^T\mathbf{I}\,\boldsymbol{\Omega}$. Its coefficients form
+    the inertia tensor, which depends on the mass distribution only through its second moments:
+    = I_{jk}
+    = \sum_i m_i(\mathbf{e}_j\times\mathbf{x}_i)\cdot(\mathbf{e}_k\times\mathbf{x}_i)
+    energy_is_a_form: \frac{1}{2}\sum_i m_i|\boldsymbol{\Omega}\times\mathbf{x}_i|^2 =
+      \frac{1}{2}\boldsymbol{\Omega}^T\mathbf{I}\,\boldsymbol{\Omega}
+    symmetric: \mathbf{I}^T = \mathbf{I}
+
+# Another basis
+5  components_in_another_basis  2.1
+    A rotation $\mathbf{R}$ takes the basis to another,
+    $\mathbf{e}'_j = \mathbf{R}\,\mathbf{e}_j$. The components of $\boldsymbol{\Omega}$ there are
+    its products with the new vectors,
+    = \Omega'_j
+    = \boldsymbol{\Omega}\cdot\mathbf{e}'_j
+    = \boldsymbol{\Omega}\cdot\mathbf{R}\,\mathbf{e}_j
+    keeps_products: \mathbf{u}\cdot\mathbf{v} = \mathbf{R}\mathbf{u}\cdot\mathbf{R}\mathbf{v}
+
+6  rotation_goes_over  2.1
+    Rotations preserve scalar products; moved from one factor to the other, a rotation becomes its
+    inverse:
+    = \Omega'_j
+    = \mathbf{R}^{-1}\boldsymbol{\Omega}\cdot\mathbf{e}_j
+    goes_over: \mathbf{R}^{-1}\mathbf{u}\cdot\mathbf{v} = \mathbf{u}\cdot\mathbf{R}\mathbf{v}
+    components: \boldsymbol{\Omega}\cdot\mathbf{R}\,\mathbf{e}_j =
+      \mathbf{R}^{-1}\boldsymbol{\Omega}\cdot\mathbf{e}_j
+
+7  angular_velocity_turns  2.1
+    In one line, for all three components,
+    = \boldsymbol{\Omega}' = \mathbf{R}^{-1}\boldsymbol{\Omega} \quad\Leftrightarrow\quad
+      \boldsymbol{\Omega}
+    = \mathbf{R}\,\boldsymbol{\Omega}'
+    inverse: \mathbf{R}^{-1} = \mathbf{R}^T
+    and_back: \mathbf{R}(\mathbf{R}^{-1}\boldsymbol{\Omega}) = \boldsymbol{\Omega}
+
+8  energy_in_another_basis  2.1
+    The energy is a number and does not depend on the basis; by (7)
+    = E_R
+    = \frac{1}{2}\boldsymbol{\Omega}^T\mathbf{I}\,\boldsymbol{\Omega}
+    = \frac{1}{2}\boldsymbol{\Omega}'^T\mathbf{R}^T\mathbf{I}\,\mathbf{R}\,\boldsymbol{\Omega}'
+    same_energy: (\mathbf{R}\boldsymbol{\Omega}')^T\mathbf{I}\,\mathbf{R}\boldsymbol{\Omega}' =
+      \boldsymbol{\Omega}'^T\mathbf{R}^T\mathbf{I}\,\mathbf{R}\,\boldsymbol{\Omega}'
+
+9  inertia_turns  2.1
+    The matrix in the middle is therefore the inertia tensor in the new basis. It is also what (4)
+    gives for the places $\mathbf{x}'_i = \mathbf{R}^{-1}\mathbf{x}_i$ seen from there:
+    = \mathbf{I}'
+    = \mathbf{R}^T\mathbf{I}\,\mathbf{R}
+    tensor_turns: \mathbf{R}^T\,\mathbf{I}(\mathbf{R}\mathbf{x}'_i)\,\mathbf{R} =
+      \mathbf{I}(\mathbf{x}'_i)
+
+# Moments of inertia
+-  entries_of_inertia  2.2  summands
+    With $\mathbf{x}_i = (a_i, b_i, c_i)$ and the product of two cross products, (4) is
+    = \mathbf{I}
+    lagrange: (\mathbf{u}\times\mathbf{v})\cdot(\mathbf{w}\times\boldsymbol{\Omega}) =
+      (\mathbf{u}\cdot\mathbf{w})(\mathbf{v}\cdot\boldsymbol{\Omega}) -
+      (\mathbf{u}\cdot\boldsymbol{\Omega})(\mathbf{v}\cdot\mathbf{w})
+    entries: \mathbf{I} = \sum_i m_i\bigl((\mathbf{x}_i\cdot\mathbf{x}_i)\mathbf{1} -
+      \mathbf{x}_i\mathbf{x}_i^T\bigr)
+
+-  moment_about_a_line  2.2
+    The moment of inertia about a line sums the masses times the squares of their distances
+    $d^{\perp}_i$ from it. For the line through the centre of mass along a unit vector
+    $\mathbf{e}$ the tensor gives it at once; for a vector of the basis it is an entry of the
+    diagonal. The other entries are the products of inertia.
+    = I
+    = \sum_i m_i(d^{\perp}_i)^2
+    = \mathbf{e}^T\mathbf{I}\,\mathbf{e}
+    about_a_line: \sum_i m_i|\mathbf{x}_i - (\mathbf{x}_i\cdot\mathbf{e})\mathbf{e}|^2 =
+      \mathbf{e}^T\mathbf{I}\,\mathbf{e}
+
+# Principal axes
+10  energy_in_principal_axes  2.3
+    The tensor is real and symmetric, and so there is a rotation that makes it diagonal; this
+    theorem of linear algebra is used here, and not proved. The new axes are the principal axes of
+    the body, the entries the principal moments. With the components of $\boldsymbol{\Omega}$
+    along these axes,
+    = E_R
+    = \frac{1}{2}\bigl[I'_{11}\Omega_1^2 + I'_{22}\Omega_2^2 + I'_{33}\Omega_3^2\bigr]
+    stays_symmetric: (\mathbf{R}^T\mathbf{I}\,\mathbf{R})^T = \mathbf{R}^T\mathbf{I}\,\mathbf{R}
+    energy_in_principal_axes: \boldsymbol{\Omega}'^T\mathbf{I}'\,\boldsymbol{\Omega}' = \sum_k
+      I'_{kk}\Omega_k^2
+
+# The angular momentum
+11  momentum_splits  3.1
+    The angular momentum of the body is the sum of $\mathbf{r}_i\times(m_i\dot{\mathbf{r}}_i)$
+    over its particles. With $\mathbf{r}_i = \mathbf{r}_C + \mathbf{x}_i$ the cross terms vanish
+    again, and it has two parts,
+    = \mathbf{L}
+    = \mathbf{L}_C + \mathbf{L}_R
+    no_mixed_momentum: \sum_i m_i(\mathbf{r}_C\times\dot{\mathbf{x}}_i +
+      \mathbf{x}_i\times\dot{\mathbf{r}}_C) = \mathbf{0}
+
+12  parts_of_the_momentum  3.1
+    These are the angular momentum of the centre-of-mass motion and that of the rotation:
+    = \mathbf{L}_C = \mathbf{r}_C\times(M\dot{\mathbf{r}}_C), \qquad \mathbf{L}_R
+    = \sum_i \mathbf{x}_i\times(m_i\dot{\mathbf{x}}_i)
+    momentum_splits: \sum_i \mathbf{r}_i\times(m_i\dot{\mathbf{r}}_i) = \mathbf{L}_C +
+      \mathbf{L}_R
+
+13  momentum_of_rotation  3.1
+    With (3) the second part is linear in the angular velocity, and the tensor is that of (4):
+    = \mathbf{L}_R
+    = \mathbf{I}\,\boldsymbol{\Omega}
+    momentum_is_linear: \sum_i m_i\,\mathbf{x}_i\times(\boldsymbol{\Omega}\times\mathbf{x}_i) =
+      \mathbf{I}\,\boldsymbol{\Omega}
+    twice_the_energy: \mathbf{L}_R\cdot\boldsymbol{\Omega} = \sum_i m_i|\dot{\mathbf{x}}_i|^2 =
+      2E_R
+
+14  momentum_in_principal_axes  3.1
+    In the principal-axis frame the components are simply
+    = L_{R,1} = I_{11}\Omega_1, \qquad L_{R,2} = I_{22}\Omega_2, \qquad L_{R,3}
+    = I_{33}\Omega_3
+    components_of_momentum: (\mathbf{I}\,\boldsymbol{\Omega})_k = I_{kk}\Omega_k
+
+# The angular velocity of a rotation
+15  velocity_by_the_rotation  3.2
+    Let coordinates $\mathbf{q}(t)$ describe the orientation relative to a reference orientation
+    in which the principal axes coincide with the basis,
+    $\mathbf{x}_i = \mathbf{R}(\mathbf{q}(t))\,\mathbf{x}'_i$. Then
+    = \dot{\mathbf{x}}_i
+    = \frac{d\mathbf{R}}{dt}\,\mathbf{x}'_i
+    = \frac{d\mathbf{R}}{dt}\mathbf{R}^T\,\mathbf{x}_i
+    velocity: \frac{d\mathbf{R}}{dt}\,\mathbf{x}'_i =
+      \frac{d\mathbf{R}}{dt}\mathbf{R}^T\,\mathbf{R}\,\mathbf{x}'_i
+    operator: \mathbf{C}(\mathbf{u})\,\mathbf{v} = \mathbf{u}\times\mathbf{v}
+
+16  angular_velocity_of_the_rotation  3.2
+    Beside (3) this says that $\frac{d\mathbf{R}}{dt}\mathbf{R}^T$ is the matrix
+    $\mathbf{C}(\boldsymbol{\Omega})$ of $\boldsymbol{\Omega}\times$. Its vector, which
+    $\mathbf{C}^{-1}$ takes from the entries below the diagonal, has space components; along the
+    axes of the body, by (7),
+    = \boldsymbol{\Omega}'
+    = \mathbf{R}^T\,\mathbf{C}^{-1}\left(\frac{d\mathbf{R}}{dt}\mathbf{R}^T\right)
+    spin: \frac{d\mathbf{R}}{dt}\mathbf{R}^T = \mathbf{C}(\boldsymbol{\Omega})
+    body_spin: \mathbf{R}^T\frac{d\mathbf{R}}{dt} = \mathbf{C}(\boldsymbol{\Omega}')
+"""
+
+
+def _read(text: str) -> Iterator[Statement]:
+    section = ""
+    for block in text.strip().split("\n\n"):
+        heading, _, rest = block.partition("\n")
+        if heading.startswith("# "):
+            section = heading[2:]
+            heading, _, rest = rest.partition("\n")
+        yield _statement(section, heading, "\n" + rest)
+
+
+def _statement(section: str, heading: str, text: str) -> Statement:
+    number, name, place, *more = heading.split()
+    words, *items = _ITEM.split(text)
+    pairs = [(mark, _formula(item)) for mark, item in zip(items[::2], items[1::2], strict=True)]
+    return Statement(
+        name=name,
+        number=None if number == "-" else int(number),
+        section=section,
+        because=tuple(_spans(words)),
+        sides=tuple(side for mark, side in pairs if mark == "="),
+        claims=tuple((mark[:-1], claim) for mark, claim in pairs if mark != "="),
+        source=lecture("" if number == "-" else number, f"section {place}"),
+        shows_summands="summands" in more,
+    )
+
+
+def _spans(text: str) -> Iterator[str | Formula]:
+    """The words of a sentence and the formulas between them."""
+    for place, span in enumerate(" ".join(text.split()).split("$")):
+        if span:
+            yield _formula(span) if place % 2 else span
+
+
+def _formula(text: str) -> Formula:
+    return formula(" ".join(text.split()).replace("^T", r"^{\mathsf T}"))
+
+
+STATEMENTS = tuple(_read(_EQUATIONS))
