@@ -9,10 +9,10 @@ from math import degrees, lcm, pi
 
 import sympy as sp
 
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.prose.words import unit_in_words
 
 _DEGREE = pi / 180

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from rigidsym.formula.display import display
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets.c import printer as c
 from rigidsym.kernels.targets.numpy import printer as numpy
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document.document import Document
-from rigidsym.notes.layout.layout import display
 from rigidsym.page.copy_c import c_of
 from rigidsym.page.copy_python import python_of
 from rigidsym.page.copy_series import series_for

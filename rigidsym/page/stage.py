@@ -7,6 +7,8 @@ from typing import Any
 
 import sympy as sp
 
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula, Numeral, Symbol
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
@@ -14,8 +16,6 @@ from rigidsym.models.so3 import AXES, TIME
 from rigidsym.notes.figure.camera import STANDARD, Vector
 from rigidsym.notes.figure.scene import BODY, MOST_TURNS, RADII, Scene, scene_of, turns_of
 from rigidsym.notes.figure.svg import as_in_formulas
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.scalars import formula_of
 
 _AZIMUTH, _ELEVATION = 35, 22  # degrees, where the note has no figure
 

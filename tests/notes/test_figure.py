@@ -25,7 +25,7 @@ from rigidsym.notes.figure.drawing import Box, Drawing, Ellipse, Label, Stroke, 
 from rigidsym.notes.figure.scene import MOST_TURNS, scene_of
 from rigidsym.notes.figure.svg import svg
 from rigidsym.notes.figure.tikz import tikz
-from rigidsym.notes.formula.letters import letters_of
+from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.prose.figure_words import figure_of
 
 LETTERS = "zxyzxy"

@@ -13,13 +13,14 @@ import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.errors import AlgebraError
 from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Line, break_lines
 from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import latex, text
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.models.euler_angles import EulerAngles
-from rigidsym.notes.formula.letters import Letters, letters_of
-from rigidsym.notes.formula.scalars import latex, text
+from rigidsym.notes.formula.derivation_letters import letters_of
 
 phi, theta, psi = dynamicsymbols("phi theta psi")
 phi_dot, theta_dot, psi_dot = dynamicsymbols("phi theta psi", 1)

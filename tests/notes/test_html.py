@@ -16,13 +16,13 @@ import rigidsym as rs
 from helpers.browser import look_at, open_page, require_chromium
 from helpers.elements import ODD, Elements, odd_model
 from helpers.motions import derived
+from rigidsym.formula.display import inline_parts
 from rigidsym.formula.mathml_pen import MathmlPen
 from rigidsym.formula.reader import formula
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.notes.formats.html import escape
-from rigidsym.notes.layout.layout import inline_parts
 from rigidsym.notes.note import note
 from rigidsym.notes.sanitize import cleaned
 from rigidsym.pipeline import output_of, read_file

@@ -10,6 +10,9 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.typesetting import UNPACKED, bound_together, sheet_of
+from rigidsym.formula.abbreviations import Namer
+from rigidsym.formula.display import PAGE, display
+from rigidsym.formula.scalars import text
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import hat
@@ -17,12 +20,8 @@ from rigidsym.notes.document.document import Document, Equation, EquationRow
 from rigidsym.notes.formats.latex import render as print_latex
 from rigidsym.notes.formats.markdown import render as print_markdown
 from rigidsym.notes.formats.pdf import typeset
-from rigidsym.notes.formula.lengths import length_of
-from rigidsym.notes.formula.letters import letters_of
-from rigidsym.notes.formula.scalars import text
+from rigidsym.notes.formula.derivation_letters import length_of, letters_of
 from rigidsym.notes.formula.vector_rates import rate_of_form
-from rigidsym.notes.layout.abbreviations import Namer
-from rigidsym.notes.layout.layout import PAGE, display
 
 TURNS = (
     "z(phi)",

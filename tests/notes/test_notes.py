@@ -10,6 +10,7 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.motions import derived
+from rigidsym.formula.entries import indexed
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Symbol
 from rigidsym.formula.unicode_pen import columns
@@ -22,7 +23,7 @@ from rigidsym.motion import QUANTITIES
 from rigidsym.notes.document.document import Document, Equation, NoteTable, Paragraph, listed, plain
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.terminal import show
-from rigidsym.notes.layout.entries import entry_names, indexed
+from rigidsym.notes.formula.derivation_letters import entry_names
 from rigidsym.notes.note import Note, note
 from rigidsym.notes.prose.singular_words import determined
 from rigidsym.notes.prose.words import unit_in_words, with_symbols

@@ -12,6 +12,7 @@ import rigidsym as rs
 from helpers.typesetting import BEGIN, END, bound_together
 from rigidsym.errors import MissingTool, ToolFailed
 from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.scalars import matrix_of
 from rigidsym.formula.tree import Matrix
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.chain import axis_turn, chain as chain_of
@@ -21,8 +22,7 @@ from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import elementary, time_function
 from rigidsym.notes.formats import pdf as typesetting
 from rigidsym.notes.formats.pdf import typeset
-from rigidsym.notes.formula.letters import letters_of
-from rigidsym.notes.formula.scalars import matrix_of
+from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.note import note
 
 GREEK = ("phi", "theta", "psi")

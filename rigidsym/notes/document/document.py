@@ -10,12 +10,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, zip_longest
 
-import sympy as sp
-
+from rigidsym.formula.display import Equation as Equation
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.tree import Formula
 from rigidsym.models.rotation import Citation
 from rigidsym.notes.figure.drawing import Drawing
-from rigidsym.notes.formula.letters import Letters
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,22 +89,6 @@ def _plain(span: Span) -> str:
 @dataclass(frozen=True, slots=True)
 class Paragraph:
     text: Text
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Equation:
-    """One display: sides that are equal, the last of them a matrix or a scalar that is given."""
-
-    sides: tuple[Formula, ...]
-    matrix: sp.ImmutableMatrix | None = None
-    scalar: sp.Expr | None = None
-    entries: tuple[Formula, ...] = ()  # a name an entry, row by row, for a listing
-    number: int | None = None
-    label: str = ""
-    function: str = ""  # of the kernel module, as it is called
-    proved: tuple[Formula, ...] = ()
-    unproved: tuple[Formula, ...] = ()
-    is_result: bool = False  # what a reader looks up stands in a box
 
 
 @dataclass(frozen=True, slots=True)

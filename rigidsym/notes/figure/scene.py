@@ -16,7 +16,9 @@ from typing import Literal
 
 import sympy as sp
 
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, Numeral, Symbol
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.models.so3 import AXES
@@ -34,9 +36,7 @@ from rigidsym.notes.figure.camera import (
     scaled,
     unit,
 )
-from rigidsym.notes.formula.lengths import VECTOR, length_of
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.scalars import formula_of
+from rigidsym.notes.formula.derivation_letters import VECTOR, length_of
 
 Kind = Literal["space", "body", "node", "vector", "turn", "guide"]
 

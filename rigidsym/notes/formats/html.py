@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from html import escape as escape_markup
 from itertools import pairwise
 
+from rigidsym.formula.display import Display, display, inline_parts
 from rigidsym.formula.mathml_pen import MathmlPen, math
+from rigidsym.formula.scalars import formula_of, matrix_of
 from rigidsym.formula.tree import Formula, Matrix, equal
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.notes.document.document import (
@@ -33,8 +35,6 @@ from rigidsym.notes.document.document import (
     plain,
 )
 from rigidsym.notes.figure.svg import svg
-from rigidsym.notes.formula.scalars import formula_of, matrix_of
-from rigidsym.notes.layout.layout import Display, display, inline_parts
 from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources

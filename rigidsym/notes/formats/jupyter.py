@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rigidsym.formula.display import display
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.notation import Notation
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.formats.terminal import show, show_step
-from rigidsym.notes.formula.letters import letters_of
-from rigidsym.notes.layout.layout import display
+from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.sections.compose import equation_of
 from rigidsym.notes.sections.fitting import as_vectors
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rigidsym.formula.display import PAGE, Rows, display, pack
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import (
@@ -23,8 +24,7 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.figure.tikz import tikz
 from rigidsym.notes.formats.escape import escape
-from rigidsym.notes.layout.layout import PAGE, Rows, display, pack
-from rigidsym.notes.layout.paging import paged
+from rigidsym.notes.formats.paging import paged
 from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources

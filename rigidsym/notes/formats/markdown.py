@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
+from rigidsym.formula.display import display, pack
 from rigidsym.formula.latex_pen import MarkdownPen
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import (
@@ -28,7 +29,6 @@ from rigidsym.notes.document.document import (
     Strong,
     Text,
 )
-from rigidsym.notes.layout.layout import display, pack
 from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import sympy as sp
 
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.order import is_negative
 from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import MINUS, Formula, Matrix, bracketed, row
 from rigidsym.mechanics.derivation import Statement
 from rigidsym.mechanics.particles import MASS
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.order import is_negative
-from rigidsym.notes.formula.scalars import formula_of
 
 _SUM = formula(r"\sum_i m_i")
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import chain
 
+from rigidsym.formula.letters import Letters
 from rigidsym.models.rotation import RotationModel, Turn
 from rigidsym.notes.document.document import Figure, Text, listed, words
 from rigidsym.notes.figure.camera import Vector
 from rigidsym.notes.figure.drawing import drawn
 from rigidsym.notes.figure.scene import Arc, Kind, Posed, scene_of
-from rigidsym.notes.formula.letters import Letters
 
 
 def figure_of(model: RotationModel, letters: Letters) -> Figure | None:

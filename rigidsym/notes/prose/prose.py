@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rigidsym.formula.display import Done
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Symbol, equal, joined, row
 from rigidsym.mechanics.quantities.claims import rate_of, spin_of
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, ROTATION, SPACE
 from rigidsym.models.rotation import Turn, lecture
 from rigidsym.notes.document.document import Cited, Equation, NoteBlock, Paragraph, Text, words
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.scalars import formula_of
-from rigidsym.notes.layout.layout import Done
 from rigidsym.notes.prose.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION
 
 _TURNING = lecture("3", "section 1.2")

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula, row
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.claims import rate_of, transpose_of
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE, Frame
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.formula.vector_rates import rate_of_form
 from rigidsym.notes.prose.prose import turn
 from rigidsym.notes.prose.vector_words import sum_of_vectors

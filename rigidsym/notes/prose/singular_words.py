@@ -8,7 +8,9 @@ from math import prod
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, Numeral, Symbol, equal
 from rigidsym.mechanics.derivation import (
     Derivation,
@@ -20,8 +22,7 @@ from rigidsym.mechanics.derivation import (
 from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
 from rigidsym.notes.document.document import Text, listed, words
-from rigidsym.notes.formula.letters import Letters, letters_of
-from rigidsym.notes.formula.scalars import formula_of
+from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.prose.turn_words import are_euler_angles
 from rigidsym.notes.prose.words import vector
 

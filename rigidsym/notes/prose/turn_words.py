@@ -6,7 +6,10 @@ from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
+from rigidsym.formula.entries import indexed
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import PLUS, Formula, Numeral, Symbol, equal, joined, row
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
@@ -20,9 +23,6 @@ from rigidsym.notes.document.document import (
     words,
 )
 from rigidsym.notes.figure.scene import scene_of
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.scalars import formula_of
-from rigidsym.notes.layout.entries import indexed
 
 PROPER = ("precession", "nutation", "spin")
 TAIT_BRYAN = ("yaw", "pitch", "roll")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sympy as sp
 
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.order import is_negative
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import MINUS, PLUS, Formula, bracketed, row
 from rigidsym.mechanics.derivation import VectorForm
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.order import is_negative
-from rigidsym.notes.formula.scalars import formula_of
 
 
 def sum_of_vectors(form: VectorForm, letters: Letters) -> Formula:

@@ -8,8 +8,10 @@ from itertools import chain
 
 import sympy as sp
 
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, Symbol, equal
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.mechanics.quantities.claims import transpose_of
@@ -22,9 +24,7 @@ from rigidsym.notes.document.document import (
     listed,
     words,
 )
-from rigidsym.notes.formula.lengths import VECTOR, length_of
-from rigidsym.notes.formula.letters import Letters, letters_of
-from rigidsym.notes.formula.scalars import formula_of
+from rigidsym.notes.formula.derivation_letters import VECTOR, length_of, letters_of
 
 POSITION = formula(r"\mathbf{x}")
 BODY_POSITION = formula(r"\mathbf{x}'")

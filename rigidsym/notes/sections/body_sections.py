@@ -8,7 +8,10 @@ from dataclasses import replace
 import sympy as sp
 
 from rigidsym.data.mass.properties import MassProperties
+from rigidsym.formula.entries import indexed
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Big, Differential, Formula, bracketed, row
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.mass.moments import moments_of
@@ -33,9 +36,6 @@ from rigidsym.notes.document.document import (
     listed,
     words,
 )
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.scalars import formula_of
-from rigidsym.notes.layout.entries import indexed
 from rigidsym.notes.prose.words import unit_in_words
 
 _KINDS = ("length", "area", "volume")

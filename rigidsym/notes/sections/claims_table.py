@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from rigidsym.formula.entries import RESIDUAL, indexed
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.notes.document.document import (
     Equation,
@@ -14,7 +15,6 @@ from rigidsym.notes.document.document import (
     Strong,
     Text,
 )
-from rigidsym.notes.layout.entries import RESIDUAL, indexed
 from rigidsym.notes.prose.prose import proofs_in_words
 
 Claim = tuple[str, Proof]  # the label of an equation, and what was claimed there

@@ -10,7 +10,9 @@ from dataclasses import replace
 
 import sympy as sp
 
+from rigidsym.formula.entries import indexed
 from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import equal, row
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
@@ -33,9 +35,7 @@ from rigidsym.notes.document.document import (
     Text,
     words,
 )
-from rigidsym.notes.formula.letters import letters_of
-from rigidsym.notes.formula.scalars import formula_of
-from rigidsym.notes.layout.entries import entry_names, indexed
+from rigidsym.notes.formula.derivation_letters import entry_names, letters_of
 from rigidsym.notes.prose.figure_words import figure_of
 from rigidsym.notes.prose.prose import motion, turn
 from rigidsym.notes.prose.singular_words import (

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from rigidsym.formula.entries import indexed
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.conversions.conversions import SHEPPERD, Conversions, outer_product
 from rigidsym.mechanics.derivation import Derivation, Step
@@ -22,7 +23,6 @@ from rigidsym.notes.document.document import (
     Strong,
     words,
 )
-from rigidsym.notes.layout.entries import indexed
 from rigidsym.notes.prose.conversion_words import HOW, WHICH
 from rigidsym.notes.prose.words import symbols_of, with_symbols
 from rigidsym.notes.sections.compose import IDENTITIES, SYMBOLS, equation_of

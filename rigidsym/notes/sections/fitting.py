@@ -16,6 +16,10 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from rigidsym.formula.abbreviations import Namer, Part
+from rigidsym.formula.display import PAGE, display
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
@@ -28,10 +32,6 @@ from rigidsym.notes.document.document import (
     Text,
     listed,
 )
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.scalars import formula_of
-from rigidsym.notes.layout.abbreviations import Namer, Part
-from rigidsym.notes.layout.layout import PAGE, display
 from rigidsym.notes.prose.short import in_short
 from rigidsym.notes.prose.vector_words import sum_of_vectors
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document.document import (
@@ -19,7 +20,6 @@ from rigidsym.notes.document.document import (
     Text,
     listed,
 )
-from rigidsym.notes.formula.letters import Letters
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.summary import SHEET, row_height, summary
 from rigidsym.notes.sections.symbol_tables import symbols

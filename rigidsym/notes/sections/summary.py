@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from rigidsym.formula.display import PAGE, display, height
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.scalars import formula_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.notes.document.document import (
@@ -16,9 +19,6 @@ from rigidsym.notes.document.document import (
     Text,
     listed,
 )
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.scalars import formula_of
-from rigidsym.notes.layout.layout import PAGE, display, height
 from rigidsym.notes.prose.singular_words import failures, meaning, measured
 from rigidsym.notes.prose.words import convention, vector_in_words
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from itertools import chain, repeat
 
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
@@ -21,8 +22,7 @@ from rigidsym.notes.document.document import (
     listed,
     words,
 )
-from rigidsym.notes.formula.lengths import VECTOR
-from rigidsym.notes.formula.letters import Letters
+from rigidsym.notes.formula.derivation_letters import VECTOR
 from rigidsym.notes.prose.singular_words import WITH_CONDITIONS
 from rigidsym.notes.prose.words import (
     BODY_POSITION,

@@ -18,8 +18,7 @@ from functools import lru_cache
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.models.so3 import TIME
-from rigidsym.notes.formula.letters import Letters, Place
+from rigidsym.formula.letters import TIME, Letters, Place
 
 Key = tuple[object, ...]
 

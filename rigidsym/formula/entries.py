@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 
 from rigidsym.formula.reader import formula
@@ -18,28 +18,8 @@ from rigidsym.formula.tree import (
     Symbol,
     row,
 )
-from rigidsym.mechanics.derivation import Argument, Step
 
 RESIDUAL = formula(r"\boldsymbol{\Delta}")  # what is left over of a claim
-
-
-def entry_names(step: Step, arguments: Iterable[Argument]) -> tuple[Formula, ...]:
-    """A name for each entry, row by row.
-
-    Vectors that are arguments of other quantities, such as the rates, have the names of those.
-    """
-    if step.quantity.is_scalar:
-        return (step.quantity.symbol,)
-    known = {argument.name: argument.notation for argument in arguments}
-    argument = _argument_name(step.quantity.name)
-    return known.get(argument) or indexed(step.quantity.symbol, step.shape)
-
-
-def _argument_name(quantity: str) -> str:
-    """The argument that a quantity may be used as: rates as q_dot, an angular velocity as omega."""
-    if quantity.startswith("rates_from_"):
-        return "q_dot"
-    return quantity.replace("angular_velocity_", "omega_")
 
 
 def indexed(symbol: Formula, shape: tuple[int, ...]) -> tuple[Formula, ...]:

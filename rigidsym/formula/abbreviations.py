@@ -14,10 +14,10 @@ from itertools import chain, islice
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.formula.display import broken, widest
 from rigidsym.formula.latex_pen import LatexPen
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.scalars import formula_of
-from rigidsym.notes.layout.layout import broken, widest
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.scalars import formula_of
 
 _LETTERS = "khmb"  # of the names; one that nothing in the notation is called by is taken
 _OVERHEAD = 3.0  # ems that a definition takes beside its formula

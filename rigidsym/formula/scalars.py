@@ -12,6 +12,14 @@ from functools import lru_cache
 import sympy as sp
 
 from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.order import (
+    FUNCTIONS,
+    is_application,
+    is_negative,
+    ordered_factors,
+    ordered_terms,
+)
 from rigidsym.formula.tree import (
     MINUS,
     PLUS,
@@ -30,14 +38,6 @@ from rigidsym.formula.tree import (
     row,
 )
 from rigidsym.formula.unicode_pen import UnicodePen
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.order import (
-    FUNCTIONS,
-    is_application,
-    is_negative,
-    ordered_factors,
-    ordered_terms,
-)
 
 
 class Bound(IntEnum):

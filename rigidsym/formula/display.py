@@ -10,14 +10,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+import sympy as sp
+
 from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Line, Piece, break_lines
+from rigidsym.formula.scalars import formula_of, matrix_of
 from rigidsym.formula.sheet_pen import Aligned, SheetPen
 from rigidsym.formula.tree import Formula, Matrix, equal
 from rigidsym.formula.widths import EQUAL, QUAD
-from rigidsym.notes.document.document import Equation
-from rigidsym.notes.formula.letters import Letters
-from rigidsym.notes.formula.scalars import formula_of, matrix_of
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
 BOX = 0.96  # ems that the box around a result takes
@@ -25,6 +26,22 @@ BOX = 0.96  # ems that the box around a result takes
 Done = Literal["", "abbreviated", "listed"]
 
 _MOST_INDENTS = 5
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Equation:
+    """One display: sides that are equal, the last of them a matrix or a scalar that is given."""
+
+    sides: tuple[Formula, ...]
+    matrix: sp.ImmutableMatrix | None = None
+    scalar: sp.Expr | None = None
+    entries: tuple[Formula, ...] = ()  # a name an entry, row by row, for a listing
+    number: int | None = None
+    label: str = ""
+    function: str = ""  # of the kernel module, as it is called
+    proved: tuple[Formula, ...] = ()
+    unproved: tuple[Formula, ...] = ()
+    is_result: bool = False  # what a reader looks up stands in a box
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,79 @@
+"""The symbols of a derivation: their letters, the length of its vector, names of entries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import lru_cache
+
+import sympy as sp
+
+from rigidsym.formula.entries import indexed
+from rigidsym.formula.letters import Letters, VectorLength
+from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Argument, Step
+from rigidsym.mechanics.kinematics.vector_forms import LENGTH
+from rigidsym.models.rotation import RotationModel
+
+VECTOR = formula(r"\mathbf{v}")
+_LENGTHS = ("n", "l", "r")  # one that nothing in the model is called by is taken
+_ORDERS = {"q": 0, "q_dot": 1, "q_ddot": 2, "centre": 0, "centre_dot": 1}
+_GIVEN_RATE = 1  # a given angular velocity is ordered as the rates are
+_BEFORE = dict.fromkeys(("centre", "centre_dot"), -3)  # what translates before what turns
+_CONSTANT = "parameters"  # constants go before coordinates, in the order of their names
+
+
+def letters_of(
+    arguments: Iterable[Argument], notation: Notation = DEFAULT, model: RotationModel | None = None
+) -> Letters:
+    """The letters of a derivation, from its arguments, in the notation of the user.
+
+    With the model, the length of its vector is written for what its components make up.
+    """
+    length = length_of(model) if model is not None and model.vector else None
+    return _letters(tuple(arguments), notation, length)
+
+
+@lru_cache(maxsize=64)
+def _letters(
+    arguments: tuple[Argument, ...], notation: Notation, length: VectorLength | None
+) -> Letters:
+    names = dict(length.names) if length else {}
+    places = {length.rate: (_GIVEN_RATE, -1)} if length else {}
+    for argument in arguments:
+        names.update(zip(argument.symbols, argument.notation, strict=True))
+        order, first = _ORDERS.get(argument.name, _GIVEN_RATE), _BEFORE.get(argument.name, 0)
+        if argument.name != _CONSTANT:
+            places.update((s, (order, first + k)) for k, s in enumerate(argument.symbols))
+    return Letters(notation=notation, length=length, names=names, places=places)
+
+
+@lru_cache(maxsize=64)
+def length_of(model: RotationModel) -> VectorLength | None:
+    """The length that comes up in the matrix of a model: of its vector, or of all coordinates."""
+    if not model.vector:
+        return None
+    taken = {q.func.__name__ for q in model.coordinates} | {c.name for c in model.constants}
+    letter = next(letter for letter in _LENGTHS if letter not in taken)
+    for components in (model.vector, model.coordinates):
+        is_of_vector = components == model.vector and letter == LENGTH.name
+        symbol = LENGTH if is_of_vector else sp.Symbol(f"{letter}_q", positive=True)
+        length = VectorLength(components, symbol, sp.Symbol(f"{symbol.name}_dot"), letter)
+        if any(symbol in length.shortened(entry).free_symbols for entry in model.matrix):
+            return length
+    return None
+
+
+def entry_names(step: Step, arguments: Iterable[Argument]) -> tuple[Formula, ...]:
+    """A name for each entry, row by row.
+
+    Vectors that are arguments of other quantities, such as the rates, have the names of those.
+    """
+    quantity = step.quantity
+    if quantity.is_scalar:
+        return (quantity.symbol,)
+    is_rates = quantity.name.startswith("rates_from_")
+    used_as = "q_dot" if is_rates else quantity.name.replace("angular_velocity_", "omega_")
+    known = {argument.name: argument.notation for argument in arguments}
+    return known.get(used_as) or indexed(quantity.symbol, step.shape)
