@@ -104,9 +104,9 @@ class ExpressionError(RigidsymError):
 class Fault:
     """One thing wrong in a derivation file."""
 
-    line: int  # counted from 1; 0 for the file as a whole
-    path: str  # "rotation.angles[1]", in the file's own keys
     message: str  # what was found and what was expected
+    line: int = 0  # counted from 1; 0 for the file as a whole
+    path: str = ""  # "rotation.angles[1]", in the file's own keys
 
     def place(self) -> tuple[int, list[tuple[int, str]]]:
         """By line, then by path, where entry 2 comes before entry 10."""

@@ -1,28 +1,24 @@
-"""The shipped solids: each is a map, bounds and, for lines and surfaces, an element.
+"""The shipped solids as data: a map, bounds and, for lines and surfaces, an element, as texts.
 
 No moment of inertia stands here; all are integrated.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
 from types import MappingProxyType
 
 import sympy as sp
-from sympy import Rational, cos, pi, sin
 
 from rigidsym.errors import BodyError, offer
-from rigidsym.models.distribution import Bounds, Solid
+from rigidsym.models.distribution import Solid
 from rigidsym.models.so3 import symbolic
-
-_HALF = Rational(1, 2)
-Geometry = tuple[Sequence[sp.Symbol], Sequence[sp.Expr], Sequence[Bounds], sp.Expr | None]
-Form = Callable[..., Geometry]
+from rigidsym.text.expression import parse_expression
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Length:
     """A length that a solid asks for, or several of a kind."""
 
@@ -31,14 +27,16 @@ class Length:
     about: str
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Shape:
     """One kind of solid: its lengths, and its geometry in terms of them and of u, v, w."""
 
     title: str
     about: str  # where its origin and axes are
     lengths: tuple[Length, ...]
-    form: Form
+    place: str  # x, y, z, between commas
+    bounds: str  # of u, v, w, as far as they are used
+    element: str = ""  # of lines and surfaces
     larger: tuple[tuple[str, str], ...] = ()  # keys, the first at least as long as the second
 
     @property
@@ -51,196 +49,132 @@ class Shape:
         return tuple(name for length in self.lengths for name in length.names)
 
 
-def _cylinder(
-    u: sp.Symbol, v: sp.Symbol, w: sp.Symbol, inner: sp.Expr, outer: sp.Expr, height: sp.Expr
-) -> Geometry:
-    place = (u * cos(v), u * sin(v), w)
-    return (u, v, w), place, ((inner, outer), (0, 2 * pi), _about_zero(height)), None
-
-
-def _frustum(
-    u: sp.Symbol, v: sp.Symbol, w: sp.Symbol, bottom: sp.Expr, top: sp.Expr, height: sp.Expr
-) -> Geometry:
-    radius = u * (bottom + (top - bottom) * w)
-    place = (radius * cos(v), radius * sin(v), height * w)
-    return (u, v, w), place, ((0, 1), (0, 2 * pi), (0, 1)), None
-
-
-def _ball(
-    u: sp.Symbol, v: sp.Symbol, w: sp.Symbol, inner: sp.Expr, outer: sp.Expr, down_to: sp.Expr = pi
-) -> Geometry:
-    place = (u * sin(v) * cos(w), u * sin(v) * sin(w), u * cos(v))
-    return (u, v, w), place, ((inner, outer), (0, down_to), (0, 2 * pi)), None
-
-
-def _ellipsoid(u: sp.Symbol, v: sp.Symbol, w: sp.Symbol, *axes: sp.Expr) -> Geometry:
-    coordinates, place, _, _ = _ball(u, v, w, sp.S.Zero, sp.S.One)
-    scaled = [axis * part for axis, part in zip(axes, place, strict=True)]
-    return coordinates, scaled, ((0, 1), (0, pi), (0, 2 * pi)), None
-
-
-def _torus(u: sp.Symbol, v: sp.Symbol, w: sp.Symbol, radius: sp.Expr, tube: sp.Expr) -> Geometry:
-    distance = radius + u * cos(w)
-    place = (distance * cos(v), distance * sin(v), u * sin(w))
-    return (u, v, w), place, ((0, tube), (0, 2 * pi), (0, 2 * pi)), None
-
-
-def _box(u: sp.Symbol, v: sp.Symbol, w: sp.Symbol, *sides: sp.Expr) -> Geometry:
-    return (u, v, w), (u, v, w), tuple(map(_about_zero, sides)), None
-
-
-def _plate(u: sp.Symbol, v: sp.Symbol, _: sp.Symbol, *sides: sp.Expr) -> Geometry:
-    return (u, v), (u, v, sp.S.Zero), tuple(map(_about_zero, sides)), sp.S.One
-
-
-def _rod(u: sp.Symbol, _v: sp.Symbol, _w: sp.Symbol, length: sp.Expr) -> Geometry:
-    return (u,), (sp.S.Zero, sp.S.Zero, u), (_about_zero(length),), sp.S.One
-
-
-def _disc(u: sp.Symbol, v: sp.Symbol, _: sp.Symbol, radius: sp.Expr) -> Geometry:
-    return (u, v), (u * cos(v), u * sin(v), sp.S.Zero), ((0, radius), (0, 2 * pi)), u
-
-
-def _ring(u: sp.Symbol, _v: sp.Symbol, _w: sp.Symbol, radius: sp.Expr) -> Geometry:
-    return (u,), (radius * cos(u), radius * sin(u), sp.S.Zero), ((0, 2 * pi),), radius
-
-
-def _tube(u: sp.Symbol, v: sp.Symbol, _: sp.Symbol, radius: sp.Expr, height: sp.Expr) -> Geometry:
-    place = (radius * cos(u), radius * sin(u), v)
-    return (u, v), place, ((0, 2 * pi), _about_zero(height)), radius
-
-
-def _shell(u: sp.Symbol, v: sp.Symbol, _: sp.Symbol, radius: sp.Expr) -> Geometry:
-    place = (radius * sin(u) * cos(v), radius * sin(u) * sin(v), radius * cos(u))
-    return (u, v), place, ((0, pi), (0, 2 * pi)), radius**2 * sin(u)
-
-
-def _tetrahedron(u: sp.Symbol, v: sp.Symbol, w: sp.Symbol, *corners: sp.Expr) -> Geometry:
-    first, *others = (sp.Matrix(corners[k : k + 3]) for k in (0, 3, 6, 9))
-    place = first + sum(
-        (s * (other - first) for s, other in zip((u, v, w), others, strict=True)), sp.zeros(3, 1)
-    )
-    return (u, v, w), tuple(place), ((0, 1), (0, 1 - u), (0, 1 - u - v)), None
-
-
-def _about_zero(length: sp.Expr) -> Bounds:
-    return -length * _HALF, length * _HALF
-
-
-_ABOUT_Z = "centred, about the z-axis"
-_RADIUS = Length(key="radius", names=("a",), about="radius")
-_HEIGHT = Length(key="height", names=("h",), about="height")
-_INNER = Length(key="inner_radius", names=("a",), about="inner radius")
-_OUTER = Length(key="outer_radius", names=("b",), about="outer radius")
+_RADIUS, _HEIGHT = Length("radius", ("a",), "radius"), Length("height", ("h",), "height")
+_RADII = (
+    Length("inner_radius", ("a",), "inner radius"),
+    Length("outer_radius", ("b",), "outer radius"),
+)
 _HOLLOW = (("outer_radius", "inner_radius"),)
-_LETTERS = ("a", "b", "c")
+_SIDES = Length("sides", ("a", "b", "c"), "side")
+_CORNERS = tuple(f"{axis}_{k}" for k in range(4) for axis in "xyz")
+_ABOUT_Z = "centred, about the z-axis"
+_ROUND = "u*cos(v), u*sin(v), w"  # u from the z-axis
+_BALL = "u*sin(v)*cos(w), u*sin(v)*sin(w), u*cos(v)"  # v from the z-axis
 
 SHAPES: Mapping[str, Shape] = MappingProxyType(
     {
         "box": Shape(
-            title="Box",
-            about="centred, sides along x, y and z",
-            lengths=(Length(key="sides", names=_LETTERS, about="side"),),
-            form=_box,
+            "Box",
+            "centred, sides along x, y and z",
+            (_SIDES,),
+            "u, v, w",
+            "-a/2..a/2, -b/2..b/2, -c/2..c/2",
         ),
         "plate": Shape(
-            title="Rectangular plate",
-            about="thin, centred, sides along x and y",
-            lengths=(Length(key="sides", names=("a", "b"), about="side"),),
-            form=_plate,
+            "Rectangular plate",
+            "thin, centred, sides along x and y",
+            (Length("sides", ("a", "b"), "side"),),
+            "u, v, 0",
+            "-a/2..a/2, -b/2..b/2",
+            "1",
         ),
         "rod": Shape(
-            title="Rod",
-            about="thin, centred, along z",
-            lengths=(Length(key="length", names=("l",), about="length"),),
-            form=_rod,
+            "Rod",
+            "thin, centred, along z",
+            (Length("length", ("l",), "length"),),
+            "0, 0, u",
+            "-l/2..l/2",
+            "1",
         ),
-        "disc": Shape(title="Disc", about=f"thin, {_ABOUT_Z}", lengths=(_RADIUS,), form=_disc),
-        "ring": Shape(title="Ring", about=f"thin, {_ABOUT_Z}", lengths=(_RADIUS,), form=_ring),
+        "disc": Shape(
+            "Disc",
+            f"thin, {_ABOUT_Z}",
+            (_RADIUS,),
+            "u*cos(v), u*sin(v), 0",
+            "0..a, 0..2*pi",
+            "u",
+        ),
+        "ring": Shape(
+            "Ring", f"thin, {_ABOUT_Z}", (_RADIUS,), "a*cos(u), a*sin(u), 0", "0..2*pi", "a"
+        ),
         "cylinder": Shape(
-            title="Solid cylinder",
-            about=_ABOUT_Z,
-            lengths=(_RADIUS, _HEIGHT),
-            form=lambda u, v, w, a, h: _cylinder(u, v, w, sp.S.Zero, a, h),
+            "Solid cylinder", _ABOUT_Z, (_RADIUS, _HEIGHT), _ROUND, "0..a, 0..2*pi, -h/2..h/2"
         ),
         "hollow_cylinder": Shape(
-            title="Hollow cylinder",
-            about=_ABOUT_Z,
-            lengths=(_INNER, _OUTER, _HEIGHT),
-            form=_cylinder,
+            "Hollow cylinder",
+            _ABOUT_Z,
+            (*_RADII, _HEIGHT),
+            _ROUND,
+            "a..b, 0..2*pi, -h/2..h/2",
             larger=_HOLLOW,
         ),
         "tube": Shape(
-            title="Cylindrical shell",
-            about=f"thin, open, {_ABOUT_Z}",
-            lengths=(_RADIUS, _HEIGHT),
-            form=_tube,
+            "Cylindrical shell",
+            f"thin, open, {_ABOUT_Z}",
+            (_RADIUS, _HEIGHT),
+            "a*cos(u), a*sin(u), v",
+            "0..2*pi, -h/2..h/2",
+            "a",
         ),
         "cone": Shape(
-            title="Solid cone",
-            about="base in the plane z = 0, apex on the z-axis at z = height",
-            lengths=(_RADIUS, _HEIGHT),
-            form=lambda u, v, w, a, h: _frustum(u, v, w, a, sp.S.Zero, h),
+            "Solid cone",
+            "base in the plane z = 0, apex on the z-axis at z = height",
+            (_RADIUS, _HEIGHT),
+            "u*(a - a*w)*cos(v), u*(a - a*w)*sin(v), h*w",
+            "0..1, 0..2*pi, 0..1",
         ),
         "frustum": Shape(
-            title="Frustum of a cone",
-            about="base in the plane z = 0, top at z = height, about the z-axis",
-            lengths=(
-                _RADIUS,
-                Length(key="top_radius", names=("b",), about="radius of the top"),
-                _HEIGHT,
-            ),
-            form=_frustum,
+            "Frustum of a cone",
+            "base in the plane z = 0, top at z = height, about the z-axis",
+            (_RADIUS, Length("top_radius", ("b",), "radius of the top"), _HEIGHT),
+            "u*(a + (b - a)*w)*cos(v), u*(a + (b - a)*w)*sin(v), h*w",
+            "0..1, 0..2*pi, 0..1",
         ),
-        "sphere": Shape(
-            title="Solid sphere",
-            about="centred",
-            lengths=(_RADIUS,),
-            form=lambda u, v, w, a: _ball(u, v, w, sp.S.Zero, a),
-        ),
+        "sphere": Shape("Solid sphere", "centred", (_RADIUS,), _BALL, "0..a, 0..pi, 0..2*pi"),
         "hollow_sphere": Shape(
-            title="Hollow sphere",
-            about="centred",
-            lengths=(_INNER, _OUTER),
-            form=_ball,
-            larger=_HOLLOW,
+            "Hollow sphere", "centred", _RADII, _BALL, "a..b, 0..pi, 0..2*pi", larger=_HOLLOW
         ),
         "hemisphere": Shape(
-            title="Solid hemisphere",
-            about="base in the plane z = 0, above it",
-            lengths=(_RADIUS,),
-            form=lambda u, v, w, a: _ball(u, v, w, sp.S.Zero, a, pi * _HALF),
+            "Solid hemisphere",
+            "base in the plane z = 0, above it",
+            (_RADIUS,),
+            _BALL,
+            "0..a, 0..pi/2, 0..2*pi",
         ),
         "shell": Shape(
-            title="Spherical shell", about="thin, centred", lengths=(_RADIUS,), form=_shell
+            "Spherical shell",
+            "thin, centred",
+            (_RADIUS,),
+            "a*sin(u)*cos(v), a*sin(u)*sin(v), a*cos(u)",
+            "0..pi, 0..2*pi",
+            "a**2*sin(u)",
         ),
         "ellipsoid": Shape(
-            title="Solid ellipsoid",
-            about="centred, semi-axes along x, y and z",
-            lengths=(Length(key="semi_axes", names=_LETTERS, about="semi-axis"),),
-            form=_ellipsoid,
+            "Solid ellipsoid",
+            "centred, semi-axes along x, y and z",
+            (Length("semi_axes", ("a", "b", "c"), "semi-axis"),),
+            "a*u*sin(v)*cos(w), b*u*sin(v)*sin(w), c*u*cos(v)",
+            "0..1, 0..pi, 0..2*pi",
         ),
         "torus": Shape(
-            title="Solid torus",
-            about=_ABOUT_Z,
-            lengths=(
-                Length(key="radius", names=("a",), about="radius of the circle in the tube"),
-                Length(key="tube_radius", names=("b",), about="radius of the tube"),
+            "Solid torus",
+            _ABOUT_Z,
+            (
+                Length("radius", ("a",), "radius of the circle in the tube"),
+                Length("tube_radius", ("b",), "radius of the tube"),
             ),
-            form=_torus,
+            "(a + u*cos(w))*cos(v), (a + u*cos(w))*sin(v), u*sin(w)",
+            "0..b, 0..2*pi, 0..2*pi",
             larger=(("radius", "tube_radius"),),
         ),
         "tetrahedron": Shape(
-            title="Tetrahedron",
-            about="by its four corners",
-            lengths=(
-                Length(
-                    key="corners",
-                    names=tuple(f"{axis}_{k}" for k in range(4) for axis in "xyz"),
-                    about="coordinate of a corner",
-                ),
+            "Tetrahedron",
+            "by its four corners",
+            (Length("corners", _CORNERS, "coordinate of a corner"),),
+            ", ".join(
+                f"{x}_0 + u*({x}_1 - {x}_0) + v*({x}_2 - {x}_0) + w*({x}_3 - {x}_0)" for x in "xyz"
             ),
-            form=_tetrahedron,
+            "0..1, 0..1 - u, 0..1 - u - v",
         ),
     }
 )
@@ -266,14 +200,19 @@ def shaped(
         raise BodyError(f"{name}: expected {', '.join(shape.names)}, got {len(lengths)} lengths")
     lengths = [symbolic(length, f"{name}: a length") for length in lengths]
     check_lengths(name, [float(e) if e.is_number else None for e in lengths])
-    coordinates = free_coordinates(("u", "v", "w"), [*lengths, mass, density])
-    chosen, place, bounds, element = shape.form(*coordinates, *lengths)
+    coordinates = _free_coordinates([*lengths, mass, density])
+    names = dict(zip(shape.names, lengths, strict=True)) | coordinates
+
+    def read(text: str) -> list[sp.Expr]:
+        return [parse_expression(part.strip(), names) for part in text.split(",")]
+
+    bounds = [bound.split("..") for bound in shape.bounds.split(",")]
     return Solid(
         title=shape.title,
-        coordinates=tuple(chosen),
-        place=sp.ImmutableMatrix(place),
-        bounds=tuple((sp.sympify(low), sp.sympify(high)) for low, high in bounds),
-        element=element,
+        coordinates=tuple(coordinates.values())[: len(bounds)],
+        place=sp.ImmutableMatrix(read(shape.place)),
+        bounds=tuple((*read(low), *read(high)) for low, high in bounds),
+        element=read(shape.element)[0] if shape.element else None,
         mass=mass,
         density=density,
     )
@@ -295,12 +234,14 @@ def check_lengths(name: str, values: Sequence[float | None]) -> None:
             )
 
 
-def free_coordinates(names: Sequence[str], used: Sequence[sp.Expr | None]) -> tuple[sp.Symbol, ...]:
-    """Symbols of these names, with a number behind if an expression has the name already."""
+def _free_coordinates(used: Sequence[sp.Expr | None]) -> dict[str, sp.Symbol]:
+    """Symbols for u, v and w, with a number behind if an expression has the name already."""
     taken = {
-        s.name for expression in used if expression is not None for s in expression.free_symbols
+        str(s) for expression in used if expression is not None for s in expression.free_symbols
     }
-    return tuple(
-        sp.Symbol(next(n for n in (name, *(f"{name}_{k}" for k in range(1, 99))) if n not in taken))
-        for name in names
-    )
+    return {
+        name: sp.Symbol(
+            next(n for n in (name, *(f"{name}_{k}" for k in range(1, 99))) if n not in taken)
+        )
+        for name in ("u", "v", "w")
+    }

@@ -7,7 +7,7 @@ this value, named after its key, so that the derivation stays exact and its form
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain, count
@@ -23,47 +23,25 @@ from rigidsym.spec.toml_lines import Path as Place
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 
-PARAMETER_KEYS = ("positive", "about", "unit", "value")
-OF_FILES = ("mesh", "particles", "columns", "scale", "density")  # keys of bodies in files
+_OF_FILES = ("mesh", "particles", "columns", "scale", "density")  # keys of bodies in files
 _WORD = re.compile(r"[^\W\d]\w*")
-A_NUMBER = 'a number, or an expression in quotes such as "2*a"'
+_A_NUMBER = 'a number, or an expression in quotes such as "2*a"'
+_UNREAD = sp.Symbol("unread")  # in place of an expression whose fault is noted
 
 
 class Declared:
     """The parameters of one file: declared in [parameters], or made from numbers."""
 
-    def __init__(self) -> None:
+    def __init__(self, body: Table, parameters: Table | None) -> None:
         self._parameters: dict[str, Parameter] = {}
         self.files: dict[Place, Mapping[str, object]] = {}  # contents, by their tables
         self._notes: dict[str, tuple[str, str]] = {}  # name: meaning and unit
-        self._taken: set[str] = set()  # names used in the file
+        self._taken = set(_words(body.data))  # names that no number may have
         self._numbers: dict[str, float] = {}  # names of numbers
-
-    def read(self, table: Table) -> None:
-        """The tables of [parameters]: A = { positive = true, about = "...", unit = "kg m^2" }."""
-        for key in table.data:
-            entry = table.table(key)
-            if entry is None:
-                continue
-            entry.refuse_others(PARAMETER_KEYS)
-            try:
-                name = check_name(key)
-                self._parameters[name] = _parameter(entry, name)
-            except ExpressionError as error:
-                table.fault(error.message, key)
-            except BodyError as error:
-                table.fault(str(error), key)
-
-    def take_names(self, data: object) -> None:
-        """Note all words in the texts of a table, which no number may have as its name."""
-        if isinstance(data, str):
-            self._taken.update(_WORD.findall(data))
-        elif isinstance(data, Mapping):
-            for entry in data.values():
-                self.take_names(entry)
-        elif isinstance(data, list):
-            for entry in data:
-                self.take_names(entry)
+        for key in parameters.data if parameters else ():
+            if parameters and (entry := parameters.table(key)) is not None:
+                with parameters.noting(key):
+                    self._parameters[check_name(key)] = _parameter(entry, check_name(key))
 
     def symbol(self, name: str) -> sp.Symbol:
         """The symbol of a name in an expression; raises ExpressionError for an invalid name."""
@@ -95,12 +73,13 @@ class Declared:
         kept = {key: self.without_files(entry, (*at, key)) for key, entry in data.items()}
         if at not in self.files:
             return kept
-        return {k: v for k, v in kept.items() if k not in OF_FILES} | dict(self.files[at])
+        return {k: v for k, v in kept.items() if k not in _OF_FILES} | dict(self.files[at])
 
-    def note(self, expression: sp.Expr, about: str, unit: str) -> None:
-        """Note the meaning of an expression that is a single symbol, unless it is known."""
-        if expression.is_Symbol:
-            self._notes.setdefault(expression.name, (about, unit))
+    def note(self, expressions: Sequence[sp.Expr], about: str, unit: str) -> None:
+        """Note the meaning of expressions that are single symbols, unless it is known."""
+        for expression in expressions:
+            if expression.is_Symbol:
+                self._notes.setdefault(expression.name, (about, unit))
 
     def number(self, expression: sp.Expr) -> float | None:
         """The value of an expression; None unless all its symbols have values."""
@@ -121,7 +100,17 @@ class Declared:
         return tuple(found)
 
 
+def _words(data: object) -> list[str]:
+    """All words in the texts of a table."""
+    if isinstance(data, str):
+        return _WORD.findall(data)
+    inner = data.values() if isinstance(data, Mapping) else data if isinstance(data, list) else ()
+    return [word for entry in inner for word in _words(entry)]
+
+
 def _parameter(entry: Table, name: str) -> Parameter:
+    """A = { positive = true, about = "...", unit = "kg m^2" }."""
+    entry.refuse_others(("positive", "about", "unit", "value"))
     positive = entry.flag("positive")
     return Parameter(
         symbol=sp.Symbol(name),
@@ -133,7 +122,7 @@ def _parameter(entry: Table, name: str) -> Parameter:
 
 
 class BodyReader:
-    """Reads the values of one table; a fault is noted, and None is returned."""
+    """Reads the values of one table; a fault is noted, and something else is read instead."""
 
     def __init__(
         self,
@@ -156,59 +145,61 @@ class BodyReader:
 
     def expression(
         self, value: object, slot: str, *at: str | int, positive: bool = False
-    ) -> sp.Expr | None:
+    ) -> sp.Expr:
         """The exact expression of a text or a number at a path."""
         try:
             if isinstance(value, str):
                 names = {name: self.declared.symbol(name) for name in names_in(value)}
                 return parse_expression(value, names)
             if isinstance(value, bool) or not isinstance(value, int | float):
-                self.table.mistyped(value, A_NUMBER, *at)
-                return None
-            if not isfinite(value):
-                raise BodyError(f"expected a finite number, got {value}")
-            if isinstance(value, int) or value == 0 or self._exact_only:
-                return self._exact(Fraction(str(value)), positive=positive)
-            return self.declared.measured(slot + self.suffix, value, positive=positive)
+                self.table.mistyped(value, _A_NUMBER, *at)
+            elif not isfinite(value):
+                self.table.fault(f"expected a finite number, got {value}", *at)
+            elif isinstance(value, float) and value != 0 and not self._exact_only:
+                return self.declared.measured(slot + self.suffix, value, positive=positive)
+            elif positive and value <= 0:
+                self.table.fault(f"expected a positive number, got {Fraction(str(value))}", *at)
+            else:
+                return sp.Rational(str(value))
         except ExpressionError as error:
             self.table.fault(f"column {error.column}: {error.message}", *at)
         except BodyError as error:
             self.table.fault(str(error), *at)
-        return None
+        return _UNREAD
 
-    def _exact(self, value: Fraction, *, positive: bool) -> sp.Rational:
-        if positive and value <= 0:
-            raise BodyError(f"expected a positive number, got {value}")
-        return sp.Rational(value.numerator, value.denominator)
-
-    def single(self, key: str, slot: str, *, positive: bool = False) -> sp.Expr | None:
-        """The expression of a key; None if it is missing or wrong."""
-        value = self.table.value(key)
-        return None if value is None else self.expression(value, slot, key, positive=positive)
+    def single(self, key: str, slot: str, *, positive: bool = False) -> sp.Expr:
+        """The expression of a key."""
+        return self.expression(self.table.value(key), slot, key, positive=positive)
 
     def row(
-        self, key: str, slots: tuple[str, ...], expected: str, *, positive: bool = False
-    ) -> list[sp.Expr] | None:
+        self, key: str, slots: Sequence[str], expected: str, *, positive: bool = False
+    ) -> list[sp.Expr]:
         """A list of as many expressions as there are slots."""
         value = self.table.value(key)
         if not isinstance(value, list) or len(value) != len(slots):
-            self._missing_or_mistyped(value, expected, key)
-            return None
+            self.table.mistyped(value, expected, key)
+            return [_UNREAD] * len(slots)
         return self.entries(value, slots, key, positive=positive)
 
+    def rows(
+        self, key: str, slots: Sequence[Sequence[str]] | int, expected: str
+    ) -> list[list[sp.Expr]]:
+        """A list of rows of as many expressions as there are slots, or any number of rows."""
+        value = self.table.value(key)
+        rows = value if isinstance(value, list) else []
+        if isinstance(slots, int):
+            slots = [[f"{axis}_{k}" for axis in "xyz"[:slots]] for k in range(max(1, len(rows)))]
+        sizes = [len(row) if isinstance(row, list) else 0 for row in rows]
+        if sizes != [len(row) for row in slots]:
+            self.table.mistyped(value, expected, key)
+            return [[_UNREAD] * len(row) for row in slots]
+        return [self.entries(row, slots[k], key, k) for k, row in enumerate(rows)]
+
     def entries(
-        self, values: list[object], slots: tuple[str, ...], *at: str | int, positive: bool = False
-    ) -> list[sp.Expr] | None:
-        """The expressions of a list; None if one of them is wrong."""
-        read = [
+        self, values: Sequence[object], slots: Sequence[str], *at: str | int, positive: bool = False
+    ) -> list[sp.Expr]:
+        """The expressions of a list."""
+        return [
             self.expression(value, slot, *at, place, positive=positive)
             for place, (value, slot) in enumerate(zip(values, slots, strict=True))
         ]
-        found = [entry for entry in read if entry is not None]
-        return found if len(found) == len(read) else None
-
-    def _missing_or_mistyped(self, value: object, expected: str, key: str) -> None:
-        if value is None:
-            self.table.fault(f"missing; expected {expected}", key)
-        else:
-            self.table.mistyped(value, expected, key)

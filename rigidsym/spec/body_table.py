@@ -1,13 +1,17 @@
-"""The [body] table of a derivation file, read into a rigid body."""
+"""The [body] table of a derivation file: moments, shapes, particles, parts, numbers in files."""
 
 from __future__ import annotations
 
+import stat
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from rigidsym.errors import RigidsymError
+from rigidsym.errors import BodyError, MissingExtra, RigidsymError
 from rigidsym.models.body import (
     BodyDescription,
     RigidBody,
@@ -15,15 +19,42 @@ from rigidsym.models.body import (
     given_inertia,
     principal_moments,
 )
-from rigidsym.models.distribution import Distribution
+from rigidsym.models.distribution import (
+    UPRIGHT,
+    Composite,
+    Distribution,
+    Known,
+    Part,
+    Particle,
+    Particles,
+    Polyhedron,
+    Solid,
+)
+from rigidsym.models.placement import turned_by
+from rigidsym.models.solids import SHAPES, Length, check_lengths, shape_of, shaped
 from rigidsym.spec.body_reader import BodyReader, Declared
 from rigidsym.spec.derivation_spec import Body
-from rigidsym.spec.distribution_table import KINDS as DISTRIBUTIONS, keys_of, read_distribution
-from rigidsym.spec.measured_table import read_known
 from rigidsym.spec.tables import Table
 
+if TYPE_CHECKING:
+    from rigidsym.data.mass.properties import MassProperties
+
+_OF_PARTS = ("shape", "particles", "mesh", "inertia", "parts")
+_KINDS = ("principal_moments", "inertia", "shape", "particles", "mesh", "parts")
+_OF_MASS = ("mass", "density")
+_KEYS = {  # that go with a kind
+    "principal_moments": ("mass",),
+    "inertia": ("mass", "centre"),
+    "mesh": (*_OF_MASS, "scale"),
+    "particles": ("columns",),
+    "given": ("coordinates", "place", "bounds", "element", *_OF_MASS),
+    "polyhedron": ("vertices", "faces", *_OF_MASS),
+}
+_AXES = ("x", "y", "z")
+_POINT = 'three coordinates, such as [0, 0, "h"]'
 _MOMENTS = ("A", "B", "C")
-_KINDS = ("principal_moments", "inertia", *(kind for kind in DISTRIBUTIONS if kind != "inertia"))
+_TENSOR = [[f"I_{min(i, j)}{max(i, j)}" for j in (1, 2, 3)] for i in (1, 2, 3)]
+_ROUNDING = 1e-14  # relative to the largest moment: smaller numbers are rounding errors
 
 
 def read_body(body: Table, parameters: Table | None, name: str, folder: Path | None) -> Body | None:
@@ -31,85 +62,325 @@ def read_body(body: Table, parameters: Table | None, name: str, folder: Path | N
 
     Paths in it start from `folder`; a record names no files. Distributions are not integrated.
     """
-    declared = Declared()
-    declared.take_names(body.data)
-    if parameters is not None:
-        declared.read(parameters)
-    kinds = [kind for kind in _KINDS if body.value(kind) is not None]
-    if len(kinds) != 1:
-        got = f"got {' and '.join(kinds)}" if kinds else "got none"
-        body.fault(f"expected one of {', '.join(_KINDS)}; {got}")
+    declared = Declared(body, parameters)
+    kind = _kind_of(body, _KINDS, ("allow",))
+    if kind is None:
         return None
-    (kind,) = kinds
-    own = ("principal_moments", "mass") if kind == _KINDS[0] else keys_of(body.data, kind)
-    body.refuse_others((*own, "allow"))
-    try:
-        given = _read(BodyReader(body, declared, folder), kind, name)
-    except RigidsymError as error:
-        body.fault(str(error), kind)
-        return None
+    reader, allow = BodyReader(body, declared, folder), bool(body.flag("allow"))
+    given: RigidBody | Distribution | None = None
+    with body.noting(kind):
+        if kind in ("principal_moments", "inertia"):
+            given = _rigid_body(reader, kind, name, allow=allow)
+        else:
+            given = _READERS[kind](reader)
     if given is None:
         return None
-    data: dict[str, object] = {"body": declared.without_files(body.data, body.path)}
-    request = data | ({"parameters": parameters.data} if parameters else {})
+    request: dict[str, object] = {"body": declared.without_files(body.data, body.path)}
+    request |= {"parameters": parameters.data} if parameters else {}
     if isinstance(given, RigidBody):
         return replace(given, request=request)
     return BodyDescription(
         distribution=given,
         name=name,
         parameters=declared.given(),
-        allow=bool(body.flag("allow")),
+        allow=allow,
         keeps_numbers=kind == "shape",
         request=request,
     )
 
 
-def _read(reader: BodyReader, kind: str, name: str) -> RigidBody | Distribution | None:
-    if kind == "principal_moments":
-        return _read_moments(reader, name)
-    return _read_inertia(reader, name) if kind == "inertia" else read_distribution(reader, kind)
+def _kind_of(table: Table, kinds: Sequence[str], others: Sequence[str]) -> str | None:
+    """The one kind that a table is of; other keys than those of its kind are refused."""
+    found = [kind for kind in kinds if table.value(kind) is not None]
+    if len(found) != 1:
+        table.fault(f"expected one of {', '.join(kinds)}; got {' and '.join(found) or 'none'}")
+        return None
+    (kind,) = found
+    own: tuple[str, ...] = _KEYS.get(kind, ())
+    given = table.value(kind)
+    if kind == "particles" and not isinstance(given, str):
+        own = ()
+    if kind == "shape" and isinstance(given, str):
+        lengths = SHAPES[given].lengths if given in SHAPES else ()
+        own = _KEYS.get(given, (*_OF_MASS, *(length.key for length in lengths)))
+    table.refuse_others((kind, *own, *others))
+    return kind
 
 
-def _read_moments(reader: BodyReader, name: str) -> RigidBody | None:
-    """principal_moments = ["A", "A", "C"]; equal numbers share a name."""
-    value = reader.table.value("principal_moments")
-    slots: tuple[str, ...] = _MOMENTS
+def _rigid_body(reader: BodyReader, kind: str, name: str, *, allow: bool) -> RigidBody:
+    """The body of principal_moments = ["A", "A", "C"] or of inertia, in these axes."""
+    value = reader.table.value(kind)
+    if value == "general":
+        return general_inertia(mass=_mass(reader), name=name)
+    options: dict[str, Any] = {"name": name, "allow": allow}
+    if kind == "inertia":
+        known = _read_known(reader)
+        options |= {"mass": known.mass, "centre": known.centre}
+        return given_inertia(known.inertia, parameters=reader.declared.given(), **options)
+    slots: Sequence[str] = _MOMENTS
     if isinstance(value, list) and len(value) == 3:
-        slots = tuple(_MOMENTS[value.index(entry)] for entry in value)
-    moments = reader.row("principal_moments", slots, "three moments of inertia")
+        slots = [_MOMENTS[value.index(entry)] for entry in value]  # equal numbers share a name
+    moments = reader.row(kind, slots, "three moments of inertia")
     mass = _mass(reader)
-    if moments is None or mass is None:
-        return None
-    return principal_moments(
-        *moments,
-        mass=mass,
-        name=name,
-        parameters=reader.declared.given(),
-        allow=bool(reader.table.flag("allow")),
-    )
+    return principal_moments(*moments, mass=mass, parameters=reader.declared.given(), **options)
 
 
-def _read_inertia(reader: BodyReader, name: str) -> RigidBody | None:
-    """inertia = [[...], [...], [...]], or "general" for six symbols."""
-    table = reader.table
-    if table.value("inertia") == "general":
-        mass = _mass(reader)
-        return None if mass is None else general_inertia(mass=mass, name=name)
-    known = read_known(reader)
-    if known is None:
-        return None
-    return given_inertia(
-        known.inertia,
-        mass=known.mass,
-        centre=known.centre,
-        name=name,
-        parameters=reader.declared.given(),
-        allow=bool(table.flag("allow")),
-    )
-
-
-def _mass(reader: BodyReader) -> sp.Expr | None:
-    """The mass, or the symbol M if the file gives none."""
+def _mass(reader: BodyReader) -> sp.Expr:
+    """The mass, or the symbol M if the table has none."""
     if reader.table.value("mass") is None:
-        return sp.Symbol("M")
+        return sp.Symbol("M" + reader.suffix)
     return reader.single("mass", "M", positive=True)
+
+
+def _mass_or_density(reader: BodyReader) -> dict[str, sp.Expr]:
+    """{"mass": ...} or {"density": ...}; the mass M if the table has neither."""
+    if reader.table.value("density") is None:
+        mass = _mass(reader)
+        reader.declared.note([mass], "mass", "kg")
+        return {"mass": mass}
+    if reader.table.value("mass") is not None:
+        reader.table.fault("expected either the mass or the density", "density")
+    density = reader.single("density", "rho", positive=True)
+    reader.declared.note([density], "density", "")
+    return {"density": density}
+
+
+# shapes
+
+
+def _read_shape(reader: BodyReader) -> Distribution:
+    name = reader.table.text("shape") or ""
+    if name in ("given", "polyhedron"):
+        return _read_given(reader) if name == "given" else _read_polyhedron(reader)
+    values = [entry for length in shape_of(name).lengths for entry in _lengths(reader, length)]
+    mass = _mass_or_density(reader)
+    check_lengths(name, [reader.declared.number(value) for value in values])
+    return shaped(name, values, **mass)
+
+
+def _lengths(reader: BodyReader, length: Length) -> list[sp.Expr]:
+    """The lengths of one key; if it is missing, their default symbols."""
+    key, names = length.key, length.names
+    if key == "corners":
+        slots = [names[k : k + 3] for k in range(0, len(names), 3)]
+        corners = reader.rows(key, slots, "a list of 4 points of three coordinates")
+        return [entry for corner in corners for entry in corner]
+    if reader.table.value(key) is None:
+        values: list[sp.Expr] = [sp.Symbol(name + reader.suffix) for name in names]
+    elif len(names) == 1:
+        values = [reader.single(key, names[0], positive=True)]
+    else:
+        values = reader.row(key, names, f"{len(names)} lengths", positive=True)
+    reader.declared.note(values, length.about, "m")
+    return values
+
+
+def _read_given(reader: BodyReader) -> Distribution:
+    """A solid by its coordinates, its place in terms of them, bounds, and a density."""
+    table = reader.table
+    names = [*table.texts("coordinates", "one to three names").values()] or [*_AXES]
+    coordinates = tuple(reader.declared.symbol(name) for name in names)
+    place: list[sp.Expr] = list(coordinates)
+    if table.value("place") is not None or len(names) != 3:
+        place = reader.row("place", _AXES, _POINT)
+    slots = [(f"low_{k}", f"high_{k}") for k in range(len(names))]
+    bounds = reader.rows("bounds", slots, f"{len(names)} pairs of bounds, the outermost first")
+    has_element = table.value("element") is not None
+    return Solid(
+        title="Given solid",
+        coordinates=coordinates,
+        place=sp.ImmutableMatrix(place),
+        bounds=tuple((low, high) for low, high in bounds),
+        element=reader.single("element", "element") if has_element else None,
+        **_mass_or_density(reader),
+    )
+
+
+def _read_polyhedron(reader: BodyReader) -> Distribution:
+    points = reader.rows("vertices", 3, "a list of points of three coordinates")
+    value = reader.table.value("faces")
+    faces = value if isinstance(value, list) else []
+    is_fine = all(isinstance(f, list) and all(isinstance(k, int) for k in f) for f in faces)
+    if not faces or not is_fine:
+        expected = "a list of faces, each a list of corner numbers"
+        reader.table.mistyped(value, expected, "faces")
+        faces = []
+    return Polyhedron(
+        vertices=tuple(map(sp.ImmutableMatrix, points)),
+        faces=tuple(map(tuple, faces)),
+        **_mass_or_density(reader),
+    )
+
+
+# particles and parts
+
+
+def _read_particles(reader: BodyReader) -> Distribution:
+    """particles = [{ mass = "m", at = ["a", 0, 0] }, ...], or a file; numbers stay exact."""
+    if isinstance(reader.table.value("particles"), str):
+        return _read_cloud(reader)
+    particles = []
+    tables = reader.table.tables("particles", "a list of tables with mass and at, or a file")
+    for place, table in enumerate(tables, start=1):
+        table.refuse_others(("mass", "at"))
+        own = reader.inside(table, f"_{place}", exact=True)
+        mass = own.single("mass", "m", positive=True)
+        at = own.row("at", _AXES, _POINT)
+        particles.append(Particle(mass=mass, position=sp.ImmutableMatrix(at)))
+    return Particles(particles=tuple(particles))
+
+
+def _read_parts(reader: BodyReader) -> Distribution:
+    """parts = [{ shape = ..., at = [...], turned = "z(pi/4)", hole = true }, ...]."""
+    conditions: list[sp.Expr] = []
+    tables = reader.table.tables("parts", "a list of tables, each with a shape or particles")
+    parts = [
+        _read_part(reader.inside(table, f"_{place}"), conditions)
+        for place, table in enumerate(tables, start=1)
+    ]
+    found = tuple(part for part in parts if part is not None)
+    return Composite(parts=found, conditions=tuple(conditions))
+
+
+def _read_part(reader: BodyReader, conditions: list[sp.Expr]) -> Part | None:
+    table = reader.table
+    kind = _kind_of(table, _OF_PARTS, ("at", "turned", "hole", "label"))
+    if kind is None:
+        return None
+    what: Distribution | None = None
+    turned = UPRIGHT
+    with table.noting(kind):
+        what = _READERS[kind](reader)
+    with table.noting("turned"):
+        turned, bound = _turned(reader)
+        conditions += bound
+    at: Sequence[sp.Expr] = [sp.S.Zero] * 3
+    if table.value("at") is not None:
+        at = reader.row("at", _AXES, _POINT)
+    if what is None:
+        return None
+    return Part(
+        what=what,
+        at=sp.ImmutableMatrix(at),
+        turned=turned,
+        hole=bool(table.flag("hole")),
+        label=table.text("label") or "",
+    )
+
+
+def _turned(reader: BodyReader) -> tuple[sp.ImmutableMatrix, tuple[sp.Expr, ...]]:
+    """The matrix of turned = "z(pi/4) x(alpha)", or of { rotation = "ZXZ", values = [...] }."""
+    value = reader.table.value("turned")
+    if isinstance(value, str):
+        return turned_by(value)
+    inner = reader.table.table("turned")
+    if inner is None:
+        return UPRIGHT, ()
+    inner.refuse_others(("rotation", "values"))
+    values, text = inner.value("values"), inner.text("rotation")
+    if text is None or not isinstance(values, list):
+        raise BodyError('expected rotation = "ZXZ" or another, and a list of values')
+    slots = [f"q_{k}" for k in range(len(values))]
+    return turned_by(text, reader.inside(inner, exact=True).entries(values, slots, "values"))
+
+
+# numbers; the derivation stays exact, since they become parameters that have a value
+
+
+def _read_known(reader: BodyReader) -> Known:
+    """inertia = [[...], [...], [...]] about the centre of mass, with mass and centre."""
+    note = reader.declared.note
+    inertia = reader.rows("inertia", _TENSOR, 'three rows of three expressions, or "general"')
+    centre: list[sp.Expr] = [sp.S.Zero] * 3
+    if reader.table.value("centre") is not None:
+        centre = reader.row("centre", ("x_C", "y_C", "z_C"), "three coordinates")
+    mass = _mass(reader)
+    note([inertia[k][k] for k in range(3)], "moment of inertia", "kg m^2")
+    note([*chain.from_iterable(inertia)], "product of inertia, with its sign", "kg m^2")
+    note(centre, "coordinate of the centre of mass", "m")
+    note([mass], "mass", "kg")
+    return Known(mass=mass, centre=sp.ImmutableMatrix(centre), inertia=sp.ImmutableMatrix(inertia))
+
+
+def _read_cloud(reader: BodyReader) -> Known:
+    """particles = "cloud.npy": particles in NPY, CSV or Parquet."""
+    from rigidsym.data.mass.point_masses import inertia_of
+
+    columns = [*reader.table.texts("columns", "names of the columns").values()] or None
+    allow = bool(reader.table.flag("allow"))
+    return _in_file(
+        reader, "particles", lambda path: inertia_of(path, columns=columns, allow=allow)
+    )
+
+
+def _read_mesh(reader: BodyReader) -> Known:
+    """mesh = "part.stl", with its mass or density, and its length unit in metres as `scale`."""
+    from rigidsym.data.mass.mesh import mesh_inertia, read_mesh_file
+
+    table = reader.table
+    mass, density, scale = (table.number(key) for key in ("mass", "density", "scale"))
+    allow = bool(table.flag("allow"))
+
+    def measured(path: Path) -> MassProperties:
+        mesh = read_mesh_file(path, scale=1.0 if scale is None else scale)
+        return mesh_inertia(mesh, mass=mass, density=density, allow=allow)
+
+    return _in_file(reader, "mesh", measured)
+
+
+def _in_file(reader: BodyReader, key: str, measure: Callable[[Path], MassProperties]) -> Known:
+    """The body in the file that a key names, read as if the table itself held its numbers.
+
+    The record keeps the numbers, so that it can be checked without the file. A file outside the
+    folder of the derivation file is never quoted in a message.
+    """
+    if reader.folder is None:
+        raise BodyError("expected numbers: a record names no files")
+    path = reader.folder / (reader.table.text(key) or "")
+    try:
+        found = measure(path)
+    except MissingExtra:
+        raise
+    except RigidsymError:
+        if path.resolve().is_relative_to(reader.folder.resolve()):
+            raise
+        raise BodyError(f"expected a file with a body, got {_described(path)}") from None
+    numbers = _cleaned(found.mass, found.centre.tolist(), found.inertia.tolist())
+    table = reader.table.instead(numbers)
+    reader.declared.files[table.path] = numbers
+    return _read_known(BodyReader(table, reader.declared, reader.folder, reader.suffix))
+
+
+def _described(path: Path) -> str:
+    """A file by its kind and size."""
+    try:
+        status = path.stat()
+    except OSError as error:
+        return f"{error.strerror}"
+    if not stat.S_ISREG(status.st_mode):
+        return "a folder" if stat.S_ISDIR(status.st_mode) else "a device"
+    return f"a file of {status.st_size} bytes"
+
+
+def _cleaned(mass: float, centre: list[float], inertia: list[list[float]]) -> dict[str, object]:
+    """The values of [body]; rounding errors in place of zeros are removed."""
+
+    def clean(value: float, scale: float) -> float | int:
+        return 0 if abs(value) <= scale * _ROUNDING else value
+
+    scale = max(abs(entry) for row in inertia for entry in row)
+    size = max(map(abs, centre)) + (scale / mass) ** 0.5
+    return {
+        "inertia": [[clean(entry, scale) for entry in row] for row in inertia],
+        "mass": mass,
+        "centre": [clean(value, size) for value in centre],
+    }
+
+
+_READERS: Mapping[str, Callable[[BodyReader], Distribution]] = {
+    "shape": _read_shape,
+    "particles": _read_particles,
+    "mesh": _read_mesh,
+    "inertia": _read_known,
+    "parts": _read_parts,
+}

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rigidsym.errors import ExpressionError, Fault, KernelError, ModelError, SpecError, offer
+from rigidsym.errors import Fault, SpecError, offer
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.forces import forces_on
 from rigidsym.models.rotation import RotationModel
@@ -42,9 +42,12 @@ def read_file(file: str, words: Vocabulary) -> DerivationSpec:
         text = _read_bytes(path).decode("utf-8")
     except FileNotFoundError:
         missing = f"no such file, and no shipped derivation of this name; {offer(file, shipped)}"
-        raise SpecError(file, [Fault(line=0, path="", message=missing)]) from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise SpecError(file, [_unreadable(error)]) from None
+        raise SpecError(file, [Fault(message=missing)]) from None
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        raise SpecError(file, [Fault(message="not UTF-8 text", line=line)]) from None
+    except OSError as error:
+        raise SpecError(file, [Fault(message=f"cannot be read: {error.strerror}")]) from None
     return read_spec(text, words, source=file, name=path.stem, folder=path.parent)
 
 
@@ -75,14 +78,14 @@ def read_spec(
 def from_data(data: object, words: Vocabulary, *, source: str = "request") -> DerivationSpec:
     """The specification that `DerivationSpec.to_data` wrote. Raises SpecError with all faults."""
     if not isinstance(data, Mapping):
-        raise SpecError(source, [Fault(line=0, path="", message="expected an object")])
+        raise SpecError(source, [Fault(message="expected an object")])
     faults = Faults(Source(source))
     table = Table(data, (), faults)
     reader = _Reader(words)
     table.refuse_others((*_RECORD, *_OUTPUT, *_FORMER))
     name = table.text("name") or ""
     if table.value("name") is None:
-        table.fault("missing; expected the name of the derivation", "name")
+        table.mistyped(None, "the name of the derivation", "name")
     rotations = table.tables("rotations", "a list of objects with sequence and angles")
     models = [model for rotation in rotations for model in reader.rotation(rotation, name)]
     return reader.spec(table, table, faults, name=name, models=models, folder=None)
@@ -115,16 +118,27 @@ class _Reader:
         folder: Path | None,
     ) -> DerivationSpec:
         """All but the rotations, and all faults raised together."""
+        title = table.text("title")
+        if message := fault_of_title(title):
+            table.fault(message, "title")
+        theory = bool(table.flag("theory"))
+        if theory and any(model.passive for model in models):
+            table.fault("the theory is written for active rotations; remove passive", "theory")
         choices = {
-            "title": _read_title(table),
             "body": _read_body(table, name, folder),
-            "theory": _read_theory(table, models),
             **_read_dynamics(table, models),
             "notation": self.notation(table),
             **(self.output(output) if output else {}),
         }
         faults.raise_if_any()
-        return DerivationSpec(name=name, models=tuple(models), source=faults.source, **choices)
+        return DerivationSpec(
+            name=name,
+            title=title,
+            theory=theory,
+            models=tuple(models),
+            source=faults.source,
+            **choices,
+        )
 
     def rotation(self, table: Table, name: str) -> list[RotationModel]:
         table.refuse_others(KEYS, self.hints)
@@ -143,13 +157,11 @@ class _Reader:
                 chosen[key] = choice
             elif choice is not None:
                 notation.fault(f"unknown choice {shortened(choice)}; {offer(choice, known)}", key)
-        frames = notation.texts("frames", A_PAIR_OF_FRAMES)
-        if frames and None not in frames:
-            try:
-                return words.notation(**chosen, frames=tuple(frames))
-            except ModelError as error:
-                notation.fault(str(error).removeprefix("notation: "), "frames")
-        return words.notation(**chosen)
+        if frames := notation.texts("frames", A_PAIR_OF_FRAMES):
+            chosen["frames"] = tuple(frames.values())
+        with notation.noting("frames"):
+            return words.notation(**chosen)
+        return None
 
     def output(self, table: Table) -> dict[str, Any]:
         words = self.words
@@ -163,38 +175,20 @@ class _Reader:
         chosen["derivatives"] = self.derivatives(table, chosen["quantities"] or words.quantities)
         return {key: choice for key, choice in chosen.items() if choice is not None}
 
-    def derivatives(self, table: Table, quantities: Sequence[str]) -> tuple[str, ...] | None:
+    def derivatives(self, table: Table, quantities: Sequence[str]) -> tuple[str, ...]:
         """The derivatives of the chosen quantities, each in its one spelling."""
-        texts = table.texts("derivatives", 'a list such as ["angular_velocity_body by q"]')
+        key = "derivatives"
         found = []
-        for place, text in enumerate(texts or ()):
-            if text is None:
-                continue
-            try:
+        texts = table.texts(key, 'a list such as ["angular_velocity_body by q"]')
+        for place, text in texts.items():
+            with table.noting(key, place):
                 request = self.words.derivative(text)
-            except KernelError as error:
-                table.fault(str(error), "derivatives", place)
-                continue
-            if request.quantity not in quantities:
-                message = f"no quantity {shortened(request.quantity)}; "
-                table.fault(message + offer(request.quantity, quantities), "derivatives", place)
-            found.append(str(request))
-        return None if texts is None else tuple(dict.fromkeys(found))
-
-
-def _read_title(table: Table) -> str | None:
-    title = table.text("title")
-    if message := fault_of_title(title):
-        table.fault(message, "title")
-    return title
-
-
-def _read_theory(table: Table, models: Sequence[RotationModel]) -> bool:
-    """Whether the theory, which is written for active rotations, comes first."""
-    is_wanted = bool(table.flag("theory"))
-    if is_wanted and any(model.passive for model in models):
-        table.fault("the theory is written for active rotations; remove passive", "theory")
-    return is_wanted
+                if request.quantity not in quantities:
+                    shown = shortened(request.quantity)
+                    close = offer(request.quantity, quantities)
+                    table.fault(f"no quantity {shown}; {close}", key, place)
+                found.append(str(request))
+        return tuple(dict.fromkeys(found))
 
 
 def _read_dynamics(table: Table, models: Sequence[RotationModel]) -> dict[str, Any]:
@@ -206,15 +200,14 @@ def _read_dynamics(table: Table, models: Sequence[RotationModel]) -> dict[str, A
     if table.value("body") is None:
         table.fault("forces act on a body; expected [body] as well", "dynamics")
     inner = dynamics.table("forces")
-    potential = dynamics.text("potential")
+    potential = dynamics.text("potential") or "0"
     forces = {key: inner.text(key) or "0" for key in inner.data} if inner else {}
     for model in models:
-        for at, given in (("potential", (potential or "0", {})), ("forces", ("0", forces))):
-            try:
-                forces_on(model, *given)
-            except (ModelError, ExpressionError) as error:
-                dynamics.fault(str(error), at)
-    return {"potential": potential or "0", "forces": tuple(forces.items())}
+        with dynamics.noting("potential"):
+            forces_on(model, potential, {})
+        with dynamics.noting("forces"):
+            forces_on(model, "0", forces)
+    return {"potential": potential, "forces": tuple(forces.items())}
 
 
 def _read_body(table: Table, name: str, folder: Path | None) -> Body | None:
@@ -235,10 +228,3 @@ def _read_bytes(path: Path) -> bytes:
     if len(content) > most:
         raise OSError(errno.EFBIG, f"it has more than {most} bytes")
     return content
-
-
-def _unreadable(error: OSError | UnicodeDecodeError) -> Fault:
-    if isinstance(error, UnicodeDecodeError):
-        line = error.object.count(b"\n", 0, error.start) + 1
-        return Fault(line=line, path="", message="not UTF-8 text")
-    return Fault(line=0, path="", message=f"cannot be read: {error.strerror}")

@@ -40,8 +40,13 @@ class Faults:
         self.source = source
         self._found: list[Fault] = []
 
+    def __len__(self) -> int:
+        return len(self._found)
+
     def add(self, path: Path, message: str) -> None:
-        self._found.append(self.source.fault(path, message))
+        """Note a fault, once."""
+        fault = self.source.fault(path, message)
+        self._found += [] if fault in self._found else [fault]
 
     def raise_if_any(self) -> None:
         """Raise SpecError with all faults, if there are any."""

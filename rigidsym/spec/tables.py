@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
-from rigidsym.errors import Fault, SpecError, offer
+from rigidsym.errors import ExpressionError, Fault, MissingExtra, RigidsymError, SpecError, offer
 from rigidsym.spec.faults import Faults, Source, described, dotted, shortened
 from rigidsym.spec.toml_lines import Path, locate
 
@@ -22,40 +23,38 @@ class Table:
     """A table at a path. The readers return None for a missing or wrong key."""
 
     def __init__(self, data: Mapping[str, object], path: Path, faults: Faults) -> None:
-        self._data = data
-        self._path = path
+        self.data = data  # all keys and values, as the file has them
+        self.path = path
         self._faults = faults
 
     def value(self, key: str) -> object:
-        return self._data.get(key)
-
-    @property
-    def data(self) -> Mapping[str, object]:
-        """All keys and values, as the file has them."""
-        return self._data
-
-    @property
-    def path(self) -> Path:
-        return self._path
+        return self.data.get(key)
 
     def instead(self, data: Mapping[str, object]) -> Table:
         """A table with other data at this path."""
-        return Table(data, self._path, self._faults)
+        return Table(data, self.path, self._faults)
 
     def fault(self, message: str, *at: str | int) -> None:
         """Note a fault at a path below this table."""
-        self._faults.add((*self._path, *at), message)
+        self._faults.add((*self.path, *at), message)
 
     def mistyped(self, value: object, expected: str, *at: str | int) -> None:
-        """Note that the value at a path below this table has the wrong type."""
-        self.fault(f"expected {expected}, got {described(value)}", *at)
+        """Note that the value at a path below this table is missing or has the wrong type."""
+        found = f"expected {expected}, got {described(value)}"
+        self.fault(f"missing; expected {expected}" if value is None else found, *at)
+
+    def noting(self, *at: str | int) -> _Noting:
+        """Note an error from inside as a fault at a path, unless a fault inside has led to it."""
+        return _Noting(self, at, len(self._faults))
+
+    def has_more_faults(self, than: int) -> bool:
+        return len(self._faults) > than
 
     def refuse_others(self, known: Sequence[str], hints: Mapping[str, str] | None = None) -> None:
         """Note every key that is not known; a hint replaces the nearest name."""
-        for key in self._data:
+        for key in self.data:
             if key not in known:
-                hint = (hints or {}).get(key) or offer(key, known)
-                self.fault(f"unknown key; {hint}", key)
+                self.fault(f"unknown key; {(hints or {}).get(key) or offer(key, known)}", key)
 
     def text(self, key: str) -> str | None:
         value = self.value(key)
@@ -74,10 +73,10 @@ class Table:
     def choice(self, key: str, known: Sequence[str]) -> str | None:
         """One of the names that are known."""
         text = self.text(key)
-        if text is not None and text not in known:
-            self.fault(f"unknown name {shortened(text)}; {offer(text, known)}", key)
-            return None
-        return text
+        if text is None or text in known:
+            return text
+        self.fault(f"unknown name {shortened(text)}; {offer(text, known)}", key)
+        return None
 
     def flag(self, key: str) -> bool | None:
         value = self.value(key)
@@ -89,84 +88,95 @@ class Table:
     def table(self, key: str) -> Table | None:
         value = self.value(key)
         if isinstance(value, Mapping):
-            return Table(value, (*self._path, key), self._faults)
+            return Table(value, (*self.path, key), self._faults)
         if value is not None:
-            self.mistyped(value, f"a table [{dotted((*self._path, key))}]", key)
+            self.mistyped(value, f"a table [{dotted((*self.path, key))}]", key)
         return None
 
     def tables(self, key: str, expected: str) -> list[Table]:
         """A list of tables; empty, with the fault noted, if it is missing or wrong."""
         value = self.value(key)
         if isinstance(value, list) and value and all(isinstance(v, Mapping) for v in value):
-            return [Table(v, (*self._path, key, k), self._faults) for k, v in enumerate(value)]
+            return [Table(v, (*self.path, key, k), self._faults) for k, v in enumerate(value)]
         self.fault(f"expected {expected}", key)
         return []
 
-    def texts(
-        self, key: str, expected: str, *, may_be_empty: bool = False
-    ) -> list[str | None] | None:
-        """A list of texts, with None for each entry that is not a text."""
+    def texts(self, key: str, expected: str, *, may_be_empty: bool = False) -> dict[int, str]:
+        """The texts of a list by their places in it; empty if it is missing or wrong."""
         value = self.value(key)
         if value is None:
-            return None
+            return {}
         if not isinstance(value, list):
             self.mistyped(value, expected, key)
-            return None
+            return {}
         if not value and not may_be_empty:
             self.fault(f"the list is empty; expected {expected}", key)
-        for place, entry in enumerate(value):
-            if not isinstance(entry, str):
-                self.mistyped(entry, "a text in quotes", key, place)
-        return [entry if isinstance(entry, str) else None for entry in value]
+        found = {place: text for place, text in enumerate(value) if isinstance(text, str)}
+        for place in set(range(len(value))) - found.keys():
+            self.mistyped(value[place], "a text in quotes", key, place)
+        for place, text in found.items():
+            if text in value[:place]:
+                self.fault(f"{text} is named twice", key, place)
+        return found
 
     def choices(
         self, key: str, known: Sequence[str], *, may_be_empty: bool = False
     ) -> tuple[str, ...] | None:
         """A list of different known names."""
+        if self.value(key) is None:
+            return None
         expected = f'a list of names such as ["{known[0]}"]'
         texts = self.texts(key, expected, may_be_empty=may_be_empty)
-        if texts is None:
-            return None
-        for place, text in enumerate(texts):
-            if text is None:
-                continue
+        for place, text in texts.items():
             if text not in known:
                 self.fault(f"unknown name {shortened(text)}; {offer(text, known)}", key, place)
-            elif text in texts[:place]:
-                self.fault(f"{text} is named twice", key, place)
-        return tuple(text for text in texts if text is not None)
+        return tuple(texts.values())
+
+
+@dataclass(frozen=True, slots=True)
+class _Noting:
+    """A block whose errors become faults, and which is then left."""
+
+    table: Table
+    at: Path
+    faults_before: int
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, _kind: object, error: BaseException | None, _trace: object) -> bool:
+        if not isinstance(error, RigidsymError) or isinstance(error, MissingExtra):
+            return False
+        if not self.table.has_more_faults(self.faults_before):
+            column = error.column if isinstance(error, ExpressionError) else 1
+            self.table.fault(f"column {column}: {error}" if column > 1 else str(error), *self.at)
+        return True
 
 
 def read_toml(text: str, source: str) -> tuple[Table, Faults]:
     """The table of a whole file; raises SpecError for a text that is not TOML."""
     text = text.removeprefix("\ufeff")  # some editors put this mark before everything else
-    _check_length(text, source)
+    if faults := list(_too_long(text)):
+        raise SpecError(source, faults)
     try:
         data = tomllib.loads(text)
-        faults = Faults(Source(source, locate(text)))
+        noted = Faults(Source(source, locate(text)))
     except tomllib.TOMLDecodeError as error:
         raise SpecError(source, [_syntax_fault(text, error)]) from None
     except RecursionError:
-        fault = Fault(line=0, path="", message="lists or tables nested too deeply to be read")
-        raise SpecError(source, [fault]) from None
-    return Table(data, (), faults), faults
+        message = "lists or tables nested too deeply to be read"
+        raise SpecError(source, [Fault(message=message)]) from None
+    return Table(data, (), noted), noted
 
 
-def _check_length(text: str, source: str) -> None:
-    faults = [
-        Fault(
-            line=line,
-            path="",
-            message=f"a line of {length} characters; expected at most {_LONGEST_LINE}",
-        )
-        for line, length in enumerate(map(len, text.split("\n")), start=1)
-        if length > _LONGEST_LINE
-    ]
+def _too_long(text: str) -> Iterator[Fault]:
     if len(text) > MOST_CHARACTERS:
-        message = f"a file of {len(text)} characters; expected at most {MOST_CHARACTERS}"
-        faults = [Fault(line=0, path="", message=message)]
-    if faults:
-        raise SpecError(source, faults)
+        yield Fault(message=f"a file of {len(text)} characters; expected at most {MOST_CHARACTERS}")
+        return
+    for line, length in enumerate(map(len, text.split("\n")), start=1):
+        if length > _LONGEST_LINE:
+            message = f"a line of {length} characters; expected at most {_LONGEST_LINE}"
+            yield Fault(line=line, message=message)
 
 
 def _syntax_fault(text: str, error: tomllib.TOMLDecodeError) -> Fault:
@@ -174,7 +184,7 @@ def _syntax_fault(text: str, error: tomllib.TOMLDecodeError) -> Fault:
     message = str(error)
     place = _PLACE.search(message)
     if place is None:
-        return Fault(line=0, path="", message=f"not TOML: {message}")
+        return Fault(message=f"not TOML: {message}")
     line = int(place[1] or text.rstrip().count("\n") + 1)
     where = f"column {place[2]}" if place[2] else "the end of the file"
-    return Fault(line=line, path="", message=f"not TOML: {message[: place.start()]}, at {where}")
+    return Fault(line=line, message=f"not TOML: {message[: place.start()]}, at {where}")

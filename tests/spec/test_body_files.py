@@ -312,7 +312,7 @@ def test_a_mesh_from_a_file_is_that_of_trimesh(folder):
             "outer_radius is 1 m, less than inner_radius with 2 m",
         ),
         ('shape = "sphere"\nmass = 1\ndensity = 1', "expected either the mass or the density"),
-        ("particles = [{ at = [0, 0, 0] }]", "expected the mass of the particle"),
+        ("particles = [{ at = [0, 0, 0] }]", "body.particles[0].mass: missing; expected a number"),
         ("particles = [{ mass = 1, at = [0, 0] }]", "three coordinates"),
         ("particles = [{ mass = 1, at = [0, 0, nan] }]", "expected a finite number, got nan"),
         ("parts = [{ at = [0, 0, 0] }]", "body.parts[0]: expected one of shape, particles"),

@@ -326,6 +326,6 @@ def test_faults_of_dynamics_are_placed():
     text = '[rotation]\nsequence = "ZXZ"\n[dynamics]\npotential = "m*("\nforces = { chi = "1" }\n'
     assert faults(text) == [
         "line 3: dynamics: forces act on a body; expected [body] as well",
-        "line 4: dynamics.potential: expected a number, a name or (, found the end",
+        "line 4: dynamics.potential: column 4: expected a number, a name or (, found the end",
         "line 5: dynamics.forces: a force on chi, which is none of phi, theta, psi",
     ]
