@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from rigidsym.formula.reader import formula
+from rigidsym.formula.sentence import Sentence, sentence
 from rigidsym.formula.tree import Formula
 from rigidsym.models.matrices import DirectionCosines
 from rigidsym.models.quaternions import AxisAngle, CayleyKlein, Quaternion, UnitQuaternion
@@ -29,9 +30,9 @@ class ClosedForm:
     rule: str  # how the coordinates follow, by name: "quaternion", "rotation_vector", ...
     quaternion: Parts  # scalar first, of length one; empty where it is read off from R
     order: tuple[int, ...]  # place, among the model's coordinates, of each that the rule gives
-    because: str  # a sentence
-    back_because: str
-    branch: str  # sentences: which of the possible coordinates are given
+    because: Sentence  # how the quaternion follows from the coordinates
+    back_because: Sentence
+    branch: Sentence  # which of the possible coordinates are given
     claims: tuple[Claim, ...]
 
     @property
@@ -79,6 +80,9 @@ def _differences(first: Sequence[sp.Expr], second: Sequence[sp.Expr]) -> Parts:
 
 
 _KEPT = "The sign of the quaternion is kept; from a matrix, the scalar is at least 0."
+_ENTRIES = sentence(
+    r"$\alpha = w + i z$ and $\beta = y + i x$ are the entries of the matrix of the quaternion."
+)
 _SHORT = "The quaternion and its negative give the same coordinates, those of a turn by at most π."
 
 
@@ -89,9 +93,9 @@ def _quaternion(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         rule="quaternion",
         quaternion=parts,
         order=order,
-        because="The quaternion is divided by its length.",
-        back_because="The unit quaternion is one of its multiples.",
-        branch=f"The length is 1. {_KEPT}",
+        because=("The quaternion is divided by its length.",),
+        back_because=("The unit quaternion is one of its multiples.",),
+        branch=(f"The length is 1. {_KEPT}",),
         claims=(
             (
                 _differences(_along(length, parts), q),
@@ -106,9 +110,9 @@ def _unit(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         rule="quaternion",
         quaternion=tuple(q),
         order=order,
-        because="The coordinates are the unit quaternion.",
-        back_because="The coordinates are the unit quaternion.",
-        branch=f"The length is 1. {_KEPT}",
+        because=("The coordinates are the unit quaternion.",),
+        back_because=("The coordinates are the unit quaternion.",),
+        branch=(f"The length is 1. {_KEPT}",),
         claims=(((_square(q) - 1,), formula(r"\mathbf{q}\cdot\mathbf{q} = 1")),),
     )
 
@@ -119,9 +123,9 @@ def _cayley_klein(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         rule="cayley_klein",
         quaternion=(a, d, c, b),
         order=order,
-        because="α = w + i z and β = y + i x are the entries of the matrix of the quaternion.",
-        back_because="α = w + i z and β = y + i x are the entries of the matrix of the quaternion.",
-        branch=f"|α|² + |β|² = 1. {_KEPT}",
+        because=_ENTRIES,
+        back_because=_ENTRIES,
+        branch=sentence(r"$|\alpha|^2 + |\beta|^2 = 1$. " + _KEPT),
         claims=(((_square(q) - 1,), formula(r"|\alpha|^2 + |\beta|^2 = 1")),),
     )
 
@@ -134,9 +138,14 @@ def _axis_angle(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         rule="axis_angle",
         quaternion=parts,
         order=order,
-        because="A turn by φ about e is the quaternion cos(φ/2) + e sin(φ/2).",
-        back_because="The vector part points along the axis, and its length is sin(φ/2).",
-        branch="The angle is in [0, π]; without a turn, the axis is x.",
+        because=sentence(
+            r"A turn by $\varphi$ about $\mathbf{e}$ is the quaternion "
+            r"$\cos\frac{\varphi}{2} + \mathbf{e}\sin\frac{\varphi}{2}$."
+        ),
+        back_because=sentence(
+            r"The vector part points along the axis, and its length is $\sin\frac{\varphi}{2}$."
+        ),
+        branch=sentence("The angle is in [0, π]; without a turn, the axis is $x$."),
         claims=(
             (
                 _differences(parts[1:], _along(half, axis)),
@@ -158,9 +167,14 @@ def _rotation_vector(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm
         rule="rotation_vector",
         quaternion=parts,
         order=order,
-        because="With n = |v|, a turn by n about v/n is the quaternion cos(n/2) + (v/n) sin(n/2).",
-        back_because="The vector part points along v, and its length is sin(n/2).",
-        branch=f"The length is in [0, π]. {_SHORT}",
+        because=sentence(
+            r"With $n = |\mathbf{v}|$, a turn by $n$ about $\mathbf{v}/n$ is the quaternion "
+            r"$\cos\frac{n}{2} + \frac{\mathbf{v}}{n}\sin\frac{n}{2}$."
+        ),
+        back_because=sentence(
+            r"The vector part points along $\mathbf{v}$, and its length is $\sin\frac{n}{2}$."
+        ),
+        branch=(f"The length is in [0, π]. {_SHORT}",),
         claims=(
             (
                 _differences(_along(angle, parts[1:]), _along(half, q)),
@@ -181,9 +195,11 @@ def _gibbs(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         rule="gibbs_vector",
         quaternion=parts,
         order=order,
-        because="The quaternion 1 + g is divided by its length.",
-        back_because="The vector part is divided by the scalar.",
-        branch="Every rotation has one vector. A half turn gives inf, and 0 where its axis has 0.",
+        because=sentence(r"The quaternion $1 + \mathbf{g}$ is divided by its length."),
+        back_because=("The vector part is divided by the scalar.",),
+        branch=(
+            "Every rotation has one vector. A half turn gives inf, and 0 where its axis has 0.",
+        ),
         claims=(
             (
                 _differences(_along(parts[0], q), parts[1:]),
@@ -200,9 +216,14 @@ def _modified(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
         rule="modified_rodrigues",
         quaternion=parts,
         order=order,
-        because="cos(n/2) and sin(n/2) are rational in s = tan(n/4) e.",
-        back_because="The vector part is divided by one plus the scalar.",
-        branch="Of the two sets, the one with s·s ≤ 1, the turn by at most π.",
+        because=sentence(
+            r"$\cos\frac{n}{2}$ and $\sin\frac{n}{2}$ are rational functions of "
+            r"$\mathbf{s} = \tan\frac{n}{4}\,\mathbf{e}$."
+        ),
+        back_because=("The vector part is divided by one plus the scalar.",),
+        branch=sentence(
+            r"Of the two sets, the one with $\mathbf{s}\cdot\mathbf{s} \le 1$, a turn by at most π."
+        ),
         claims=(
             (
                 _differences(_along(1 + parts[0], q), parts[1:]),
@@ -218,9 +239,9 @@ def _cosines(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:  # noq
         rule="direction_cosines",
         quaternion=(),
         order=order,
-        because="The quaternion is read off from R.",
-        back_because="The coordinates are the entries of R.",
-        branch="Every rotation has one matrix.",
+        because=sentence(r"The quaternion is read off from $\mathbf{R}$."),
+        back_because=sentence(r"The coordinates are the entries of $\mathbf{R}$."),
+        branch=("Every rotation has one matrix.",),
         claims=(),
     )
 

@@ -8,6 +8,7 @@ from typing import TypeVar
 
 import sympy as sp
 
+from rigidsym.formula.sentence import text_of
 from rigidsym.mechanics.conversions.chain_inverse import at_poles, chain_coordinates, outer_angles
 from rigidsym.mechanics.conversions.closed_forms import ClosedForm
 from rigidsym.mechanics.conversions.closed_inverse import BOTH_SIGNS, RULES, unit
@@ -172,7 +173,7 @@ def _from_matrix(derivation: Derivation, inverse: InverseConversion) -> Conversi
 
 def _remarks(inverse: InverseConversion) -> tuple[str, ...]:
     source = (f"Source: {inverse.source}.",) if inverse.source else ()
-    return (inverse.because, inverse.branch, *source)
+    return (text_of(inverse.because), text_of(inverse.branch), *source)
 
 
 def _unit(model: RotationModel) -> str:

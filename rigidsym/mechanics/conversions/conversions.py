@@ -18,6 +18,7 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import AlgebraError
 from rigidsym.formula.reader import formula
+from rigidsym.formula.sentence import Sentence, sentence, text_of
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.conversions.closed_forms import ClosedForm, closed_form
 from rigidsym.mechanics.conversions.davenport_angles import (
@@ -69,6 +70,21 @@ QUATERNION = Quantity(
 )
 UNIT = "_unit"  # ends the names of what holds for quaternions of length one
 _OF_UNIT_LENGTH = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
+_FACTORS = sentence(
+    r"Each turn by $\beta$ about $\mathbf{e}$ is the quaternion "
+    r"$\cos\frac{\beta}{2} + \mathbf{e}\sin\frac{\beta}{2}$; they are multiplied from left to "
+    "right."
+)
+_OUTER_ANGLES = sentence(
+    r"$\mathbf{C}$ is the fixed turn about the second axis that takes the first to the third. In "
+    "the frame of the first two axes and their cross product, the quaternion of "
+    r"$\mathbf{R}\,\mathbf{C}$ is $\kappa$ ($\cos\frac{\beta'}{2}\cos\sigma$, "
+    r"$\cos\frac{\beta'}{2}\sin\sigma$, $\sin\frac{\beta'}{2}\cos\delta$, "
+    r"$\sin\frac{\beta'}{2}\sin\delta$): $\beta'$ is the middle angle plus the angle of "
+    r"$\mathbf{C}$, $\sigma$ half the sum and $\delta$ half the difference of the outer angles. "
+    r"So $\sigma = \operatorname{atan2}(a_1, a_0)$, $\delta = \operatorname{atan2}(a_3, a_2)$, and "
+    r"$\tan\frac{\beta'}{2}$ is the quotient of the lengths of $(a_2, a_3)$ and $(a_0, a_1)$."
+)
 _TURNS = formula(r"\mathbf{R}(\mathbf{p}) = \mathbf{R}")
 _UNIT = formula(r"\mathbf{p}\cdot\mathbf{p} = 1")
 
@@ -78,8 +94,8 @@ class InverseConversion:
     """How the coordinates follow from a quaternion of any length but zero."""
 
     rule: DavenportAngles | TurnChain | ClosedForm
-    because: str  # a sentence: how it follows
-    branch: str  # sentences: which of the possible coordinates are given
+    because: Sentence  # how it follows
+    branch: Sentence  # which of the possible coordinates are given
     proofs: tuple[Proof, ...]
     source: Citation | None = None
     given: tuple[str, ...] = ()  # arguments that the functions take besides: "parameters", "kept"
@@ -100,6 +116,7 @@ class Conversions:
 
     model: RotationModel
     quaternion: Step | None
+    because: Sentence  # how the quaternion follows
     inverse: InverseConversion | None
     without: str  # a sentence; empty where there is `inverse`
     from_matrix: Proof  # that 4 p pᵀ can be read off from R
@@ -132,6 +149,7 @@ def conversions_of(model: RotationModel) -> Conversions:
     return Conversions(
         model=model,
         quaternion=_forward(model, form),
+        because=form.because if form else _FACTORS,
         inverse=inverse,
         without=without,
         from_matrix=_read_off(),
@@ -200,8 +218,7 @@ def _step_of_turns(model: RotationModel) -> Step:
         model,
         codec,
         shown,
-        "Each turn by β about e is the quaternion cos(β/2) + e sin(β/2); they are multiplied from "
-        "left to right.",
+        _FACTORS,
     )
 
 
@@ -210,13 +227,13 @@ def half_turn(direction: Sequence[sp.Expr], angle: sp.Expr) -> Parts:
     return (sp.cos(angle / 2), *(sp.sin(angle / 2) * part for part in direction))
 
 
-def _step(model: RotationModel, parts: Parts, because: str) -> Step:
+def _step(model: RotationModel, parts: Parts, because: Sentence) -> Step:
     codec = codec_for([*model.matrix, *parts], constraints=model.constraints, order=0)
     return _proved_step(model, codec, sp.ImmutableMatrix(parts), because)
 
 
 def _proved_step(
-    model: RotationModel, codec: Codec, shown: sp.ImmutableMatrix, because: str
+    model: RotationModel, codec: Codec, shown: sp.ImmutableMatrix, because: Sentence
 ) -> Step:
     prove = Prover(model, codec)
     residual = [codec.encode(e) for e in rotation_of(list(shown)) - model.matrix]
@@ -226,7 +243,7 @@ def _proved_step(
         number=0,
         quantity=QUATERNION if is_fixed else replace(QUATERNION, inputs=("q", "parameters")),
         expression=shown,
-        because=because,
+        because=text_of(because),
         proofs=(
             prove.vanishes(RingMatrix.column(codec.ring, residual), _TURNS),
             prove.vanishes(RingMatrix.column(codec.ring, [length]), _UNIT),
@@ -248,12 +265,7 @@ def _product(codec: Codec, first: RingMatrix, second: RingMatrix) -> RingMatrix:
 def _by_turns(model: RotationModel, rule: DavenportAngles) -> InverseConversion:
     return InverseConversion(
         rule=rule,
-        because="C is the fixed turn about the second axis that takes the first to the third. In "
-        "the frame of the first two axes and their cross product, the quaternion of R C is "
-        "κ (cos(β′/2) cos σ, cos(β′/2) sin σ, sin(β′/2) cos δ, sin(β′/2) sin δ): β′ is the middle "
-        "angle and that of C, σ half the sum and δ half the difference of the outer angles. "
-        "So σ = atan2(a₁, a₀), δ = atan2(a₃, a₂), and tan(β′/2) is the quotient of the lengths of "
-        "(a₂, a₃) and (a₀, a₁).",
+        because=_OUTER_ANGLES,
         branch=rule.branch,
         proofs=_vanishing(model, davenport_claims(model, rule)),
     )

@@ -11,9 +11,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import sympy as sp
-from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.formula.reader import formula
+from rigidsym.formula.sentence import Sentence, sentence
+from rigidsym.formula.symbol_names import named
 from rigidsym.formula.tree import Formula
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import hat
@@ -29,7 +30,7 @@ class DavenportAngles:
     lean: tuple[sp.Expr, sp.Expr]  # parallel to (cos λ/2, sin λ/2), λ in [0, π]
     sign: int  # of the middle angle: −1 where the frame holds −e₂
     places: tuple[int, int, int]  # of α, β, γ among the coordinates
-    angle_names: tuple[str, str, str]  # of the coordinates in Unicode, in their order
+    angle_names: tuple[str, str, str]  # of the coordinates, in their order
 
     @property
     def offset(self) -> sp.Expr:
@@ -67,15 +68,15 @@ class DavenportAngles:
         return self.frame.T, sp.ImmutableMatrix((lean * self.frame).applyfunc(sp.expand))
 
     @property
-    def branch(self) -> str:
-        first, middle, third = (self.angle_names[place] for place in self.places)
-        low, high = self.range
-        last = self.angle_names[2]
-        return (
-            f"{first} and {third} are in (−π, π], {middle} is in [{_text(low)}, {_text(high)}]. "
-            f"At a pole, the ends of that interval, only the sum or the difference of {first} and "
-            f"{third} is determined: there {last} is 0. Orientations within 8 eps (radians) of "
-            "a pole count as poles."
+    def branch(self) -> Sentence:
+        """Which of the possible angles are given."""
+        first, middle, third = (named(self.angle_names[place]) for place in self.places)
+        low, high = map(_text, self.range)
+        return sentence(
+            f"{{}} and {{}} are in (−π, π], {{}} is in [{low}, {high}]. At a pole, the ends of "
+            "that interval, only the sum or the difference of {} and {} is determined: there {} "
+            "is 0. Orientations within 8 eps (radians) of a pole count as poles.",
+            *(first, third, middle, first, third, named(self.angle_names[2])),
         )
 
 
@@ -107,7 +108,7 @@ def _geometry(
     frame = sp.Matrix.hstack(first, second, first.cross(second)).applyfunc(sp.expand)
     angles = [turn.angle for turn in model.turns]
     first_place, middle_place, last_place = (model.coordinates.index(angle) for angle in angles)
-    a, b, c = (pretty_symbol(coordinate.func.__name__) for coordinate in model.coordinates)
+    a, b, c = (coordinate.func.__name__ for coordinate in model.coordinates)
     return DavenportAngles(
         frame=sp.ImmutableMatrix(frame),
         lean=lean,

@@ -17,10 +17,11 @@ from functools import reduce
 from itertools import combinations, pairwise
 
 import sympy as sp
-from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.formula.reader import formula
+from rigidsym.formula.sentence import Sentence, sentence
+from rigidsym.formula.symbol_names import named
 from rigidsym.formula.tree import Formula
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import rodrigues
@@ -189,9 +190,14 @@ def _mirror(turns: Sequence[Turn]) -> int:
     return 1 if first == last else -1 if first == -last else 0
 
 
-def description(model: RotationModel, rule: TurnChain) -> tuple[str, str]:
+def description(model: RotationModel, rule: TurnChain) -> tuple[Sentence, Sentence]:
     """Sentences: how the coordinates follow, and which of the possible ones are given."""
-    return _because(rule), " ".join(_branch(model, rule))
+    branch = []
+    for text, *places in _branch(rule):
+        names = [named(model.coordinates[place].func.__name__) for place in places]
+        blanks = " and ".join([", ".join(["{}"] * (len(names) - 1)), "{}"][-len(names) :])
+        branch += [*sentence(text.replace("{}", blanks), *names), " "]
+    return sentence(_because(rule)), tuple(branch[:-1])
 
 
 def _because(rule: TurnChain) -> str:
@@ -202,72 +208,72 @@ def _because(rule: TurnChain) -> str:
     )
     if len(rule.solved) == 1:
         return (
-            f"{known}With e₃ = e₁, p₊ = (p − e₁ p e₃)/2 and m = 1, the angle is "
-            "2 atan2(p₊·e₁, p₊·1)."
+            known + r"With $\mathbf{e}_3 = \mathbf{e}_1$, "
+            r"$\mathbf{p}_+ = (\mathbf{p} - \mathbf{e}_1\mathbf{p}\,\mathbf{e}_3)/2$ and "
+            r"$\mathbf{m} = 1$, the angle is "
+            r"$2\operatorname{atan2}(\mathbf{p}_+\cdot\mathbf{e}_1, \mathbf{p}_+\cdot 1)$."
         )
     halves = (
-        f"{known}With p₊ = (p − e₁ p e₃)/2 and p₋ = (p + e₁ p e₃)/2, half the sum and half "
-        "the difference of the outer angles are the angles about e₁ from m₊ to p₊ and from m₋ to "
-        "p₋"
+        known + r"With $\mathbf{p}_+ = (\mathbf{p} - \mathbf{e}_1\mathbf{p}\,\mathbf{e}_3)/2$ and "
+        r"$\mathbf{p}_- = (\mathbf{p} + \mathbf{e}_1\mathbf{p}\,\mathbf{e}_3)/2$, half the sum and "
+        r"half the difference of the outer angles are the angles about $\mathbf{e}_1$ from "
+        r"$\mathbf{m}_+$ to $\mathbf{p}_+$ and from $\mathbf{m}_-$ to $\mathbf{p}_-$"
     )
     if len(rule.solved) < _MOST:
-        return f"{halves}, where e₃ is the second axis and m = 1."
-    halves = f"{halves}, where m = cos(β/2) + e₂ sin(β/2)"
+        return halves + r", where $\mathbf{e}_3$ is the second axis and $\mathbf{m} = 1$."
+    halves += r", where $\mathbf{m} = \cos\frac{\beta}{2} + \mathbf{e}_2\sin\frac{\beta}{2}$"
     if not rule.has_two_sets:
-        fixed, angle = ("₋", "difference") if rule.mirror > 0 else ("₊", "sum")
+        sign, angle = ("-", "difference") if rule.mirror > 0 else ("+", "sum")
         return (
-            f"{halves}. As half the {angle} is 0, the middle angle is that of m{fixed} = p{fixed}, "
-            "which is linear in cos(β/2) and sin(β/2), with k₁ = e₁·e₂, k₃ = e₂·e₃ and "
-            "B = e₁·(e₂ × e₃)."
+            f"{halves}. As half the {angle} is 0, the middle angle is the angle of "
+            rf"$\mathbf{{m}}_{sign} = \mathbf{{p}}_{sign}$, which is linear in "
+            r"$\cos\frac{\beta}{2}$ and $\sin\frac{\beta}{2}$, with "
+            r"$k_1 = \mathbf{e}_1\cdot\mathbf{e}_2$, $k_3 = \mathbf{e}_2\cdot\mathbf{e}_3$ and "
+            r"$B = \mathbf{e}_1\cdot(\mathbf{e}_2\times\mathbf{e}_3)$."
         )
     return (
-        f"{halves}. The middle angle is that at e₂ of the "
-        "spherical triangle of e₁, e₂ and the turned e₃, whose third side is "
-        "χ = 2 atan2(|p₋|, |p₊|), counted from where that triangle is flat, atan2(B, A). The other "
-        "sides are θ₁, between e₁ and e₂, and θ₃, between e₂ and e₃; k₁ and k₃ are their cosines, "
-        "A = e₁·e₃ − k₁ k₃ and B = e₁·(e₂ × e₃)."
+        halves + r". The middle angle is the angle at $\mathbf{e}_2$ of the spherical triangle of "
+        r"$\mathbf{e}_1$, $\mathbf{e}_2$ and the turned $\mathbf{e}_3$, whose third side is "
+        r"$\chi = 2\operatorname{atan2}(|\mathbf{p}_-|, |\mathbf{p}_+|)$, counted from where that "
+        r"triangle is flat, $\operatorname{atan2}(B, A)$. The other sides are $\theta_1$, between "
+        r"$\mathbf{e}_1$ and $\mathbf{e}_2$, and $\theta_3$, between $\mathbf{e}_2$ and "
+        r"$\mathbf{e}_3$; $k_1$ and $k_3$ are their cosines, "
+        r"$A = \mathbf{e}_1\cdot\mathbf{e}_3 - k_1 k_3$ and "
+        r"$B = \mathbf{e}_1\cdot(\mathbf{e}_2\times\mathbf{e}_3)$."
     )
 
 
-def _branch(model: RotationModel, rule: TurnChain) -> Iterator[str]:
-    names = _names(model, rule.places)
+def _branch(rule: TurnChain) -> Iterator[tuple[str, *tuple[int, ...]]]:
+    """Sentences, each with the places of the coordinates that its {} names."""
+    is_one, is_kept_alone = len(rule.places) == 1, len(rule.kept) == 1
     if rule.has_two_sets:
         yield (
             "The outer angles of the turns are in (−π, π]; the middle one is in the interval of "
-            "length π that holds 0 and ends where the triangle is flat."
+            "length π that holds 0 and ends where the triangle is flat.",
         )
         if not rule.mirror:
-            yield "If only the sum or difference of the outer angles is determined, the last is 0."
-    elif len(rule.solved) == 1:
-        yield "The angle of the turn is in (−π, π]."
+            outer = "the sum or difference of the outer angles"
+            yield (f"If only {outer} is determined, the last is 0.",)
     else:
-        yield "The angles of the turns are in (−π, π]."
+        angles = "angle of the turn is" if len(rule.solved) == 1 else "angles of the turns are"
+        yield (f"The {angles} in (−π, π].",)
     if len(rule.solved) == 2:
-        yield "If only their sum or their difference is determined, the last is 0."
+        yield ("If only their sum or their difference is determined, the last is 0.",)
     if rule.mirror:
-        yield "If any outer angle gives the rotation, it is 0."
-    if rule.inverse != sp.eye(len(names)) or any(offset != 0 for offset in rule.offsets):
-        yield f"From {'them follow' if len(names) > 1 else 'it follows'} {_listed(names)}."
+        yield ("If any outer angle gives the rotation, it is 0.",)
+    if rule.inverse != sp.eye(len(rule.places)) or any(offset != 0 for offset in rule.offsets):
+        yield f"From {'it follows' if is_one else 'them follow'} {{}}.", *rule.places
     if rule.kept:
-        kept = _names(model, rule.kept)
         yield (
-            f"{_listed(kept)}, which the rotation does not determine, "
-            f"{'is' if len(kept) == 1 else 'are'} kept at the values given: 0 where none are."
+            f"{{}}, which the rotation does not determine, {'is' if is_kept_alone else 'are'} kept "
+            "at the values given, or at 0 without them.",
+            *rule.kept,
         )
     if rule.mirror or not rule.is_across:
         yield (
             "These turns need not reach every rotation: one further than √eps (radians) from all "
-            "reachable ones gives NaN."
+            "reachable ones gives NaN.",
         )
-
-
-def _names(model: RotationModel, places: Sequence[int]) -> list[str]:
-    return [pretty_symbol(model.coordinates[place].func.__name__) for place in places]
-
-
-def _listed(names: Sequence[str]) -> str:
-    *others, last = names
-    return f"{', '.join(others)} and {last}" if others else last
 
 
 def known_claims(model: RotationModel, rule: TurnChain) -> list[Claim]:

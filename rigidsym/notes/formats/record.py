@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from rigidsym.formula.sentence import text_of
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import (
     Argument,
@@ -100,8 +101,8 @@ def _conversions(found: Conversions, names: Names) -> dict[str, Any]:
         "quaternion": _step(forward, names) if forward else None,
         "quaternion_from_matrix": _proof(found.from_matrix, names),
         "coordinates": {
-            "because": back.because,
-            "branch": back.branch,
+            "because": text_of(back.because),
+            "branch": text_of(back.branch),
             "proofs": [_proof(proof, names) for proof in back.proofs],
         }
         if back

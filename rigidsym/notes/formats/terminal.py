@@ -25,7 +25,7 @@ from rigidsym.notes.formula.derivation_letters import entry_names, letters_of
 from rigidsym.notes.prose.prose import turn
 from rigidsym.notes.prose.singular_words import failures, geometry, measured, singular_title
 from rigidsym.notes.prose.vector_words import sum_of_vectors
-from rigidsym.notes.prose.words import convention, symbols_of, unit_in_words, with_symbols
+from rigidsym.notes.prose.words import convention, unit_in_words, with_symbols
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -296,8 +296,8 @@ class _Screen(_Steps):
         for step in self.steps[len(self.derivation.steps) :]:
             yield from self.step(step)
         back = found.inverse
-        for sentence in (back.because, back.branch) if back else (found.without,):
-            yield from self._wrapped(with_symbols(sentence, symbols_of(self.derivation)))
+        for sentence in (back.because, back.branch) if back else ((found.without,),):
+            yield from self._wrapped(sentence)
 
     def _proofs(self) -> Iterator[str]:
         yield ""

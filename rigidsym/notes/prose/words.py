@@ -18,12 +18,9 @@ from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.energy import CENTRE
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, POINT
+from rigidsym.models.rotation import Citation
 from rigidsym.models.so3 import AXES
-from rigidsym.notes.document.document import (
-    Text,
-    listed,
-    words,
-)
+from rigidsym.notes.document.document import Cited, Text, listed, words
 from rigidsym.notes.formula.derivation_letters import VECTOR, length_of, letters_of
 
 POSITION = formula(r"\mathbf{x}")
@@ -69,6 +66,15 @@ def with_symbols(sentence: str, symbols: Mapping[str, Formula]) -> Text:
     pattern = r"(?<!\w)(" + "|".join(map(re.escape, longest_first)) + r")(?!\w)"
     parts = re.split(pattern, sentence)
     return tuple(symbols.get(part, part) for part in parts if part)
+
+
+def with_source(text: Text, source: Citation | None) -> Text:
+    """A sentence with its source cited before the stop at its end."""
+    *head, last = text
+    if source is None or not isinstance(last, str):
+        return text
+    body = last.rstrip(".,:;")
+    return tuple(span for span in (*head, body, "\u00a0", Cited(source), last[len(body) :]) if span)
 
 
 def convention(derivation: Derivation, notation: Notation = DEFAULT) -> tuple[Text, ...]:

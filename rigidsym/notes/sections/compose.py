@@ -46,7 +46,7 @@ from rigidsym.notes.prose.singular_words import (
     singular_title,
 )
 from rigidsym.notes.prose.turn_words import angles_in_words, sum_in_words
-from rigidsym.notes.prose.words import OPERATOR, convention, symbols_of, with_symbols
+from rigidsym.notes.prose.words import OPERATOR, convention, symbols_of, with_source, with_symbols
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
 from rigidsym.notes.sections.fitting import Fitter
@@ -273,10 +273,7 @@ class Composer:
             return (f"Likewise, the {step.quantity.about}:",)
         self.said.add(step.because)
         source = self._source(step)
-        if source is None:
-            return with_symbols(step.because, self.symbols)
-        sentence = with_symbols(step.because.removesuffix("."), self.symbols)
-        return (*sentence, "\u00a0", Cited(source), ".")
+        return with_source(with_symbols(step.because, self.symbols), source)
 
     def _source(self, step: Step) -> Citation | None:
         """The source of a step; the model's own is cited once, where the rotation is given."""

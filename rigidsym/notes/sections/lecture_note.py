@@ -11,17 +11,16 @@ from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Derivation, Statement, Step
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.notes.document.document import (
-    Cited,
     Document,
     Equation,
     NoteBlock,
     Paragraph,
     Section,
-    Text,
     words,
 )
 from rigidsym.notes.formula.summands import sums
 from rigidsym.notes.prose.singular_words import singular_title
+from rigidsym.notes.prose.words import with_source
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
 from rigidsym.notes.sections.compose import ACCELERATION, FUNCTIONS, IDENTITIES, SYMBOLS, Composer
@@ -100,7 +99,8 @@ class _Lecture(Composer):
         yield Paragraph(words(_ROTATIONS, rotation, centre, rotation))
 
     def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
-        yield Paragraph(_with_source(statement))
+        source = statement.source if statement.number else None
+        yield Paragraph(with_source(statement.because, source))
         sides = statement.sides
         matrix = sums(statement, self.letters)
         if matrix is not None:
@@ -140,12 +140,3 @@ class _Lecture(Composer):
         numbers = {s.name: s.number for s in self.derivation.theory if s.number}
         numbers |= {step.quantity.name: step.number for step in self.derivation.steps}
         return numbers[label]
-
-
-def _with_source(statement: Statement) -> Text:
-    """The sentence that leads to an equation, with its place in the lecture."""
-    *head, last = statement.because
-    if not statement.number or not isinstance(last, str):
-        return statement.because
-    end = last[-1] if last[-1] in ".,:;" else ""
-    return (*head, last.removesuffix(end), "\u00a0", Cited(statement.source), end or "")
