@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-import re
+from typing import TypeVar
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 
+_Span = TypeVar("_Span")
 Sentence = tuple[str | Formula, ...]
-_SPAN = re.compile(r"\$([^$]*)\$|(\{\})")
 
 
-def sentence(typed: str, *parts: Formula) -> Sentence:
-    r"""The sentence of a text such as "The axis $\mathbf{e}$ and {}"; `parts` replace the {}."""
-    given = iter(parts)
-    spans: list[str | Formula] = []
-    for number, span in enumerate(_SPAN.split(typed)):
-        if number % 3 == 1 and span is not None:
-            spans.append(formula(span))
-        elif number % 3 == 2 and span:
-            spans.append(next(given))
-        elif number % 3 == 0 and span:
-            spans.append(span)
-    return tuple(spans)
+def sentence(typed: str, *spans: _Span) -> tuple[str | Formula | _Span, ...]:
+    r"""The text r"The axis $\mathbf{e}$ of {}" with its formulas read, and a span for each {}."""
+    given = iter(spans)
+    found: list[str | Formula | _Span] = []
+    for place, part in enumerate(typed.split("$")):
+        if place % 2:
+            found.append(formula(part))
+            continue
+        first, *others = part.split("{}")
+        found.append(first)
+        for words in others:
+            found += [next(given), words]
+    return tuple(span for span in found if span != "")
 
 
 def text_of(words: Sentence) -> str:

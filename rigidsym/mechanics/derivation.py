@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, Self
 import sympy as sp
 
 from rigidsym.errors import DerivationError, QuantityError, offer
+from rigidsym.formula.sentence import Sentence
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.models.rotation import Citation, RotationModel
 
@@ -185,17 +186,13 @@ class Statement:
     name: str
     number: int | None  # in the lecture; None for what it leaves without one
     section: str  # the heading that it stands under
-    because: tuple[str | Formula, ...]  # how it follows from those before
+    because: Sentence  # how it follows from those before
     sides: tuple[Formula, ...]  # of the equation
     claims: tuple[tuple[str, Formula], ...]  # what is to be proved, by name
     source: Citation
     proofs: tuple[Proof, ...] = ()
     shows_summands: bool = False  # whether the matrix of the generic particle belongs to it
     summands: sp.ImmutableMatrix | None = None  # that matrix; its sum is the last side
-
-    @property
-    def because_text(self) -> str:
-        return "".join(span if isinstance(span, str) else span.text for span in self.because)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.sentence import sentence
 from rigidsym.mechanics.derivation import Statement
 from rigidsym.models.rotation import lecture
 
@@ -208,12 +208,14 @@ def _read(text: str) -> Iterator[Statement]:
 def _statement(section: str, heading: str, text: str) -> Statement:
     number, name, place, *more = heading.split()
     words, *items = _ITEM.split(text)
-    pairs = [(mark, _formula(item)) for mark, item in zip(items[::2], items[1::2], strict=True)]
+    pairs = [
+        (mark, formula(_plain(item))) for mark, item in zip(items[::2], items[1::2], strict=True)
+    ]
     return Statement(
         name=name,
         number=None if number == "-" else int(number),
         section=section,
-        because=tuple(_spans(words)),
+        because=sentence(_plain(words)),
         sides=tuple(side for mark, side in pairs if mark == "="),
         claims=tuple((mark[:-1], claim) for mark, claim in pairs if mark != "="),
         source=lecture("" if number == "-" else number, f"section {place}"),
@@ -221,15 +223,9 @@ def _statement(section: str, heading: str, text: str) -> Statement:
     )
 
 
-def _spans(text: str) -> Iterator[str | Formula]:
-    """The words of a sentence and the formulas between them."""
-    for place, span in enumerate(" ".join(text.split()).split("$")):
-        if span:
-            yield _formula(span) if place % 2 else span
-
-
-def _formula(text: str) -> Formula:
-    return formula(" ".join(text.split()).replace("^T", r"^{\mathsf T}"))
+def _plain(text: str) -> str:
+    """On one line, with the transpose as `formula` reads it."""
+    return " ".join(text.split()).replace("^T", r"^{\mathsf T}")
 
 
 STATEMENTS = tuple(_read(_EQUATIONS))

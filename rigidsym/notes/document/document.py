@@ -12,6 +12,7 @@ from itertools import chain, zip_longest
 
 from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
+from rigidsym.formula.sentence import sentence
 from rigidsym.formula.tree import Formula
 from rigidsym.models.rotation import Citation
 from rigidsym.notes.figure.drawing import Drawing
@@ -55,11 +56,9 @@ Span = str | Formula | Code | Strong | EquationReference | Cited
 Text = tuple[Span, ...]
 
 
-def words(template: str, *spans: Span) -> Text:
-    """The template with a span in place of each {}."""
-    parts = template.split("{}")
-    mixed = chain.from_iterable(zip(parts, (*spans, ""), strict=True))
-    return tuple(span for span in mixed if span)
+def words(typed: str, *spans: Span) -> Text:
+    """The text with the formulas between its dollar signs read, and a span for each {}."""
+    return sentence(typed, *spans)
 
 
 def listed(items: Sequence[Text], last: str = " and ") -> Text:

@@ -118,7 +118,7 @@ def _theory(derivation: Derivation) -> list[dict[str, Any]]:
             "number": statement.number,
             "name": statement.name,
             "section": statement.section,
-            "because": statement.because_text,
+            "because": text_of(statement.because),
             "sides": [_markup(side) for side in statement.sides],
             "summands": None
             if statement.summands is None
