@@ -15,7 +15,7 @@ from rigidsym.errors import ModelError, QuantityError, offer
 from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, Notation as Notation
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import Body, derive as derivation_of
-from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES
+from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, FLOW_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
@@ -31,7 +31,10 @@ if TYPE_CHECKING:
     from rigidsym.notes.note import Note
     from rigidsym.simulation.trajectory import Trajectory
 
-QUANTITIES = (*QUANTITY_NAMES, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES, *DYNAMICS_QUANTITIES)
+QUANTITIES = (
+    *(*QUANTITY_NAMES, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES),
+    *(*DYNAMICS_QUANTITIES, *FLOW_QUANTITIES),
+)
 
 
 @dataclass(frozen=True, kw_only=True)

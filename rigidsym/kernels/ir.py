@@ -220,9 +220,12 @@ class KernelArgument:
     about: str
     is_matrix: bool = False  # (3, 3), else a vector
     is_optional: bool = False  # zero if left out
+    is_scalar: bool = False  # a number, such as the time
 
     @property
     def shape(self) -> tuple[int, ...]:
+        if self.is_scalar:
+            return ()
         return (3, 3) if self.is_matrix else (len(self.components),)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.symbol_names import named
 from rigidsym.mechanics.derivation import Argument
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import time_function
+from rigidsym.models.so3 import TIME, time_function
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
@@ -69,6 +69,28 @@ def arguments_of_motion(model: RotationModel) -> tuple[Argument, ...]:
             about="body components of the torque about the fixed point",
         ),
     )
+
+
+def arguments_of_flow(state: Sequence[Argument]) -> tuple[Argument, ...]:
+    """The time, and the state y of which `state` are the parts."""
+    time = Argument(
+        name="t",
+        symbols=(TIME,),
+        names=("t",),
+        notation=(formula("t"),),
+        units=("s",),
+        about="the time",
+        is_scalar=True,
+    )
+    whole = Argument(
+        name="y",
+        symbols=tuple(s for part in state for s in part.symbols),
+        names=tuple(n for part in state for n in part.names),
+        notation=tuple(n for part in state for n in part.notation),
+        units=tuple(u for part in state for u in part.units),
+        about=f"the state: {', '.join(part.name for part in state)}",
+    )
+    return time, whole
 
 
 def _check_names(arguments: Iterable[Argument], model: str) -> None:

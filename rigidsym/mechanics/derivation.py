@@ -78,6 +78,7 @@ class Argument:
     notation: tuple[Formula, ...]  # how a component is printed
     units: tuple[str, ...]  # a unit a component
     about: str  # "coordinates", "space components of the angular velocity"
+    is_scalar: bool = False  # one number, of shape ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +141,7 @@ class Definition:
 class Step:
     """One quantity, derived: its textbook form, how it follows, and what was proved of it."""
 
-    number: int  # of its equation, in the note and in the docstrings of the kernels
+    number: int  # of its equation, in the note and in the docstrings of kernels; 0 for none
     quantity: Quantity
     expression: sp.ImmutableMatrix
     because: str  # a sentence: how it follows from the steps before
@@ -279,13 +280,14 @@ class Derivation:
     theory: tuple[Statement, ...] = ()  # the equations that the steps rest on, where asked for
     definitions: tuple[Definition, ...] = ()  # intermediate quantities that the steps name
     first_integrals: tuple[FirstIntegral, ...] = ()  # where equations of motion were asked for
+    functions: tuple[Step, ...] = ()  # for kernels only: they repeat what the note has in parts
 
     def step(self, quantity: str) -> Step:
         """The step that defines a quantity; raises QuantityError for one that is not here."""
-        for step in self.steps:
-            if step.quantity.name == quantity:
-                return step
-        names = [step.quantity.name for step in self.steps]
+        every = {step.quantity.name: step for step in (*self.steps, *self.functions)}
+        if quantity in every:
+            return every[quantity]
+        names = list(every)
         raise QuantityError(f"{self.name} has no quantity {quantity!r}; {offer(quantity, names)}")
 
     def select(self, names: Sequence[str]) -> Self:
@@ -327,9 +329,9 @@ class Derivation:
         return all(proof.is_exact for proof in self.proofs)
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name == "steps":  # asked for before there are any steps
+        if name.startswith("_") or name in ("steps", "functions"):  # before there are any
             raise AttributeError(name)
-        for step in self.steps:
+        for step in (*self.steps, *self.functions):
             if step.quantity.name == name:
                 value = self.spelled(step.expression)
                 return value[0] if step.quantity.is_scalar else value

@@ -14,11 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from rigidsym.errors import QuantityError
-from rigidsym.mechanics.arguments import arguments_of_motion
 from rigidsym.mechanics.derivation import (
     OF_RATES,
     Argument,
@@ -33,7 +33,7 @@ from rigidsym.mechanics.derivation import (
 from rigidsym.mechanics.kinematics import derive as kinematics
 from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES
+from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, FLOW_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES, quantities
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
@@ -42,6 +42,9 @@ from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.distribution import Distribution
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel
+
+if TYPE_CHECKING:
+    from rigidsym.mechanics.dynamics.derive import EquationsOfMotion
 
 _STUDIED = 5  # turns up to which the minors of W are few enough to solve for their zeros
 
@@ -87,13 +90,18 @@ def derive(
     whole: RigidBody | None = None
     arguments: Mapping[str, Argument] = values.arguments
     integrals: tuple[FirstIntegral, ...] = ()
+    functions: dict[str, Step] = {}
     if body is not None:
         whole, arguments, of_body = _of_body(model, body, only, forces)
         found |= of_body
         if forces is not None:
-            of_motion, integrals = _of_forces(model, whole, forces, only)
-            found |= of_motion
-            arguments = {**arguments, **{a.name: a for a in arguments_of_motion(model)}}
+            equations = _of_forces(model, whole, forces)
+            found |= equations.steps([n for n in DYNAMICS_QUANTITIES if not only or n in only])
+            integrals = equations.first_integrals
+            if not only or not {*only}.isdisjoint(FLOW_QUANTITIES):
+                made = equations.functions()
+                functions = {n: f for n, f in made.items() if not only or n in only}
+            arguments = {**arguments, **{a.name: a for a in equations.added}}
     has_rates = not only or not OF_RATES.isdisjoint(only)
     singularities = _singularities(values, turns) if has_rates else None
     named = [*(step.expression for step in found.values())]
@@ -107,6 +115,7 @@ def derive(
         model=model,
         arguments=tuple(arguments.values()),
         steps=tuple(_numbered(found, _table(values), constants)),
+        functions=tuple(_with_parameters(step, constants) for step in functions.values()),
         singularities=singularities,
         body=whole,
         definitions=definitions,
@@ -153,21 +162,17 @@ def _of_body(
     return whole, values.arguments, found
 
 
-def _of_forces(
-    model: RotationModel, body: RigidBody, forces: Forces, only: Collection[str]
-) -> tuple[dict[str, Found], tuple[FirstIntegral, ...]]:
-    """The equations of motion, and what is constant along it."""
+def _of_forces(model: RotationModel, body: RigidBody, forces: Forces) -> EquationsOfMotion:
+    """The equations of motion."""
     from rigidsym.mechanics.dynamics.derive import EquationsOfMotion
     from rigidsym.mechanics.dynamics.lagrange import Lagrange
 
-    motion = EquationsOfMotion(Lagrange(model, body, forces))
-    found = dict(motion.steps([n for n in DYNAMICS_QUANTITIES if not only or n in only]))
-    return found, tuple(motion.first_integrals())
+    return EquationsOfMotion(Lagrange(model, body, forces))
 
 
 def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:
     of_body = (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if has_body else ()
-    of_motion = tuple(DYNAMICS_QUANTITIES) if has_forces else ()
+    of_motion = (*DYNAMICS_QUANTITIES, *FLOW_QUANTITIES) if has_forces else ()
     known = (*QUANTITY_NAMES, *of_body, *of_motion)
     unknown = ", ".join(name for name in only if name not in known)
     if unknown:
@@ -190,11 +195,9 @@ def _numbered(
 ) -> Iterator[Step]:
     for number, (name, step) in enumerate(found.items(), start=1):
         quantity = table[name]
-        if constants and not step.expression.free_symbols.isdisjoint(constants):
-            quantity = replace(quantity, inputs=(*quantity.inputs, "parameters"))
         if step.definition is not None:
             quantity = replace(quantity, definition=step.definition)
-        yield Step(
+        made = Step(
             number=number,
             quantity=quantity,
             expression=step.expression,
@@ -203,3 +206,12 @@ def _numbered(
             vector_form=step.vector_form,
             recursion=step.recursion,
         )
+        yield _with_parameters(made, constants)
+
+
+def _with_parameters(step: Step, constants: Collection[sp.Symbol]) -> Step:
+    """The step with the parameters among its inputs if it depends on any."""
+    if step.expression.free_symbols.isdisjoint(constants):
+        return step
+    inputs = (*step.quantity.inputs, "parameters")
+    return replace(step, quantity=replace(step.quantity, inputs=inputs))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
 from types import ModuleType
 from typing import Any
 
@@ -55,7 +54,7 @@ def simulate(
     def slopes(t: float, y: Array) -> Array:
         if progress is not None:
             progress(t / t_end)
-        return problem.slopes(y)
+        return problem.slopes(t, y)
 
     solved = solve_ivp(
         slopes,
@@ -108,6 +107,8 @@ class _Problem:
         self._check_body(dict(zip(constants, self.parameters, strict=True)))
         self.kernels: ModuleType = generate(derivation, "numpy").load()
         self.margin: Any = self._margin_event()
+        self._slopes = self.kernels.state_derivative_scalar
+        self._constants = [v for given in self._given("state_derivative") for v in given]
         if self.margin(0.0, self.start) <= 0:
             raise ModelError(
                 f"{derivation.name}: the motion starts at a pole of the coordinates, where the "
@@ -134,15 +135,9 @@ class _Problem:
         step = self.derivation.step(name)
         return [self.parameters] if "parameters" in step.quantity.inputs else []
 
-    def slopes(self, y: Array) -> Array:
-        """(q̇, q̈) of one state."""
-        q_ddot = self.kernels.accelerations_scalar(*y.tolist(), *self._constants)
-        return np.array([*y[self.count :], *q_ddot])
-
-    @cached_property
-    def _constants(self) -> list[float]:
-        """The parameters of the accelerations, looked up once and not at every step."""
-        return [value for given in self._given("accelerations") for value in given]
+    def slopes(self, t: float, y: Array) -> Array:
+        """The derivative of one state."""
+        return np.array(self._slopes(t, *y.tolist(), *self._constants))
 
     def _margin_event(self) -> Any:
         """The distance from a pole, for the integrator to stop at; never if there is none."""
@@ -164,17 +159,16 @@ class _Problem:
             q_dot=q_dot,
             angular_velocity_body=self.kernels.angular_velocity_body(q, q_dot),
             rotation_matrix=self.kernels.rotation_matrix(q),
-            first_integrals=self._integrals(q, q_dot),
+            first_integrals=self._integrals(states),
             ended=ended,
         )
 
-    def _integrals(self, q: Array, q_dot: Array) -> dict[str, Array]:
-        energy = self.kernels.energy(q, q_dot, *self._given("energy"))
-        momenta = self.kernels.generalised_momenta(q, q_dot, *self._given("generalised_momenta"))
-        known = {"energy": energy}
-        for k, name in enumerate(self.coordinates):
-            known[f"momentum_{name}"] = momenta[:, k]
-        return {i.name: known[i.name] for i in self.derivation.first_integrals}
+    def _integrals(self, states: Array) -> dict[str, Array]:
+        names = [integral.name for integral in self.derivation.first_integrals]
+        if not names:
+            return {}
+        values = self.kernels.first_integrals(states, *self._given("first_integrals"))
+        return dict(zip(names, values.T, strict=True))
 
 
 def _check_names(

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import random
+from functools import cache
 
+import numpy as np
 import pytest
 import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod
@@ -131,6 +133,46 @@ def test_kernels_hold_the_equations_of_motion():
     exact = evaluate(motion.accelerations, values)
     computed = kernels.accelerations(given["q"], given["q_dot"], given["parameters"])
     assert computed == pytest.approx([float(x) for x in exact], rel=1e-13)
+
+
+@pytest.mark.parametrize("target", ["numpy", "c", "numba", "jax", "javascript"])
+def test_every_language_has_the_derivative_of_the_state_for_one_and_for_many(target):
+    """state_derivative(t, y, parameters) = (q̇, q̈), its Jacobian, and the first integrals"""
+    motion = flowing()
+    kernels = motion.kernels(target).load()
+    values = {s: float(v) for s, v in values_for(motion).items()}
+    y, parameters = ([values[s] for s in motion.argument(n).symbols] for n in ("y", "parameters"))
+    rel = 1e-5 if target == "jax" else 1e-12  # float32 unless jax_enable_x64 is set
+
+    def at(name):
+        return np.array(evaluate(motion.step(name).expression, values).tolist(), float)
+
+    for name, given in (
+        ("state_derivative", (0.0, y, parameters)),
+        ("state_jacobian", (0.0, y, parameters)),
+        ("first_integrals", (y, parameters)),
+    ):
+        exact = at(name)
+        exact = exact if name == "state_jacobian" else exact.ravel()
+        assert np.asarray(getattr(kernels, name)(*given)) == pytest.approx(exact, rel, abs=rel)
+    many = kernels.state_derivative(np.zeros(2), [y, y], parameters)
+    assert np.asarray(many)[1] == pytest.approx(at("state_derivative").ravel(), rel)
+
+
+@cache
+def flowing() -> rs.Motion:
+    return top(only=["state_derivative", "state_jacobian", "first_integrals"])
+
+
+def test_the_jacobian_of_the_state_derivative_is_the_derivative():
+    motion = flowing()
+    values, step = values_for(motion), mp.mpf(10) ** -20
+    with mp.workdps(60):
+        slopes = evaluate(motion.state_derivative, values)
+        jacobian = evaluate(motion.state_jacobian, values)
+        for k, symbol in enumerate(motion.argument("y").symbols):
+            moved = evaluate(motion.state_derivative, values | {symbol: values[symbol] + step})
+            assert mp.norm((moved - slopes) / step - jacobian[:, k]) < 1e-15
 
 
 def test_a_wrong_bias_is_refuted():

@@ -55,7 +55,8 @@ def lower(
     """
     kernels = _Lowering(derivation, Names(reserved))
     # a tensor given in numbers takes no arguments, and is no function
-    found = tuple(kernels.of_step(step) for step in derivation.steps if step.quantity.inputs)
+    steps = (*derivation.steps, *derivation.functions)
+    found = tuple(kernels.of_step(step) for step in steps if step.quantity.inputs)
     found += tuple(kernels.margin())
     found += tuple(map(kernels.of_derivative, derivatives))
     added = converted(derivation, conversions) if conversions else Converted()
@@ -105,12 +106,17 @@ def _roots(derivation: Derivation) -> list[sp.Expr]:
     return list(sp.ordered(p for p in powers if p.is_number and p.exp.is_Rational))
 
 
-def _named(vector: Vector, names: Names) -> ir.KernelArgument:
+def _named(vector: Vector, names: Names, known: dict[sp.Expr, str]) -> ir.KernelArgument:
+    """The argument, its components named as where they are known from another."""
+    for symbol, name in zip(vector.symbols, vector.names, strict=True):
+        if symbol not in known:
+            known[symbol] = names.fresh(name)
     return ir.KernelArgument(
         name=vector.name,
-        components=tuple(names.fresh(name) for name in vector.names),
+        components=tuple(known[symbol] for symbol in vector.symbols),
         units=vector.units,
         about=vector.about,
+        is_scalar=vector.is_scalar,
     )
 
 
@@ -120,7 +126,8 @@ class _Lowering:
     def __init__(self, derivation: Derivation, names: Names) -> None:
         self.derivation = derivation
         self._vectors = {vector.name: vector for vector in derivation.arguments}
-        self.arguments = {vector.name: _named(vector, names) for vector in derivation.arguments}
+        self._known: dict[sp.Expr, str] = {}  # the names of components
+        self.arguments = {v.name: _named(v, names, self._known) for v in derivation.arguments}
         self._names = names
         self._definitions = {d.symbol: d.expression for d in derivation.definitions}
         model = derivation.model
@@ -135,7 +142,7 @@ class _Lowering:
         kernel = self._kernel(quantity.name, quantity.inputs, entries, step.shape)
         return replace(
             kernel,
-            equation=step.number,
+            equation=step.number or None,
             symbol=quantity.symbol.text,
             definition=quantity.definition.text,
             about=quantity.about,
@@ -147,7 +154,7 @@ class _Lowering:
         for vector in derivative.vectors:
             if vector.name not in self.arguments:
                 self._vectors[vector.name] = vector
-                self.arguments[vector.name] = _named(vector, self._names)
+                self.arguments[vector.name] = _named(vector, self._names, self._known)
         step = derivative.step
         count = len(step.expression)
         entries = self.rewritten([*step.expression, *derivative.jacobian()])
@@ -192,19 +199,12 @@ class _Lowering:
 
     def _taken(self, given: ConversionInput) -> ir.KernelArgument:
         """An argument of a conversion; the coordinates that are kept are called as in q."""
-        name, symbols = given.argument.name, given.argument.symbols
+        name = given.argument.name
         if name not in self.arguments:
-            known = dict(
-                zip(self._vectors["q"].symbols, self.arguments["q"].components, strict=True)
-            )
-            if known.keys() >= set(symbols):
-                components = tuple(known[symbol] for symbol in symbols)
-                named = _named(given.argument, Names())
-                self.arguments[name] = replace(named, components=components)
-            else:
-                self.arguments[name] = _named(given.argument, self._names)
             self.arguments[name] = replace(
-                self.arguments[name], is_matrix=given.is_matrix, is_optional=given.is_optional
+                _named(given.argument, self._names, self._known),
+                is_matrix=given.is_matrix,
+                is_optional=given.is_optional,
             )
         return self.arguments[name]
 

@@ -16,8 +16,9 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form
-from rigidsym.mechanics.arguments import arguments_of, arguments_of_motion
-from rigidsym.mechanics.derivation import FirstIntegral, Found
+from rigidsym.mechanics.arguments import arguments_of, arguments_of_flow, arguments_of_motion
+from rigidsym.mechanics.derivation import FirstIntegral, Found, Step
+from rigidsym.mechanics.dynamics.flow import flow_functions
 from rigidsym.mechanics.dynamics.lagrange import Lagrange
 from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.prove import Prover
@@ -31,8 +32,10 @@ class EquationsOfMotion:
         self.work = work
         self.present = presenter_for(work.codec)
         self.prove = Prover(work.model, work.codec)
-        arguments = (*arguments_of(work.model), *arguments_of_motion(work.model))
-        self.arguments = {argument.name: argument for argument in arguments}
+        self.arguments = {a.name: a for a in arguments_of(work.model)}
+        self.added = arguments_of_motion(work.model)  # by the equations of motion
+        self.added += arguments_of_flow([self.arguments["q"], self.arguments["q_dot"]])
+        self.arguments |= {a.name: a for a in self.added}
 
     def steps(self, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
         """(name, what was found) of the quantities of motion that are wanted."""
@@ -157,8 +160,19 @@ class EquationsOfMotion:
             (proof,),
         )
 
-    def first_integrals(self) -> Iterator[FirstIntegral]:
+    def functions(self) -> Mapping[str, Step]:
+        """What kernels take beside the steps: the derivative of the state y = (q, q̇)."""
+        accelerations = self.present.matrix(*self.work.solved)
+        integrals = [integral.expression for integral in self.first_integrals]
+        state = self.arguments["y"]
+        return flow_functions(state, [*self.work.rates, *accelerations], integrals)
+
+    @cached_property
+    def first_integrals(self) -> tuple[FirstIntegral, ...]:
         """What is constant along every motion, with its proof."""
+        return tuple(self._first_integrals())
+
+    def _first_integrals(self) -> Iterator[FirstIntegral]:
         work = self.work
         if not any(work.forces):
             yield FirstIntegral(

@@ -89,6 +89,22 @@ DYNAMICS_QUANTITIES = read_table(
     _SOURCES,
 )
 
+FLOW_QUANTITIES = read_table(
+    """
+    state_derivative  vector  -  t y  -
+        time derivative of the state y, in the order of y
+    state_jacobian    matrix  -  t y  -
+        derivatives of `state_derivative` by y, a column for each component of y
+    first_integrals   vector  -  y    -
+        quantities that are constant along every motion
+    """,
+    {
+        "state_derivative": (formula(r"\dot{\mathbf{y}}"),),
+        "state_jacobian": (formula(r"\mathbf{J}"),),
+        "first_integrals": (formula(r"\mathbf{F}"),),
+    },
+)
+
 # Claims.
 
 MOMENTA_ARE_SLOPES = formula(r"#1 = \frac{\partial #2}{\partial #3}", *(MOMENTA, ROTATIONAL, RATES))

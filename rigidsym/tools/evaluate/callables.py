@@ -60,7 +60,12 @@ def functions_of(motion: Motion, names: Sequence[str], target: str, *, degrees: 
     calls = tuple((name, _inputs(chosen, kernels, name)) for name in names)
     wanted = {argument for _, taken in calls for argument in taken}
     known = [
-        *(FunctionArgument(name=a.name, names=a.names, units=a.units) for a in chosen.arguments),
+        *(
+            FunctionArgument(
+                name=a.name, names=a.names, units=a.units, shape=() if a.is_scalar else (-1,)
+            )
+            for a in chosen.arguments
+        ),
         _QUATERNION,
         _MATRIX,
     ]

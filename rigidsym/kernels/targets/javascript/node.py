@@ -26,19 +26,20 @@ _RUN = """
 import { readFileSync } from "node:fs";
 import * as kernels from "./kernels.mjs";
 
-const [name, parted, ...sizes] = process.argv.slice(2);
+const [name, first, parted, ...sizes] = process.argv.slice(2);
 const numbers = new Float64Array(Uint8Array.from(readFileSync(0)).buffer);
 const count = sizes.reduce((sum, size) => sum + Number(size), 0);
 const results = [];
 for (let start = 0; start < Math.max(numbers.length, 1); start += Math.max(count, 1)) {
   let place = start;
   const vectors = sizes.map((size) => numbers.subarray(place, (place += Number(size))));
+  if (first === "t" && !name.endsWith("_batch")) vectors[0] = vectors[0][0]; // a number
   results.push(kernels[name](...vectors));
 }
 const shape = (value) => (Array.isArray(value) ? [value.length, ...shape(value[0])] : []);
 const plain = (value) => (ArrayBuffer.isView(value) ? Array.from(value) : value);
-const first = plain(results[0]);
-const shapes = parted ? first.map(shape) : [shape(first)];
+const one = plain(results[0]);
+const shapes = parted ? one.map(shape) : [shape(one)];
 process.stdout.write(JSON.stringify(shapes) + "\\n");
 const flat = results.map(plain).flat(3);
 process.stdout.write(new Uint8Array(Float64Array.from(flat).buffer));
@@ -61,7 +62,8 @@ def module(name: str, source: str) -> ModuleType:
         )
     made = ModuleType(name)
     for function, first, parted in _EXPORTED.findall(source):
-        run = partial(_run, source, function, parted)
+        first = first.rstrip("_")
+        run = partial(_run, source, function, first, parted)
         is_flat = function.endswith("_batch") or function == "unwrap"
         setattr(made, function, _flat(run) if is_flat else _caller(run, first))
         if is_flat:
@@ -82,6 +84,8 @@ def _caller(run: Run, first: str) -> Callable[..., Any]:
         arrays = [np.asarray(vector, float) for vector in vectors]
         if first == "matrix":
             arrays[0] = arrays[0].reshape(*arrays[0].shape[:-2], 9)
+        if first == "t":
+            arrays[0] = arrays[0][..., None]
         leading = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
         rows = [
             np.broadcast_to(a, (*leading, a.shape[-1])).reshape(-1, a.shape[-1]) for a in arrays
@@ -92,14 +96,14 @@ def _caller(run: Run, first: str) -> Callable[..., Any]:
     return call
 
 
-def _run(source: str, function: str, parted: str, rows: list[Numbers]) -> list[Numbers]:
+def _run(source: str, function: str, first: str, parted: str, rows: list[Numbers]) -> list[Numbers]:
     """The results for all rows, in one run: of a function that gives several, all of them."""
     sizes = [str(array.shape[-1]) for array in rows]
     with TemporaryDirectory(prefix="rigidsym-") as folder:
         (Path(folder) / "kernels.mjs").write_text(source, encoding="utf-8")
         (Path(folder) / "run.mjs").write_text(_RUN, encoding="utf-8")
         done = subprocess.run(
-            ["node", "run.mjs", function, parted, *sizes],
+            ["node", "run.mjs", function, first, parted, *sizes],
             cwd=folder,
             input=np.hstack(rows).astype("<f8").tobytes(),
             capture_output=True,

@@ -140,7 +140,7 @@ def _vector(name: str, argument: KernelArgument) -> Vector:
         components=argument.components,
         about=f"{', '.join(argument.components)}{unit}"
         + ("; rows, or the entries row by row" if argument.is_matrix else ""),
-        entries=f"_flat({name})" if argument.is_matrix else "",
+        entries=f"_flat({name})" if argument.is_matrix else f"[{name}]" * argument.is_scalar,
         default=f"new Array({len(argument.components)}).fill(0)" if argument.is_optional else "",
     )
 

@@ -142,6 +142,8 @@ def passed(argument: KernelArgument, library: str) -> str:
     name = value = argument.name
     if argument.is_matrix:
         value = f"_entries({name})"
+    if argument.is_scalar:
+        value = f"{library}.asarray({name})[..., None]"
     if argument.is_optional:
         zeros = f"{library}.zeros({len(argument.components)}, {library}.float32)"
         value = f"{zeros} if {name} is None else {name}"
