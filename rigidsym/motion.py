@@ -13,6 +13,9 @@ import sympy as sp
 
 from rigidsym.errors import ModelError, QuantityError, offer
 from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, Notation as Notation
+from rigidsym.kernels.lowering.derivatives import Asked
+from rigidsym.kernels.module import KernelModule, generate
+from rigidsym.mechanics.conversions.conversions import Conversions, conversions_of
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import Body, derive as derivation_of
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, FLOW_QUANTITIES
@@ -25,9 +28,6 @@ from rigidsym.models.rotation_text import rotation_from
 from rigidsym.system.limits import time_limit
 
 if TYPE_CHECKING:
-    from rigidsym.kernels.lowering.derivatives import Asked
-    from rigidsym.kernels.module import KernelModule
-    from rigidsym.mechanics.conversions.conversions import Conversions
     from rigidsym.notes.note import Note
     from rigidsym.simulation.trajectory import Trajectory
 
@@ -72,15 +72,11 @@ class Motion(Derivation):
         `angular_velocity_body_jacobian_q_dot`; "q jvp" and "q vjp" are products with a vector.
         Raises KernelError for an unknown target or derivative.
         """
-        from rigidsym.kernels.module import generate
-
         return generate(self, target, conversions=conversions, derivatives=derivatives)
 
     @property
     def conversions(self) -> Conversions:
         """The conversions between the coordinates, the unit quaternion and R, with proofs."""
-        from rigidsym.mechanics.conversions.conversions import conversions_of
-
         return conversions_of(self.model)
 
     def note(
@@ -94,13 +90,11 @@ class Motion(Derivation):
         """
         from rigidsym.notes.note import note
 
-        converting = self.conversions if conversions else None
-        module = f"{self.name}.py" if with_kernels else None
         return note(
             self,
-            module=module,
+            module=f"{self.name}.py" if with_kernels else None,
             notation=self.notation,
-            conversions=converting,
+            conversions=self.conversions if conversions else None,
             style=style,
         )
 
@@ -154,11 +148,12 @@ class _Printer:
     motion: Motion
 
     def latex(self, step: Step) -> str:
-        return self._equations().latex(step)
+        return self._equations.latex(step)
 
     def text(self, step: Step) -> str:
-        return self._equations().text(step)
+        return self._equations.text(step)
 
+    @property
     def _equations(self) -> Any:
         from rigidsym.notes.formats.jupyter import EquationPrinter
 

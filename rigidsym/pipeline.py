@@ -26,6 +26,7 @@ from rigidsym.motion import CHOICES, DEFAULT, QUANTITIES, Motion, Notation, deri
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.sections.styles import STYLES
+from rigidsym.spec import derivation_file
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.spec.faults import Source
 from rigidsym.spec.vocabulary import Vocabulary
@@ -95,24 +96,17 @@ def read(source: str, **options: Any) -> DerivationSpec:
 
 def read_file(file: str) -> DerivationSpec:
     """A derivation file, by path or shipped name. Raises SpecError with all its faults."""
-    return _reader().read_file(file, vocabulary())
+    return derivation_file.read_file(file, vocabulary())
 
 
 def read_spec(text: str, *, source: str, name: str, folder: Path | None = None) -> DerivationSpec:
     """The text of a derivation file; see `derivation_file.read_spec`."""
-    return _reader().read_spec(text, vocabulary(), source=source, name=name, folder=folder)
+    return derivation_file.read_spec(text, vocabulary(), source=source, name=name, folder=folder)
 
 
 def read_record(request: object, *, source: str = "request") -> DerivationSpec:
     """The specification that a record (NAME.json) was made from. Raises SpecError."""
-    return _reader().from_data(request, vocabulary(), source=source)
-
-
-def _reader() -> Any:
-    """The reader of files, which a rotation named on the command line does not need."""
-    from rigidsym.spec import derivation_file
-
-    return derivation_file
+    return derivation_file.from_data(request, vocabulary(), source=source)
 
 
 def vocabulary() -> Vocabulary:

@@ -4,9 +4,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import wraps
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,34 @@ from rigidsym.motion import QUANTITIES
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.resources import overridden_by
 
+
+class _Names(click.ParamType[Any]):
+    """Names between commas."""
+
+    name = "names"
+
+    def convert(self, value: Any, param: object, ctx: object) -> list[str]:  # noqa: ARG002
+        return value if isinstance(value, list) else [name.strip() for name in value.split(",")]
+
+
+class _NamedNumber(click.ParamType[Any]):
+    """NAME=NUMBER, as a pair."""
+
+    name = "number"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, float]:
+        name, _, number = value.partition("=")
+        try:
+            return name.strip(), float(number)
+        except ValueError:
+            flag = param.opts[0] if param else ""
+            raise click.UsageError(f"{flag} {value}: expected NAME=NUMBER", ctx) from None
+
+
+NAMES, NAMED_NUMBER = _Names(), _NamedNumber()
+FILE = click.Path(dir_okay=False, path_type=Path)
 MOST_LINES = 150  # that a terminal shows by default
 _OPTION = "click option"
 
@@ -84,11 +113,15 @@ class FolderOptions(TemplateOptions):
 class RotationOptions:
     """How the text of a rotation is read."""
 
-    angles: str | None = option(
-        "--angles", "--names", metavar="A,B,C", help="Names of the coordinates, in their order."
+    angles: list[str] | None = option(
+        "--angles",
+        "--names",
+        type=NAMES,
+        metavar="A,B,C",
+        help="Names of the coordinates, in their order.",
     )
-    constants: str | None = option(
-        "--constants", metavar="A,B", help="Names in turns that are constants."
+    constants: list[str] | None = option(
+        "--constants", type=NAMES, metavar="A,B", help="Names in turns that are constants."
     )
     scalar_last: bool = option("--scalar-last", is_flag=True, help="Quaternions as (x, y, z, w).")
     passive: bool = option(
@@ -97,12 +130,7 @@ class RotationOptions:
 
     def of_rotation(self) -> dict[str, Any]:
         """The options that were given, as `spec_for` takes them."""
-        given = {
-            "angles": None if self.angles is None else names_of(self.angles),
-            "constants": names_of(self.constants) if self.constants else (),
-            "scalar_last": self.scalar_last,
-            "passive": self.passive,
-        }
+        given = {f.name: getattr(self, f.name) for f in fields(RotationOptions)}
         return {name: value for name, value in given.items() if value}
 
 
@@ -120,30 +148,30 @@ class NotationOptions:
     vectors: str | None = _notation("vectors", "Vectors in bold or with arrows.")
     body: str | None = _notation("body", "Body components as Ω′ or as Ωᴮ.")
     angular_velocity: str | None = _notation("angular_velocity", "Angular velocity as Ω or ω.")
-    frames: str | None = option(
-        "--frames", metavar="SPACE,BODY", help="Names of the two frames: inertial,spacecraft."
+    frames: list[str] | None = option(
+        "--frames",
+        type=NAMES,
+        metavar="SPACE,BODY",
+        help="Names of the two frames: inertial,spacecraft.",
     )
 
     def in_notation(self, spec: DerivationSpec) -> DerivationSpec:
         """The specification with the notation chosen here."""
-        chosen: dict[str, Any] = {
-            name: getattr(self, name) for name in CHOICES if getattr(self, name) is not None
-        }
-        if self.frames is not None:
-            chosen["frames"] = tuple(names_of(self.frames))
-        if not chosen:
-            return spec
-        return replace(spec, notation=replace(spec.notation or DEFAULT, **chosen))
+        chosen = {name: getattr(self, name) for name in CHOICES if getattr(self, name)}
+        chosen |= {"frames": tuple(self.frames)} if self.frames else {}
+        notation = replace(spec.notation or DEFAULT, **chosen) if chosen else spec.notation
+        return replace(spec, notation=notation)
 
 
 @dataclass(frozen=True, kw_only=True)
 class SelectionOptions:
     """What is derived."""
 
-    only: tuple[str, ...] = option(
+    only: tuple[list[str], ...] = option(
         "--only",
         "--quantity",
         multiple=True,
+        type=NAMES,
         metavar="NAME,...",
         help="Derive these quantities only; `rigidsym list` shows the names. May be repeated.",
     )
@@ -155,23 +183,21 @@ class SelectionOptions:
 
     def selected(self, spec: DerivationSpec) -> DerivationSpec:
         """The specification with the quantities chosen here."""
-        only = split(self.only)
+        only = unique(self.only)
         for name in only:
             _check_quantity(name, "--only")
-        return replace(
-            spec,
-            quantities=only or spec.quantities,
-            conversions=spec.conversions or self.conversions,
-        )
+        converts = spec.conversions or self.conversions
+        return replace(spec, quantities=only or spec.quantities, conversions=converts)
 
 
 @dataclass(frozen=True, kw_only=True)
 class OutputOptions:
     """What is printed, and what the terminal shows."""
 
-    target: tuple[str, ...] = option(
+    target: tuple[list[str], ...] = option(
         "--target",
         multiple=True,
+        type=NAMES,
         metavar="NAME,...",
         help="Languages of the kernels; `rigidsym list` shows them. May be repeated.  "
         "[default: numpy]",
@@ -203,7 +229,7 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, SelectionOp
 
     def applied_to(self, spec: DerivationSpec) -> DerivationSpec:
         """The specification with the choices of the command line."""
-        targets = split(self.target)
+        targets = unique(self.target)
         for target in targets:
             check_target(target)
         note = tuple(dict.fromkeys((*spec.note, "pdf"))) if self.pdf else spec.note
@@ -233,10 +259,6 @@ def _check_quantity(name: str, flag: str) -> None:
         raise QuantityError(f"{flag}: no quantity {name!r}\n{offer(name, QUANTITIES)}")
 
 
-def names_of(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",")]
-
-
-def split(texts: tuple[str, ...]) -> tuple[str, ...]:
-    """The names in texts such as "a,b", each once."""
-    return tuple(dict.fromkeys(names_of(",".join(texts)))) if texts else ()
+def unique(names: Iterable[Sequence[str]]) -> tuple[str, ...]:
+    """The names of an option that may be repeated, each once."""
+    return tuple(dict.fromkeys(chain.from_iterable(names)))

@@ -7,10 +7,17 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
-from rigidsym.models.matrices import DirectionCosines
-from rigidsym.models.quaternions import AxisAngle, CayleyKlein, Quaternion, UnitQuaternion
+from rigidsym.models.parametrisations import (
+    AxisAngle,
+    CayleyKlein,
+    DirectionCosines,
+    GibbsVector,
+    ModifiedRodrigues,
+    Quaternion,
+    RotationVector,
+    UnitQuaternion,
+)
 from rigidsym.models.rotation import Citation, RotationModel, lecture
-from rigidsym.models.vectors import GibbsVector, ModifiedRodrigues, RotationVector
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

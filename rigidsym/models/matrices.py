@@ -1,4 +1,4 @@
-"""Rotations given entry by entry: direction cosines, and matrices of your own."""
+"""Your own rotation, given entry by entry."""
 
 from __future__ import annotations
 
@@ -8,35 +8,10 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import ModelError
-from rigidsym.models.quaternions import UnitQuaternion
-from rigidsym.models.rotation import Citation, Pullback, RotationModel, lecture
-from rigidsym.models.so3 import symbolic, time_function
-from rigidsym.models.vectors import distinct_names
+from rigidsym.models.rotation import Citation, RotationModel
+from rigidsym.models.so3 import symbolic
 
 GIVEN = "given by the user"  # the source of a rotation without another
-
-_NAMES = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
-
-
-def DirectionCosines(names: Sequence[str] = _NAMES, *, passive: bool = False) -> RotationModel:
-    """The nine entries of R, row by row; dR/dt = C(Ω) R are Poisson's equations.
-
-    Every rotation is that of a unit quaternion, so that claims are proved after R is written as
-    one; the forms that are shown stay in the entries. Raises ModelError for bad names.
-    """
-    entries = tuple(time_function(name) for name in distinct_names(names, 9))
-    quaternion = UnitQuaternion(names=[f"{names[0]}_quaternion_{k}" for k in "wxyz"])
-    return RotationModel(
-        name="direction_cosines" + ("_passive" if passive else ""),
-        title="Direction cosines" + (", passive" if passive else ""),
-        convention=("The coordinates are the nine entries of R, row by row.",),
-        coordinates=entries,
-        matrix=sp.ImmutableMatrix(3, 3, entries),
-        pullback=Pullback(coordinates=tuple(quaternion.matrix), constraints=quaternion.constraints),
-        source=lecture("15", "section 3.2"),
-        units=("",) * 9,
-        passive=passive,
-    )
 
 
 def given(

@@ -13,6 +13,7 @@ from sympy.core.function import AppliedUndef
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.algebra.angles import reduced
+from rigidsym.algebra.codec import codec_for
 from rigidsym.errors import ModelError
 from rigidsym.models.so3 import AXES, TIME, elementary, rodrigues, symbolic
 
@@ -171,8 +172,6 @@ class RotationModel:
         """The matrix is the product of the turns, as it stands or in the ring."""
         if not self.turns or product_of(self.turns) == self.matrix:
             return
-        from rigidsym.algebra.codec import codec_for
-
         left = product_of(self.turns) - self.matrix
         codec = codec_for(left, constraints=self.constraints, order=0)
         if any(codec.encode(entry) for entry in left):

@@ -12,50 +12,13 @@ from rigidsym.text.bounds import FUNCTIONS
 
 _LONGEST = 40
 
-_GREEK = {
-    "α": "alpha",
-    "β": "beta",
-    "γ": "gamma",
-    "δ": "delta",
-    "ε": "epsilon",
-    "ζ": "zeta",
-    "η": "eta",
-    "θ": "theta",
-    "ι": "iota",
-    "κ": "kappa",
-    "λ": "lambda",
-    "μ": "mu",
-    "ν": "nu",
-    "ξ": "xi",
-    "π": "pi",
-    "ρ": "rho",
-    "σ": "sigma",
-    "τ": "tau",
-    "υ": "upsilon",
-    "φ": "phi",
-    "χ": "chi",
-    "ψ": "psi",
-    "ω": "omega",
-    "Γ": "Gamma",
-    "Δ": "Delta",
-    "Θ": "Theta",
-    "Λ": "Lambda",
-    "Ξ": "Xi",
-    "Π": "Pi",
-    "Σ": "Sigma",
-    "Υ": "Upsilon",
-    "Φ": "Phi",
-    "Ψ": "Psi",
-    "Ω": "Omega",
-    "ϕ": "phi",
-    "ϑ": "theta",
-    "ϵ": "epsilon",
-    "ϰ": "kappa",
-    "ϱ": "rho",
-    "ϖ": "varpi",
-    "\u00b5": "mu",  # the sign for micro
-    "\u2126": "Omega",  # the sign for ohm
-}  # omicron and the other capitals look like Latin letters, and are not taken
+_LETTERS = "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩϕϑϵϰϱϖ\u00b5\u2126"  # the last two: micro, ohm
+_LETTER_NAMES = """
+alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon
+phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega
+phi theta epsilon kappa rho varpi mu Omega
+"""  # without omicron and the other capitals, which look like Latin letters
+_GREEK = dict(zip(_LETTERS, _LETTER_NAMES.split(), strict=True))
 GREEK_LETTERS = "".join(_GREEK)
 _SPELLING = str.maketrans(_GREEK)
 

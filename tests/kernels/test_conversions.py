@@ -15,8 +15,8 @@ from helpers.witness import mp, rotation as exact_rotation
 from rigidsym.mechanics.conversions.conversions import conversions_of
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.models.matrices import given
+from rigidsym.models.parametrisations import RotationVector
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.models.vectors import RotationVector
 
 EPS = np.finfo(np.float64).eps
 CLOSED = tuple(PARAMETRISATIONS)

@@ -15,10 +15,9 @@ from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.models.chain import axis_turn, chain
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
-from rigidsym.models.quaternions import AxisAngle, UnitQuaternion
+from rigidsym.models.parametrisations import AxisAngle, GibbsVector, RotationVector, UnitQuaternion
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import time_function
-from rigidsym.models.vectors import GibbsVector, RotationVector
 from rigidsym.notes.document.document import plain
 from rigidsym.notes.figure.camera import STANDARD, camera, combined, cross, dot, turned, unit
 from rigidsym.notes.figure.drawing import Box, Drawing, Ellipse, Label, Stroke, beyond, placed

@@ -16,6 +16,7 @@ from math import fsum, inf
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidsym.data.mass.properties import MassProperties
 from rigidsym.errors import BodyError
 
 Array = NDArray[np.float64]
@@ -33,16 +34,6 @@ class Block:
     about: Array  # c, (3,)
     first: Array  # Σ m (x − c), (3,)
     second: Array  # Σ m (x − c)(x − c)ᵀ, (3, 3)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Cloud:
-    """Mass, centre and inertia tensor of many particles, in SI units."""
-
-    count: int
-    mass: float  # kg
-    centre: Array  # (3,), m
-    inertia: Array  # (3, 3), about the centre, kg m²
 
 
 def named(row: int) -> str:
@@ -93,7 +84,7 @@ def _not_finite(masses: Array, positions: Array, start: int, name: Callable[[int
 
 def cloud_of(
     blocks: Iterable[Block], name: Callable[[int], str] = named, *, allow: bool = False
-) -> Cloud:
+) -> MassProperties:
     """All blocks as one body, whatever their order.
 
     Raises BodyError for no particles, for a total mass that is not positive, and, unless
@@ -129,7 +120,7 @@ def cloud_of(
                     -rest[i] * (rest[j] / mass),
                 ]
             )
-    return Cloud(
+    return MassProperties(
         count=sum(block.count for block in found),
         mass=mass,
         centre=near + rest / mass,

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidsym.data.mass.blocks import inertia_from
-from rigidsym.data.mass.principal_axes import principal_axes_of
 from rigidsym.data.mass.properties import MassProperties
 from rigidsym.errors import BodyError, MissingExtra
 
@@ -125,7 +124,6 @@ def mesh_inertia(
         mass=float(volume * factor),
         centre=inside + first / volume,
         inertia=inertia,
-        principal=principal_axes_of(inertia),
     )
 
 

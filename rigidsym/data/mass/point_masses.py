@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 
 from rigidsym.data.chunk import TableReader
-from rigidsym.data.mass.blocks import BLOCK, Block, Cloud, block_of, cloud_of, named
+from rigidsym.data.mass.blocks import BLOCK, Block, block_of, cloud_of, named
 from rigidsym.data.mass.particle_columns import ParticleColumns
-from rigidsym.data.mass.principal_axes import principal_axes_of
 from rigidsym.data.mass.properties import MassProperties
 from rigidsym.data.readers import ArrayReader, npy_reader, reader_of
 from rigidsym.data.text import TextReader
@@ -42,19 +41,19 @@ def inertia_of(
     positive and, unless `allow`, negative masses.
     """
     if hasattr(particles, "dask"):
-        return mass_properties(cloud_of(_of_dask(particles, columns), allow=allow))
+        return cloud_of(_of_dask(particles, columns), allow=allow)
     path = Path(particles) if isinstance(particles, str | Path) else None
     try:
         if path is not None and scheduler is not None:
             blocks = _of_cluster(path.resolve(), columns, scheduler, progress)
-            return mass_properties(cloud_of(blocks, allow=allow))
+            return cloud_of(blocks, allow=allow)
         reader = ArrayReader(np.asarray(particles)) if path is None else reader_of(path)
         name = named
         if isinstance(reader, TextReader):
             name = partial(_line, reader)
             reader.quotes = reader.names is not None  # else it may be another kind of text
         blocks = _blocks(reader, columns, name, progress)
-        return mass_properties(cloud_of(blocks, name, allow=allow))
+        return cloud_of(blocks, name, allow=allow)
     except (BodyError, DataError) as error:
         if path is None or str(path) in str(error):
             raise BodyError(str(error)) from None
@@ -63,17 +62,6 @@ def inertia_of(
 
 def _line(reader: TextReader, row: int) -> str:
     return f"{reader.source}, {reader.place(row)}"
-
-
-def mass_properties(cloud: Cloud) -> MassProperties:
-    """A cloud with its principal axes."""
-    return MassProperties(
-        count=cloud.count,
-        mass=cloud.mass,
-        centre=cloud.centre,
-        inertia=cloud.inertia,
-        principal=principal_axes_of(cloud.inertia),
-    )
 
 
 def _blocks(

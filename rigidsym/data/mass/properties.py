@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rigidsym.data.columns import counted
-from rigidsym.data.mass.principal_axes import PrincipalAxes
+from rigidsym.data.mass.principal_axes import PrincipalAxes, principal_axes_of
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,10 @@ class MassProperties:
     mass: float  # kg
     centre: Array  # (3,), m
     inertia: Array  # (3, 3), about the centre of mass, kg m²
-    principal: PrincipalAxes
+    principal: PrincipalAxes = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "principal", principal_axes_of(self.inertia))
 
     @property
     def radii(self) -> Array:

@@ -14,10 +14,17 @@ import sympy as sp
 from rigidsym.formula.reader import formula
 from rigidsym.formula.sentence import Sentence, sentence
 from rigidsym.formula.tree import Formula
-from rigidsym.models.matrices import DirectionCosines
-from rigidsym.models.quaternions import AxisAngle, CayleyKlein, Quaternion, UnitQuaternion
+from rigidsym.models.parametrisations import (
+    AxisAngle,
+    CayleyKlein,
+    DirectionCosines,
+    GibbsVector,
+    ModifiedRodrigues,
+    Quaternion,
+    RotationVector,
+    UnitQuaternion,
+)
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.vectors import GibbsVector, ModifiedRodrigues, RotationVector
 
 Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
 Parts = tuple[sp.Expr, ...]

@@ -44,7 +44,7 @@ from rigidsym.mechanics.conversions.turn_chain import (
 from rigidsym.mechanics.derivation import Proof, Quantity, Step
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.prove import Prover
-from rigidsym.models.quaternions import UnitQuaternion
+from rigidsym.models.parametrisations import UnitQuaternion
 from rigidsym.models.rotation import Citation, RotationModel
 from rigidsym.models.so3 import hat
 

@@ -22,19 +22,16 @@ def in_numbers(body: RigidBody) -> MassProperties | None:
     """Mass, centre, inertia tensor, principal moments and axes; None if a symbol is left."""
     import numpy as np  # which no derivation needs
 
-    from rigidsym.data.mass.principal_axes import principal_axes_of
     from rigidsym.data.mass.properties import MassProperties
 
     mass, centre, inertia = map(body.in_numbers, (body.mass, body.centre, body.inertia))
     if not all(entry.is_number for entry in (mass, *centre, *inertia)):
         return None
-    tensor = np.array(inertia.tolist(), dtype=float)
     return MassProperties(
         count=0,
         mass=float(mass),
         centre=np.array(list(centre), dtype=float),
-        inertia=tensor,
-        principal=principal_axes_of(tensor),
+        inertia=np.array(inertia.tolist(), dtype=float),
     )
 
 

@@ -17,11 +17,10 @@ _FRAMES = ("space", "body")
 @cache
 def _kernels(sequence: str) -> ModuleType:
     # Loaded here, so that identifying orientations does not need SymPy.
-    from rigidsym.models.euler_angles import EulerAngles
     from rigidsym.motion import derive
 
     wanted = [f"angular_velocity_{frame}" for frame in _FRAMES]
-    return derive(EulerAngles(sequence)).select(wanted).kernels().load()
+    return derive(sequence).select(wanted).kernels().load()
 
 
 def angular_velocities(readings: Sequence[Reading], angles: Array, rates: Array) -> Array:
