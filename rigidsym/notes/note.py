@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,7 @@ from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document.document import Document
 from rigidsym.notes.formats import FORMATS
-from rigidsym.notes.sections.compose import compose
+from rigidsym.notes.sections.compose import Composer
 from rigidsym.notes.sections.styles import in_style
 
 if TYPE_CHECKING:
@@ -68,20 +68,20 @@ def note(
     """
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
-    document = _composed(derivation)(
-        derivation, module=module, functions=names if module else (), notation=notation
+    composer = _composer_of(derivation)(
+        derivation,
+        module=module,
+        functions=names if module else (),
+        notation=notation,
+        conversions=conversions,
     )
-    if conversions is not None:
-        from rigidsym.notes.sections.conversion_section import with_conversions
-
-        document = with_conversions(document, derivation, conversions, has_functions=bool(module))
-    return Note(in_style(document, style))
+    return Note(in_style(composer.document, style))
 
 
-def _composed(derivation: Derivation) -> Callable[..., Document]:
-    """How a derivation is composed, with its theory or without."""
+def _composer_of(derivation: Derivation) -> type[Composer]:
+    """What composes the note of a derivation, with its theory or without."""
     if not derivation.theory:
-        return compose
-    from rigidsym.notes.sections.lecture_note import compose_lecture
+        return Composer
+    from rigidsym.notes.sections.lecture_note import LectureComposer
 
-    return compose_lecture
+    return LectureComposer

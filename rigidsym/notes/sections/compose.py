@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
+from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -30,6 +32,7 @@ from rigidsym.notes.document.document import (
     EquationRow,
     Figure,
     NoteBlock,
+    NoteTable,
     Paragraph,
     Section,
     Text,
@@ -53,6 +56,9 @@ from rigidsym.notes.sections.fitting import Fitter
 from rigidsym.notes.sections.summary import summary
 from rigidsym.notes.sections.symbol_tables import functions, symbols
 
+if TYPE_CHECKING:
+    from rigidsym.mechanics.conversions.conversions import Conversions
+
 IDENTITIES, SYMBOLS, FUNCTIONS = "Identities verified", "Symbols", "Functions"
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
 
@@ -70,69 +76,95 @@ _RATES = tuple(
 ACCELERATION = ("angular_acceleration_space", "angular_acceleration_body")
 
 
-def compose(
-    derivation: Derivation,
-    *,
-    module: str | None = None,
-    functions: Sequence[str] = (),
-    notation: Notation = DEFAULT,
-) -> Document:
-    """The note of a derivation.
+class Composer:
+    """The sections of one note.
 
     `module` is the file name of a kernel module and `functions` the quantities it evaluates; each
     of their equations names its function. Raises ModelError where a name of the model would be
     taken for one of the notation.
     """
-    notation.check(derivation.model)
-    composer = Composer(derivation, module, tuple(functions), notation)
-    return Document(
-        name=derivation.name,
-        title=derivation.title,
-        subtitle=derivation.subject,
-        letters=composer.letters,
-        sections=tuple(composer.sections()),
-    )
 
-
-class Composer:
-    """The sections of one note."""
+    of_the_body = ""  # ends titles that the theory has too
 
     def __init__(
         self,
         derivation: Derivation,
-        module: str | None,
-        functions: tuple[str, ...],
-        notation: Notation,
+        *,
+        module: str | None = None,
+        functions: Sequence[str] = (),
+        notation: Notation = DEFAULT,
+        conversions: Conversions | None = None,
     ) -> None:
+        notation.check(derivation.model)
         self.derivation = derivation
         self.model = derivation.model
         self.module = module or ""
-        self.functions = functions
+        self.functions = tuple(functions)
+        self.conversions = conversions
         self.letters = letters_of(derivation.arguments, notation, derivation.model)
         self.symbols = symbols_of(derivation)
         self.fitter = Fitter(derivation, self.letters)
         self.said: set[str] = set()
 
+    @property
+    def document(self) -> Document:
+        return Document(
+            name=self.derivation.name,
+            title=self.derivation.title,
+            subtitle=self.derivation.subject,
+            letters=self.letters,
+            sections=tuple(self.sections()),
+        )
+
     def sections(self) -> Iterator[Section]:
-        parts = {
-            "Convention": self._convention(),
-            "The rotation": self._rotation(),
-            "The angular velocity": self._angular_velocity(),
-            "The rates of the coordinates": self._rates(),
-            singular_title(self.derivation): self._singularities(),
-            "The angular acceleration": self._steps(ACCELERATION),
-            "The body": self._body(),
-            "The kinetic energy": self._steps(ENERGIES),
-            "The angular momentum": self._steps(MOMENTA),
-            "The equations of motion": self._motion(),
-            IDENTITIES: self._proofs(),
-            SYMBOLS: iter([symbols(self.derivation, self.letters)]),
-            FUNCTIONS: self._functions(),
-        }
-        filled = ((title, tuple(blocks)) for title, blocks in parts.items())
+        """The sections that have anything in them, and the summary."""
+        parts = chain(self.beginning(), self.end())
+        filled = ((title, tuple(blocks)) for title, blocks in parts)
         sections = [Section(title, blocks) for title, blocks in filled if blocks]
         yield from sections
-        yield summary(self.derivation, sections, self.letters)
+        yield self.summary(sections)
+
+    def beginning(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
+        """Titles with their blocks, up to where the rates are taken."""
+        yield "Convention", self._convention()
+        yield "The rotation", self._rotation()
+        yield "The angular velocity", self._angular_velocity()
+
+    def end(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
+        """Titles with their blocks, from where the rates are taken."""
+        yield "The rates of the coordinates", self._rates()
+        yield singular_title(self.derivation), self._singularities()
+        yield "The angular acceleration", self._steps(ACCELERATION)
+        yield "The body", self._body()
+        yield f"The kinetic energy{self.of_the_body}", self._steps(ENERGIES)
+        yield f"The angular momentum{self.of_the_body}", self._steps(MOMENTA)
+        yield "The equations of motion", self._motion()
+        yield "Conversions", self._conversions()
+        yield IDENTITIES, self._proofs()
+        yield SYMBOLS, iter([self.symbol_table()])
+        yield FUNCTIONS, self._functions()
+
+    def summary(self, sections: Sequence[Section]) -> Section:
+        """The results on one sheet."""
+        return summary(self.derivation, sections, self.letters)
+
+    def symbol_table(self) -> NoteTable:
+        return symbols(self.derivation, self.letters)
+
+    def _conversions(self) -> Iterator[NoteBlock]:
+        """The section on the unit quaternion and the matrix, with its equation."""
+        if self.conversions is None:
+            return
+        from rigidsym.notes.sections.conversion_section import blocks_of_conversions
+
+        step = self.conversions.quaternion
+        if step is not None:
+            numbered = replace(step, number=len(self.derivation.steps) + 1)
+            call = _call(step) if self.module else ""
+            equation = equation_of(numbered, self.derivation.arguments)
+            yield Paragraph(with_source(self.conversions.because, step.quantity.source))
+            yield replace(equation, function=call, is_result=True)
+        yield from blocks_of_conversions(self.conversions, has_functions=bool(self.module))
 
     def _body(self) -> Iterator[NoteBlock]:
         if self.derivation.body is not None:

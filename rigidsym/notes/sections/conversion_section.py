@@ -1,60 +1,31 @@
-"""The section of a note that goes from the coordinates to the unit quaternion and back."""
+"""What a note says of the way back from a matrix or a quaternion to the coordinates."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import sympy as sp
 
 from rigidsym.formula.entries import indexed
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.conversions.conversions import SHEPPERD, Conversions, outer_product
-from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document.document import (
     Cited,
     Code,
-    Document,
     Equation,
     EquationRow,
     NoteBlock,
     Paragraph,
-    Section,
     Strong,
     words,
 )
 from rigidsym.notes.prose.words import with_source
-from rigidsym.notes.sections.compose import IDENTITIES, SYMBOLS, equation_of
 
-TITLE = "Conversions"
-_BEFORE = (IDENTITIES, SYMBOLS)  # the sections that follow
 _FUNCTIONS = ("from_quaternion(quaternion{})", "from_rotation_matrix(matrix{})")
 
 
-def with_conversions(
-    document: Document,
-    derivation: Derivation,
-    conversions: Conversions,
-    *,
-    has_functions: bool,
-) -> Document:
-    """The note with a section on conversions, before the one that lists the proofs."""
-    blocks = tuple(_blocks(derivation, conversions, has_functions=has_functions))
-    own = Section(TITLE, blocks)
-    titles = [section.title for section in document.sections]
-    place = next((k for k, title in enumerate(titles) if title in _BEFORE), len(titles))
-    before, after = document.sections[:place], document.sections[place:]
-    return replace(document, sections=(*before, own, *after))
-
-
-def _blocks(
-    derivation: Derivation, found: Conversions, *, has_functions: bool
-) -> Iterator[NoteBlock]:
-    if found.quaternion is not None:
-        step = replace(found.quaternion, number=len(derivation.steps) + 1)
-        yield Paragraph(with_source(found.because, step.quantity.source))
-        call = f"quaternion({', '.join(step.quantity.inputs)})" if has_functions else ""
-        yield replace(equation_of(step, derivation.arguments), function=call, is_result=True)
+def blocks_of_conversions(found: Conversions, *, has_functions: bool) -> Iterator[NoteBlock]:
+    """How the quaternion follows from the matrix, and the coordinates from both."""
     yield from _matrix(found)
     if found.inverse is None:
         yield Paragraph((found.without,))

@@ -4,26 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import groupby
+from itertools import chain, groupby
 
-from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.formula.reader import formula
-from rigidsym.mechanics.derivation import Derivation, Statement, Step
-from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
+from rigidsym.mechanics.derivation import Statement, Step
 from rigidsym.notes.document.document import (
-    Document,
     Equation,
     NoteBlock,
+    NoteTable,
     Paragraph,
     Section,
     words,
 )
 from rigidsym.notes.formula.summands import sums
-from rigidsym.notes.prose.singular_words import singular_title
 from rigidsym.notes.prose.words import with_source
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
-from rigidsym.notes.sections.compose import ACCELERATION, FUNCTIONS, IDENTITIES, SYMBOLS, Composer
+from rigidsym.notes.sections.compose import Composer
 from rigidsym.notes.sections.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
@@ -33,70 +29,36 @@ _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs
     "entries_of_inertia": "inertia_of_particles",
     "moment_about_a_line": "inertia_of_particles",
 }
-_SUMS = (
+_METHOD = (
     "A statement about a sum over particles is proved for the generic summand. Factors common to "
-    "all particles are taken out of the sum; only {} and {} with its derivative are used, so that "
-    "the statement holds for a body of any number of particles."
+    r"all particles are taken out of the sum; only $\sum_i m_i = M$ and "
+    r"$\sum_i m_i\,\mathbf{x}_i = \mathbf{0}$ with its derivative are used, so that the statement "
+    "holds for a body of any number of particles.",
+    r"A general rotation $\mathbf{R}$ is represented by a unit quaternion, without loss of "
+    r"generality. The position of the centre of mass is written $\mathbf{r}_C$, since $\mathbf{R}$ "
+    "is the rotation.",
 )
-_ROTATIONS = (
-    "A general rotation {} is represented by a unit quaternion, without loss of generality. The "
-    "position of the centre of mass is written {}, since {} is the rotation."
-)
 
 
-def compose_lecture(
-    derivation: Derivation,
-    *,
-    module: str | None = None,
-    functions: Sequence[str] = (),
-    notation: Notation = DEFAULT,
-) -> Document:
-    """The note of a derivation with its theory; as `compose` otherwise."""
-    notation.check(derivation.model)
-    composer = _Lecture(derivation, module, tuple(functions), notation)
-    return Document(
-        name=derivation.name,
-        title=derivation.title,
-        subtitle=derivation.subject,
-        letters=composer.letters,
-        sections=tuple(composer.sections()),
-    )
-
-
-class _Lecture(Composer):
+class LectureComposer(Composer):
     """The sections of the theory, of the rotation, of the body."""
 
-    def sections(self) -> Iterator[Section]:
-        yield Section("How the equations are proved", tuple(self._method()))
-        for title, statements in groupby(self.derivation.theory, key=lambda s: s.section):
-            blocks = (block for statement in statements for block in self._statement(statement))
-            yield Section(title, tuple(blocks))
-        parts = {
-            self.model.title: self._of_the_rotation(),
-            "The rates of the coordinates": self._rates(),
-            singular_title(self.derivation): self._singularities(),
-            "The angular acceleration": self._steps(ACCELERATION),
-            "The body": self._body(),
-            "The kinetic energy of the body": self._steps(ENERGIES),
-            "The angular momentum of the body": self._steps(MOMENTA),
-            IDENTITIES: self._proofs(),
-            SYMBOLS: self._symbols(),
-            FUNCTIONS: self._functions(),
-        }
-        filled = ((title, tuple(blocks)) for title, blocks in parts.items())
-        sections = [Section(title, blocks) for title, blocks in filled if blocks]
-        yield from sections
-        yield summary_of_the_lecture(self.derivation, sections, self.letters)
+    of_the_body = " of the body"
 
-    def _symbols(self) -> Iterator[NoteBlock]:
-        yield symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
+    def beginning(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
+        yield "How the equations are proved", self._method()
+        for title, statements in groupby(self.derivation.theory, key=lambda s: s.section):
+            yield title, chain.from_iterable(map(self._statement, statements))
+        yield self.model.title, self._of_the_rotation()
+
+    def summary(self, sections: Sequence[Section]) -> Section:
+        return summary_of_the_lecture(self.derivation, sections, self.letters)
+
+    def symbol_table(self) -> NoteTable:
+        return symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
 
     def _method(self) -> Iterator[NoteBlock]:
-        masses = formula(r"\sum_i m_i = M")
-        places = formula(r"\sum_i m_i\,\mathbf{x}_i = \mathbf{0}")
-        rotation, centre = formula(r"\mathbf{R}"), formula(r"\mathbf{r}_C")
-        yield Paragraph(words(_SUMS, masses, places))
-        yield Paragraph(words(_ROTATIONS, rotation, centre, rotation))
+        yield from (Paragraph(words(text)) for text in _METHOD)
 
     def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
         source = statement.source if statement.number else None
