@@ -90,6 +90,11 @@ class Paragraph:
     text: Text
 
 
+def said(typed: str, *spans: Span) -> Paragraph:
+    """A paragraph of `words`."""
+    return Paragraph(words(typed, *spans))
+
+
 @dataclass(frozen=True, slots=True)
 class EquationRow:
     """Short unnumbered equations that may share a line."""

@@ -6,26 +6,26 @@ from collections.abc import Iterator
 
 from rigidsym.formula.display import Done
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Symbol, equal, joined, row
 from rigidsym.mechanics.quantities.claims import rate_of, spin_of
-from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, ROTATION, SPACE
+from rigidsym.mechanics.quantities.kinematics import COSINES, ROTATION
 from rigidsym.models.rotation import Turn, lecture
-from rigidsym.notes.document.document import Cited, Equation, NoteBlock, Paragraph, Text, words
-from rigidsym.notes.prose.words import ACTIVE, BODY_POSITION, PASSIVE, POSITION
-
-_TURNING = lecture("3", "section 1.2")
-_MOTION = lecture("15", "section 3.2")
-_VELOCITY = formula(r"\dot{\mathbf{x}}")
-_BODY_VELOCITY = formula(r"\dot{\mathbf{x}}'")
-_SHORTHAND = (
-    formula(r"s_\alpha"),
-    formula(r"\sin\alpha"),
-    formula(r"c_\alpha"),
-    formula(r"\cos\alpha"),
+from rigidsym.notes.document.document import Cited, Equation, NoteBlock, Text, said, words
+from rigidsym.notes.prose.words import (
+    ACTIVE,
+    BODY_POSITION,
+    BODY_POSITION_RATE,
+    PASSIVE,
+    POSITION,
+    POSITION_RATE,
 )
-_VECTOR = formula(r"\mathbf{u}")
+
+_TURNING = Cited(lecture("3", "section 1.2"))
+_MOTION = Cited(lecture("15", "section 3.2"))
+_SHORTHAND = words(
+    r"With the abbreviations $s_\alpha$ for $\sin\alpha$ and $c_\alpha$ for $\cos\alpha$,"
+)
 
 
 def turn(turn: Turn, letters: Letters) -> Formula:
@@ -42,75 +42,36 @@ def axis_of(turn: Turn, letters: Letters) -> Formula:
 
 def motion(*, passive: bool) -> Iterator[NoteBlock]:
     """Why the derivative times the transpose is the operator of the angular velocity."""
-    yield from _passive_motion() if passive else _active_motion()
-    yield Paragraph(words("For a vector {} the matrix of {} is", _VECTOR, _operator(_VECTOR)))
-
-
-def _active_motion() -> Iterator[NoteBlock]:
-    spinning = spin_of(ROTATION)
-    yield Paragraph(words("A point at rest in the body, {}, has the velocity", ACTIVE))
-    yield Equation(
-        sides=(
-            _VELOCITY,
-            row(rate_of(ROTATION), BODY_POSITION),
-            row(spinning, POSITION),
-        )
-    )
-    yield Paragraph(
-        words(
-            "This velocity is also {}\u00a0{}, so that {} is the matrix of the operator "
-            "{}\u00a0{}.",
-            _cross(SPACE.omega, POSITION),
-            Cited(_TURNING),
-            spinning,
-            _operator(SPACE.omega),
-            Cited(_MOTION),
-        )
-    )
-
-
-def _passive_motion() -> Iterator[NoteBlock]:
-    spinning = spin_of(COSINES)
-    yield Paragraph(
-        words(
+    shown = COSINES if passive else ROTATION
+    place, velocity = (BODY_POSITION, BODY_POSITION_RATE) if passive else (POSITION, POSITION_RATE)
+    other = POSITION if passive else BODY_POSITION
+    if passive:
+        yield said(
             "A point at rest in space has the body components {}, which change at the rate", PASSIVE
         )
-    )
-    yield Equation(
-        sides=(
-            _BODY_VELOCITY,
-            row(rate_of(COSINES), POSITION),
-            row(spinning, BODY_POSITION),
+    else:
+        yield said("A point at rest in the body, {}, has the velocity", ACTIVE)
+    yield Equation(sides=(velocity, row(rate_of(shown), other), row(spin_of(shown), place)))
+    if passive:
+        yield said(
+            r"As seen from the body, the point moves with the velocity "
+            r"$-\boldsymbol{\Omega}'\times\mathbf{x}'$, so that {} is the matrix of the operator "
+            "$-\\boldsymbol{\\Omega}'\\times$\u00a0{}.",
+            *(spin_of(shown), _MOTION),
         )
-    )
-    yield Paragraph(
-        words(
-            "As seen from the body, the point moves with the velocity {}, so that {} is the "
-            "matrix of the operator {}\u00a0{}.",
-            _minus(_cross(BODY.omega, BODY_POSITION)),
-            spinning,
-            _minus(_operator(BODY.omega)),
-            Cited(_MOTION),
+    else:
+        yield said(
+            "This velocity is also $\\boldsymbol{\\Omega}\\times\\mathbf{x}$\u00a0{}, so that {} "
+            "is the matrix of the operator $\\boldsymbol{\\Omega}\\times$\u00a0{}.",
+            *(_TURNING, spin_of(shown), _MOTION),
         )
-    )
-
-
-def _cross(left: Formula, right: Formula) -> Formula:
-    return formula(r"#1\times#2", left, right)
-
-
-def _operator(vector: Formula) -> Formula:
-    return formula(r"#1\times", vector)
-
-
-def _minus(symbol: Formula) -> Formula:
-    return formula("-#1", symbol)
+    yield said(r"For a vector $\mathbf{u}$ the matrix of $\mathbf{u}\times$ is")
 
 
 def announcement(equation: Equation, done: Done) -> Text:
     """What a reader has to be told of the way an equation is set, before it; often nothing."""
     if done == "abbreviated":
-        return words("With the abbreviations {} for {} and {} for {},", *_SHORTHAND)
+        return _SHORTHAND
     if done == "listed":
         return words("The entries of {} are", equal(*equation.sides))
     return ()

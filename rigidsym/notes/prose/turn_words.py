@@ -20,6 +20,7 @@ from rigidsym.notes.document.document import (
     NoteBlock,
     Paragraph,
     Text,
+    said,
     words,
 )
 from rigidsym.notes.figure.scene import scene_of
@@ -110,11 +111,9 @@ def sum_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
     if len(model.turns) < 2 or not all(turn.angle.diff(TIME) for turn in model.turns):
         return
     see = "; see Figure 1" if scene_of(model, letters) else ""
-    yield Paragraph(
-        words(
-            "Angular velocities about different axes add. Each turn contributes its rate about its "
-            f"own axis{see}:"
-        )
+    yield said(
+        "Angular velocities about different axes add. Each turn contributes its rate about its "
+        f"own axis{see}:"
     )
     yield Equation(sides=(sum_of_turns(model, letters),))
     if len(model.turns) > _MOST_WRITTEN or any(turn.components for turn in model.turns):
@@ -123,7 +122,7 @@ def sum_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
         ("Each axis has been moved by the turns to its left. In space components the axes are",)
     )
     yield EquationRow(tuple(_written(axes_of_turns(model, letters), _directions(model))))
-    yield Paragraph(("The derivative of the rotation matrix leads to the same result.",))
+    yield said("The derivative of the rotation matrix leads to the same result.")
 
 
 def _directions(model: RotationModel) -> Iterator[sp.ImmutableMatrix]:

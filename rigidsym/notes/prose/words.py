@@ -25,6 +25,7 @@ from rigidsym.notes.formula.derivation_letters import VECTOR, length_of, letters
 
 POSITION = formula(r"\mathbf{x}")
 BODY_POSITION = formula(r"\mathbf{x}'")
+POSITION_RATE, BODY_POSITION_RATE = formula(r"\dot{\mathbf{x}}"), formula(r"\dot{\mathbf{x}}'")
 COORDINATES = formula(r"\mathbf{q}")
 OPERATOR = formula(r"\mathbf{C}(\mathbf{u})")  # of u ×
 VECTOR_OF = formula(r"\mathbf{C}^{-1}")

@@ -34,6 +34,7 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Text,
     listed,
+    said,
     words,
 )
 from rigidsym.notes.prose.words import unit_in_words
@@ -51,7 +52,7 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
         case Solid():
             yield from _solid(body.distribution, letters)
         case Composite():
-            yield Paragraph(("The body is composed of the following parts.",))
+            yield said("The body is composed of the following parts.")
             yield _parts(body.distribution.parts, letters)
             solids = (part.what for part in body.distribution.parts)
             for solid in dict.fromkeys(what for what in solids if isinstance(what, Solid)):
@@ -71,7 +72,7 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
 
 def _solid(solid: Solid, letters: Letters) -> Iterator[NoteBlock]:
     """The map, its bounds, the element and the integrals of a solid."""
-    yield Paragraph((f"The points of the {solid.title.lower()} are",))
+    yield said(f"The points of the {solid.title.lower()} are")
     yield Equation(sides=(PLACE,), matrix=solid.place, entries=indexed(PLACE, (3,)))
     bounds = [
         _between(u, pair, letters) for u, pair in zip(solid.coordinates, solid.bounds, strict=True)

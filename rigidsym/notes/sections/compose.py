@@ -36,7 +36,7 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Section,
     Text,
-    words,
+    said,
 )
 from rigidsym.notes.formula.derivation_letters import entry_names, letters_of
 from rigidsym.notes.prose.figure_words import figure_of
@@ -201,20 +201,20 @@ class Composer:
         turns = [turn(t, self.letters) for t in self.model.turns]
         kind = "a product of turns" if len(turns) > 1 else "a single turn"
         see = ", shown in Figure 1" if figure_of(self.model, self.letters) else ""
-        yield Paragraph(words(f"The rotation is {kind}\u00a0{{}}{see}:", Cited(self.model.source)))
+        yield said(f"The rotation is {kind}\u00a0{{}}{see}:", Cited(self.model.source))
         yield Equation(sides=(ROTATION, row(*turns)))
         yield from self._figure()
         by_axis = list(self._turns_by_axis())
         angle = formula_of(self._turn_angle(), self.letters)
         if len(turns) == 1:
-            yield Paragraph(words("The right-handed turn by an angle {} is", angle))
+            yield said("The right-handed turn by an angle {} is", angle)
         else:
             read = (
                 "Read from left to right, the factors are rotations about the current axes of the "
                 "body; read from right to left, about the axes fixed in space. Right-handed turns "
                 "by an angle {} are"
             )
-            yield Paragraph(words(read, angle))
+            yield said(read, angle)
         short = tuple(self._elementary(t) for t in by_axis if not t.components)
         if short:
             yield EquationRow(short)
@@ -246,12 +246,10 @@ class Composer:
         yield from sum_in_words(self.model, self.letters)
         yield from motion(passive=self.model.passive)
         yield Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
-        yield Paragraph(
-            words(
-                "Differentiating {} shows that {} is skew:",
-                orthogonal(shown),
-                spin_of(shown),
-            )
+        yield said(
+            "Differentiating {} shows that {} is skew:",
+            orthogonal(shown),
+            spin_of(shown),
         )
         yield Equation(sides=(skew(spin_of(shown)),))
         yield from self._steps(_ANGULAR_VELOCITY)
@@ -261,13 +259,11 @@ class Composer:
         found = self.derivation.singularities
         if not steps and found is None:
             return
-        yield Paragraph(
-            words(
-                "The rate matrices are defined by {} and {}, so that {}.",
-                equal(SPACE.omega, row(SPACE.matrix, RATES)),
-                equal(BODY.omega, row(BODY.matrix, RATES)),
-                equal(SPACE.matrix, row(ROTATION, BODY.matrix)),
-            )
+        yield said(
+            "The rate matrices are defined by {} and {}, so that {}.",
+            equal(SPACE.omega, row(SPACE.matrix, RATES)),
+            equal(BODY.omega, row(BODY.matrix, RATES)),
+            equal(SPACE.matrix, row(ROTATION, BODY.matrix)),
         )
         yield from steps
         if found is not None and found.rank < 3:

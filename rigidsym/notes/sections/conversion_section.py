@@ -17,7 +17,7 @@ from rigidsym.notes.document.document import (
     NoteBlock,
     Paragraph,
     Strong,
-    words,
+    said,
 )
 from rigidsym.notes.prose.words import with_source
 
@@ -36,9 +36,9 @@ def blocks_of_conversions(found: Conversions, *, has_functions: bool) -> Iterato
         if has_functions:
             given = "".join(f", {name}" for name in found.inverse.given)
             names = (Code(name.format(given)) for name in _FUNCTIONS)
-            yield Paragraph(words("These are the functions {} and {}.", *names))
+            yield said("These are the functions {} and {}.", *names)
     if found.is_proved:
-        yield Paragraph(("The claims of this section were decided exactly, like the others.",))
+        yield said("The claims of this section were decided exactly, like the others.")
     else:
         yield Paragraph((Strong("Unproved:"), " not all of these claims could be decided."))
 
@@ -49,7 +49,7 @@ def _matrix(found: Conversions) -> Iterator[NoteBlock]:
         "The columns of {} are multiples of the unit quaternion. To keep all digits, take the "
         "column of the largest component and divide it by its length\u00a0{}; the sign is free:"
     )
-    yield Paragraph(words(text, found.from_matrix.claim, Cited(SHEPPERD)))
+    yield said(text, found.from_matrix.claim, Cited(SHEPPERD))
     entries = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}"))
     matrix = sp.ImmutableMatrix(outer_product(entries))
     sides = (formula(rf"4\,p_{name}\,\mathbf{{p}}") for name in "wxyz")

@@ -31,6 +31,7 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Text,
     listed,
+    said,
 )
 from rigidsym.notes.prose.short import in_short
 from rigidsym.notes.prose.vector_words import sum_of_vectors
@@ -135,7 +136,7 @@ class Fitter:
         if old:
             yield Paragraph((*_again(old), "; let" if new else "."))
         elif new:
-            yield Paragraph(("Let",))
+            yield said("Let")
         if new:
             yield definitions(new, self.letters)
         yield form.equation
@@ -169,7 +170,7 @@ def _is_of_motion(step: Step) -> bool:
 def _said(equation: Equation, short: Sequence[Formula], lines: int) -> Iterator[NoteBlock]:
     """What it is, and how long it would be; the function evaluates it all the same."""
     yield _without_entries(equation, short)
-    yield Paragraph((f"Written out, the components would fill {lines} lines.",))
+    yield said(f"Written out, the components would fill {lines} lines.")
 
 
 def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:

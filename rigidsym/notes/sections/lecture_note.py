@@ -13,7 +13,7 @@ from rigidsym.notes.document.document import (
     NoteTable,
     Paragraph,
     Section,
-    words,
+    said,
 )
 from rigidsym.notes.formula.summands import sums
 from rigidsym.notes.prose.words import with_source
@@ -58,7 +58,7 @@ class LectureComposer(Composer):
         return symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
 
     def _method(self) -> Iterator[NoteBlock]:
-        yield from (Paragraph(words(text)) for text in _METHOD)
+        yield from (said(text) for text in _METHOD)
 
     def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
         source = statement.source if statement.number else None

@@ -17,10 +17,9 @@ from rigidsym.notes.document.document import (
     EquationReference,
     NoteBlock,
     NoteTable,
-    Paragraph,
     Text,
     listed,
-    words,
+    said,
 )
 from rigidsym.notes.formula.derivation_letters import VECTOR
 from rigidsym.notes.prose.singular_words import WITH_CONDITIONS
@@ -149,12 +148,10 @@ def _points(derivation: Derivation) -> Iterator[Row]:
 
 def functions(derivation: Derivation, module: str, names: Sequence[str]) -> Iterator[NoteBlock]:
     """The functions of a module, and a call of one of them that runs as it stands."""
-    yield Paragraph(
-        words(
-            "The module {} evaluates the equations for arrays of any shape, components last, by "
-            "the functions that stand beside them. For example,",
-            Code(module),
-        )
+    yield said(
+        "The module {} evaluates the equations for arrays of any shape, components last, by "
+        "the functions that stand beside them. For example,",
+        Code(module),
     )
     yield CodeBlock(_example(derivation, module, names))
 
