@@ -24,8 +24,7 @@ from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.read import Reader
 from rigidsym.kernels.lowering.schedule import write
-from rigidsym.mechanics.conversions.continuity import Continuity
-from rigidsym.mechanics.conversions.conversion_functions import Converted, converted
+from rigidsym.mechanics.conversions.conversion_functions import Continuity, Converted, converted
 from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.mechanics.conversions.function import ConversionFunction, ConversionInput
 from rigidsym.mechanics.derivation import (

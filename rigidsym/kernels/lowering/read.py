@@ -12,7 +12,7 @@ import sympy as sp
 from rigidsym.algebra.stumpff import Stumpff
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.cse import CHOICE, Factors, Graph, Weighted
-from rigidsym.mechanics.conversions.values import Epsilon, Where
+from rigidsym.mechanics.conversions.function import Epsilon, Where
 
 Monomial = tuple[Fraction, Factors]  # a number times nodes of the graph, ~node dividing
 

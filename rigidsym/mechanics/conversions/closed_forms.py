@@ -1,19 +1,20 @@
 """Parametrisations whose quaternion has a closed form, and how they follow from one.
 
 A model is known by its matrix and its constraints, not by its name: your own R(q) that is a
-rotation vector converts as one.
+rotation vector converts as one. Nothing cancels on the way back.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from rigidsym.formula.reader import formula
 from rigidsym.formula.sentence import Sentence, sentence
-from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.conversions.function import NamedValues, Vector, Where, square
+from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim, in_order
+from rigidsym.mechanics.conversions.unit_quaternions import rotation_of, shepperd, short_way, unit
 from rigidsym.models.parametrisations import (
     AxisAngle,
     CayleyKlein,
@@ -26,35 +27,56 @@ from rigidsym.models.parametrisations import (
 )
 from rigidsym.models.rotation import RotationModel
 
-Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
-Parts = tuple[sp.Expr, ...]
 
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ClosedForm:
+@dataclass(frozen=True, kw_only=True)
+class ClosedForm(InverseRule):
     """One parametrisation in given coordinates."""
 
-    rule: str  # how the coordinates follow, by name: "quaternion", "rotation_vector", ...
-    quaternion: Parts  # scalar first, of length one; empty where it is read off from R
-    order: tuple[int, ...]  # place, among the model's coordinates, of each that the rule gives
-    because: Sentence  # how the quaternion follows from the coordinates
-    back_because: Sentence
-    branch: Sentence  # which of the possible coordinates are given
-    claims: tuple[Claim, ...]
+    rule: str  # its name: "quaternion", "rotation_vector", ...
+    quaternion: Vector  # scalar first, of length one; empty where it is read off from R
+    because: str  # how the quaternion follows, with formulas between dollar signs
+    back: Callable[[NamedValues, Vector], Vector]  # the coordinates of a scaled quaternion
+    back_because: str
+    branch: str  # which of the possible coordinates are given
+    residuals: tuple[Claim, ...] = ()
+    has_both_signs: bool = False  # whether p and −p differ
+    continuity: str = ""  # a sentence; empty where the coordinates are unique
+    order: tuple[int, ...] = ()  # place, among the model's coordinates, of each that `back` gives
 
     @property
     def is_scalar_last(self) -> bool:
-        """Whether the coordinates are a quaternion (x, y, z, w)."""
         return self.rule == "quaternion" and self.order[0] == 3
+
+    def sentences(self, model: RotationModel) -> tuple[Sentence, Sentence]:  # noqa: ARG002
+        return sentence(self.back_because), sentence(self.branch)
+
+    def claims(self, model: RotationModel) -> Sequence[Claim]:  # noqa: ARG002
+        return self.residuals
+
+    def from_quaternion(
+        self,
+        values: NamedValues,
+        model: RotationModel,  # noqa: ARG002
+        quaternion: Vector,
+    ) -> Vector:
+        return in_order(self.back(values, quaternion), self.order)
+
+    def from_matrix(self, values: NamedValues, model: RotationModel, matrix: sp.Matrix) -> Vector:
+        if self.rule == "direction_cosines":
+            return in_order(tuple(matrix), self.order)
+        quaternion = shepperd(values, matrix)
+        if self.has_both_signs:
+            quaternion = short_way(values, quaternion)
+        return self.from_quaternion(values, model, quaternion)
 
 
 def closed_form(model: RotationModel) -> ClosedForm | None:
     """The form of a model that is one of the parametrisations; None where it is none."""
-    for build, form in _FORMS:
+    for build, count, form in _FORMS:
         for order in _orders(len(model.coordinates)):
-            names = [model.coordinates[place].func.__name__ for place in order]
-            if _matches(model, build, names):
-                return form([model.coordinates[place] for place in order], order)
+            q = [model.coordinates[place] for place in order]
+            if len(q) == count and _matches(model, build([part.func.__name__ for part in q])):
+                return replace(form(tuple(q)), order=order)
     return None
 
 
@@ -65,211 +87,216 @@ def _orders(count: int) -> Iterator[tuple[int, ...]]:
         yield (3, 0, 1, 2)
 
 
-def _matches(
-    model: RotationModel, build: Callable[..., RotationModel], names: Sequence[str]
-) -> bool:
-    if len(names) != _COUNTS[build]:
-        return False
-    candidate = build(names)
+def _matches(model: RotationModel, candidate: RotationModel) -> bool:
     return candidate.matrix == model.matrix and candidate.constraints == model.constraints
 
 
-def _square(vector: Sequence[sp.Expr]) -> sp.Expr:
-    return sp.Add(*(part**2 for part in vector))
-
-
-def _along(factor: sp.Expr, vector: Sequence[sp.Expr]) -> Parts:
+def _along(factor: sp.Expr, vector: Sequence[sp.Expr]) -> Vector:
     return tuple(factor * part for part in vector)
 
 
-def _differences(first: Sequence[sp.Expr], second: Sequence[sp.Expr]) -> Parts:
-    return tuple(a - b for a, b in zip(first, second, strict=True))
+def _equal(first: Sequence[sp.Expr], second: Sequence[sp.Expr], text: str) -> Claim:
+    return claim(text, *(a - b for a, b in zip(first, second, strict=True)))
+
+
+def _length_of_vector(values: NamedValues, vector: Vector) -> tuple[sp.Basic, sp.Expr]:
+    """Whether a vector vanishes, and its length, or one: a root of zero has no derivative."""
+    size = values.let("square", square(vector))
+    none = sp.Eq(size, 0)
+    return none, values.let("length", sp.sqrt(Where(none, sp.S.One, size)))
 
 
 _KEPT = "The sign of the quaternion is kept; from a matrix, the scalar is at least 0."
-_ENTRIES = sentence(
-    r"$\alpha = w + i z$ and $\beta = y + i x$ are the entries of the matrix of the quaternion."
-)
 _SHORT = "The quaternion and its negative give the same coordinates, those of a turn by at most π."
+_NEARER = "to the sample before: exact, since only signs change."
+_OF_TWO_SIGNS = f"Of p and −p the one nearer {_NEARER}"
 
 
-def _quaternion(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
-    length = sp.sqrt(_square(q))
+def _quaternion(q: Vector) -> ClosedForm:
+    length = sp.sqrt(square(q))
     parts = _along(1 / length, q)
     return ClosedForm(
         rule="quaternion",
         quaternion=parts,
-        order=order,
-        because=("The quaternion is divided by its length.",),
-        back_because=("The unit quaternion is one of its multiples.",),
-        branch=(f"The length is 1. {_KEPT}",),
-        claims=(
-            (
-                _differences(_along(length, parts), q),
-                formula(r"|\mathbf{q}|\,\mathbf{p} = \mathbf{q}"),
-            ),
-        ),
+        because="The quaternion is divided by its length.",
+        back=unit,
+        back_because="The unit quaternion is one of its multiples.",
+        branch=f"The length is 1. {_KEPT}",
+        residuals=(_equal(_along(length, parts), q, r"|\mathbf{q}|\,\mathbf{p} = \mathbf{q}"),),
+        has_both_signs=True,
+        continuity=_OF_TWO_SIGNS,
     )
 
 
-def _unit(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
+def _unit(q: Vector) -> ClosedForm:
+    because = "The coordinates are the unit quaternion."
     return ClosedForm(
         rule="quaternion",
-        quaternion=tuple(q),
-        order=order,
-        because=("The coordinates are the unit quaternion.",),
-        back_because=("The coordinates are the unit quaternion.",),
-        branch=(f"The length is 1. {_KEPT}",),
-        claims=(((_square(q) - 1,), formula(r"\mathbf{q}\cdot\mathbf{q} = 1")),),
+        quaternion=q,
+        because=because,
+        back=unit,
+        back_because=because,
+        branch=f"The length is 1. {_KEPT}",
+        residuals=(_equal([square(q)], [sp.S.One], r"\mathbf{q}\cdot\mathbf{q} = 1"),),
+        has_both_signs=True,
+        continuity=_OF_TWO_SIGNS,
     )
 
 
-def _cayley_klein(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
+def _cayley_klein(q: Vector) -> ClosedForm:
     a, b, c, d = q
+    because = (
+        r"$\alpha = w + i z$ and $\beta = y + i x$ are the entries of the matrix of the "
+        "quaternion."
+    )
+
+    def back(values: NamedValues, quaternion: Vector) -> Vector:
+        w, x, y, z = unit(values, quaternion)
+        return w, z, y, x
+
     return ClosedForm(
         rule="cayley_klein",
         quaternion=(a, d, c, b),
-        order=order,
-        because=_ENTRIES,
-        back_because=_ENTRIES,
-        branch=sentence(r"$|\alpha|^2 + |\beta|^2 = 1$. " + _KEPT),
-        claims=(((_square(q) - 1,), formula(r"|\alpha|^2 + |\beta|^2 = 1")),),
+        because=because,
+        back=back,
+        back_because=because,
+        branch=rf"$|\alpha|^2 + |\beta|^2 = 1$. {_KEPT}",
+        residuals=(_equal([square(q)], [sp.S.One], r"|\alpha|^2 + |\beta|^2 = 1"),),
+        has_both_signs=True,
+        continuity=f"Of the parameters and their negatives those nearer {_NEARER}",
     )
 
 
-def _axis_angle(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
+def _axis_angle(q: Vector) -> ClosedForm:
     *axis, angle = q
     half = sp.sin(angle / 2)
-    parts = (sp.cos(angle / 2), *_along(half, axis))
+    vector = _along(half, axis)
+
+    def back(values: NamedValues, quaternion: Vector) -> Vector:
+        w, x, y, z = short_way(values, quaternion)
+        none, length = _length_of_vector(values, (x, y, z))
+        first = values.let("axis_x", Where(none, sp.S.One, x / length))
+        return first, y / length, z / length, 2 * sp.atan2(Where(none, sp.S.Zero, length), w)
+
     return ClosedForm(
         rule="axis_angle",
-        quaternion=parts,
-        order=order,
-        because=sentence(
-            r"A turn by $\varphi$ about $\mathbf{e}$ is the quaternion "
-            r"$\cos\frac{\varphi}{2} + \mathbf{e}\sin\frac{\varphi}{2}$."
+        quaternion=(sp.cos(angle / 2), *vector),
+        because=r"A turn by $\varphi$ about $\mathbf{e}$ is the quaternion "
+        r"$\cos\frac{\varphi}{2} + \mathbf{e}\sin\frac{\varphi}{2}$.",
+        back=back,
+        back_because="The vector part points along the axis, and its length is "
+        r"$\sin\frac{\varphi}{2}$.",
+        branch="The angle is in [0, π]; without a turn, the axis is $x$.",
+        residuals=(
+            _equal(vector, vector, r"\mathbf{p}_v = \sin\tfrac{\varphi}{2}\,\mathbf{e}"),
+            _equal([square(vector)], [half**2], r"|\mathbf{p}_v|^2 = \sin^2\tfrac{\varphi}{2}"),
         ),
-        back_because=sentence(
-            r"The vector part points along the axis, and its length is $\sin\frac{\varphi}{2}$."
-        ),
-        branch=sentence("The angle is in [0, π]; without a turn, the axis is $x$."),
-        claims=(
-            (
-                _differences(parts[1:], _along(half, axis)),
-                formula(r"\mathbf{p}_v = \sin\tfrac{\varphi}{2}\,\mathbf{e}"),
-            ),
-            (
-                (_square(parts[1:]) - half**2,),
-                formula(r"|\mathbf{p}_v|^2 = \sin^2\tfrac{\varphi}{2}"),
-            ),
-        ),
+        continuity="The axis turns by at most π/2 from one sample to the next, and the angle "
+        "changes by at most π. Where there is no turn, the axis is that of the sample before.",
     )
 
 
-def _rotation_vector(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
-    angle = sp.sqrt(_square(q))
+def _rotation_vector(q: Vector) -> ClosedForm:
+    angle = sp.sqrt(square(q))
     half = sp.sin(angle / 2)
-    parts = (sp.cos(angle / 2), *_along(half / angle, q))
+    vector = _along(half / angle, q)
+
+    def back(values: NamedValues, quaternion: Vector) -> Vector:
+        w, *found = short_way(values, quaternion)
+        none, length = _length_of_vector(values, tuple(found))
+        limit = 2 / Where(sp.Eq(w, 0), sp.S.One, w)
+        factor = values.let("factor", Where(none, limit, 2 * sp.atan2(length, w) / length))
+        return _along(factor, found)
+
     return ClosedForm(
         rule="rotation_vector",
-        quaternion=parts,
-        order=order,
-        because=sentence(
-            r"With $n = |\mathbf{v}|$, a turn by $n$ about $\mathbf{v}/n$ is the quaternion "
-            r"$\cos\frac{n}{2} + \frac{\mathbf{v}}{n}\sin\frac{n}{2}$."
-        ),
-        back_because=sentence(
-            r"The vector part points along $\mathbf{v}$, and its length is $\sin\frac{n}{2}$."
-        ),
-        branch=(f"The length is in [0, π]. {_SHORT}",),
-        claims=(
-            (
-                _differences(_along(angle, parts[1:]), _along(half, q)),
-                formula(r"n\,\mathbf{p}_v = \sin\tfrac{n}{2}\,\mathbf{v}"),
+        quaternion=(sp.cos(angle / 2), *vector),
+        because=r"With $n = |\mathbf{v}|$, a turn by $n$ about $\mathbf{v}/n$ is the quaternion "
+        r"$\cos\frac{n}{2} + \frac{\mathbf{v}}{n}\sin\frac{n}{2}$.",
+        back=back,
+        back_because=r"The vector part points along $\mathbf{v}$, and its length is "
+        r"$\sin\frac{n}{2}$.",
+        branch=f"The length is in [0, π]. {_SHORT}",
+        residuals=(
+            _equal(
+                _along(angle, vector),
+                _along(half, q),
+                r"n\,\mathbf{p}_v = \sin\tfrac{n}{2}\,\mathbf{v}",
             ),
-            (
-                (_square(parts[1:]) - half**2,),
-                formula(r"|\mathbf{p}_v|^2 = \sin^2\tfrac{n}{2}"),
-            ),
+            _equal([square(vector)], [half**2], r"|\mathbf{p}_v|^2 = \sin^2\tfrac{n}{2}"),
         ),
+        continuity="The axis turns by at most π/2 from one sample to the next, and the length "
+        "goes on beyond π, also through whole turns.",
     )
 
 
-def _gibbs(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
-    length = sp.sqrt(1 + _square(q))
-    parts = (1 / length, *_along(1 / length, q))
+def _gibbs(q: Vector) -> ClosedForm:
+    length = sp.sqrt(1 + square(q))
+    parts = _along(1 / length, (sp.S.One, *q))
+
+    def back(values: NamedValues, quaternion: Vector) -> Vector:  # noqa: ARG001  (as the others)
+        w, *vector = quaternion
+        return tuple(
+            part / Where(sp.Eq(w, 0), Where(sp.Eq(part, 0), sp.S.One, w), w) for part in vector
+        )
+
     return ClosedForm(
         rule="gibbs_vector",
         quaternion=parts,
-        order=order,
-        because=sentence(r"The quaternion $1 + \mathbf{g}$ is divided by its length."),
-        back_because=("The vector part is divided by the scalar.",),
-        branch=(
-            "Every rotation has one vector. A half turn gives inf, and 0 where its axis has 0.",
-        ),
-        claims=(
-            (
-                _differences(_along(parts[0], q), parts[1:]),
-                formula(r"p_w\,\mathbf{g} = \mathbf{p}_v"),
-            ),
-        ),
+        because=r"The quaternion $1 + \mathbf{g}$ is divided by its length.",
+        back=back,
+        back_because="The vector part is divided by the scalar.",
+        branch="Every rotation has one vector. A half turn gives inf, and 0 where its axis has 0.",
+        residuals=(_equal(_along(parts[0], q), parts[1:], r"p_w\,\mathbf{g} = \mathbf{p}_v"),),
     )
 
 
-def _modified(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:
-    square = _square(q)
-    parts = ((1 - square) / (1 + square), *_along(2 / (1 + square), q))
+def _modified(q: Vector) -> ClosedForm:
+    size = square(q)
+    scalar, vector = (1 - size) / (1 + size), _along(2 / (1 + size), q)
+
+    def back(values: NamedValues, quaternion: Vector) -> Vector:
+        parts = short_way(values, quaternion)
+        divisor = values.let("divisor", values.length("length", parts) + parts[0])
+        return tuple(part / divisor for part in parts[1:])
+
     return ClosedForm(
         rule="modified_rodrigues",
-        quaternion=parts,
-        order=order,
-        because=sentence(
-            r"$\cos\frac{n}{2}$ and $\sin\frac{n}{2}$ are rational functions of "
-            r"$\mathbf{s} = \tan\frac{n}{4}\,\mathbf{e}$."
-        ),
-        back_because=("The vector part is divided by one plus the scalar.",),
-        branch=sentence(
-            r"Of the two sets, the one with $\mathbf{s}\cdot\mathbf{s} \le 1$, a turn by at most π."
-        ),
-        claims=(
-            (
-                _differences(_along(1 + parts[0], q), parts[1:]),
-                formula(r"(1 + p_w)\,\mathbf{s} = \mathbf{p}_v"),
-            ),
-        ),
+        quaternion=(scalar, *vector),
+        because=r"$\cos\frac{n}{2}$ and $\sin\frac{n}{2}$ are rational functions of "
+        r"$\mathbf{s} = \tan\frac{n}{4}\,\mathbf{e}$.",
+        back=back,
+        back_because="The vector part is divided by one plus the scalar.",
+        branch=r"Of the two sets, the one with $\mathbf{s}\cdot\mathbf{s} \le 1$, a turn by at "
+        "most π.",
+        residuals=(_equal(_along(1 + scalar, q), vector, r"(1 + p_w)\,\mathbf{s} = \mathbf{p}_v"),),
+        continuity="Of the two sets the one whose quaternion is nearer to that of the sample "
+        "before; at a whole turn it is infinite.",
     )
 
 
-# Every closed form is made from the coordinates; this one needs none of them.
-def _cosines(q: Sequence[sp.Expr], order: tuple[int, ...]) -> ClosedForm:  # noqa: ARG001
+def _cosines(q: Vector) -> ClosedForm:  # noqa: ARG001  (as the others)
+    def back(values: NamedValues, quaternion: Vector) -> Vector:
+        size = values.let("square", square(quaternion))
+        return tuple(sp.expand(entry) / size for entry in rotation_of(quaternion))
+
     return ClosedForm(
         rule="direction_cosines",
         quaternion=(),
-        order=order,
-        because=sentence(r"The quaternion is read off from $\mathbf{R}$."),
-        back_because=sentence(r"The coordinates are the entries of $\mathbf{R}$."),
-        branch=("Every rotation has one matrix.",),
-        claims=(),
+        because=r"The quaternion is read off from $\mathbf{R}$.",
+        back=back,
+        back_because=r"The coordinates are the entries of $\mathbf{R}$.",
+        branch="Every rotation has one matrix.",
     )
 
 
-_FORMS = (
-    (Quaternion, _quaternion),
-    (UnitQuaternion, _unit),
-    (CayleyKlein, _cayley_klein),
-    (AxisAngle, _axis_angle),
-    (RotationVector, _rotation_vector),
-    (GibbsVector, _gibbs),
-    (ModifiedRodrigues, _modified),
-    (DirectionCosines, _cosines),
+_FORMS: tuple[tuple[Callable[..., RotationModel], int, Callable[[Vector], ClosedForm]], ...] = (
+    (Quaternion, 4, _quaternion),
+    (UnitQuaternion, 4, _unit),
+    (CayleyKlein, 4, _cayley_klein),
+    (AxisAngle, 4, _axis_angle),
+    (RotationVector, 3, _rotation_vector),
+    (GibbsVector, 3, _gibbs),
+    (ModifiedRodrigues, 3, _modified),
+    (DirectionCosines, 9, _cosines),
 )
-_COUNTS = {
-    Quaternion: 4,
-    UnitQuaternion: 4,
-    CayleyKlein: 4,
-    AxisAngle: 4,
-    RotationVector: 3,
-    GibbsVector: 3,
-    ModifiedRodrigues: 3,
-    DirectionCosines: 9,
-}

@@ -9,43 +9,54 @@ from typing import TypeVar
 import sympy as sp
 
 from rigidsym.formula.sentence import text_of
-from rigidsym.mechanics.conversions.chain_inverse import at_poles, chain_coordinates, outer_angles
 from rigidsym.mechanics.conversions.closed_forms import ClosedForm
-from rigidsym.mechanics.conversions.closed_inverse import BOTH_SIGNS, RULES, unit
-from rigidsym.mechanics.conversions.continuity import Continuity, continuity_of
-from rigidsym.mechanics.conversions.conversions import (
-    SHEPPERD,
-    UNIT,
-    Conversions,
-    InverseConversion,
-    outer_product,
-)
+from rigidsym.mechanics.conversions.conversions import UNIT, Conversions, InverseConversion
 from rigidsym.mechanics.conversions.davenport_angles import DavenportAngles
 from rigidsym.mechanics.conversions.function import (
     ConversionFunction,
     ConversionInput,
-    argument_of,
-    function_of,
-)
-from rigidsym.mechanics.conversions.turn_chain import TurnChain
-from rigidsym.mechanics.conversions.values import (
-    MATRIX,
-    QUATERNION,
     NamedValues,
-    Vector,
     Where,
-    nearest,
-    rounded,
-    scalar_last,
-    scaled,
-    short_way,
+    argument_of,
     square,
     symbols,
+)
+from rigidsym.mechanics.conversions.turn_chain import TurnChain
+from rigidsym.mechanics.conversions.unit_quaternions import (
+    QUATERNION,
+    SHEPPERD,
+    scalar_last,
+    scaled,
+    shepperd,
+    short_way,
+    unit,
 )
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.models.rotation import RotationModel
 
+MATRIX = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
 Each = TypeVar("Each")
+
+
+_TWO_SETS = (
+    "Two sets of angles in [−π, π] give each rotation, and whole turns may be added to them. Each "
+    "sample gets the angles nearest to the sample before. At a pole, the undetermined angle is "
+    "taken from the last sample away from poles; what is within 32 eps (radians) of a pole counts "
+    "as there, and R is off by up to twice that."
+)
+_WHOLE_TURNS = "No angle of a turn changes by more than π from one sample to the next."
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Continuity:
+    """How coordinates are made continuous; only turns need functions."""
+
+    kind: str
+    inputs: tuple[str, ...]  # names of arguments
+    remarks: tuple[str, ...]
+    # From the coordinates to the angles and what relates two sets of them, and back.
+    turns: ConversionFunction | None = None
+    coordinates: ConversionFunction | None = None
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,7 +81,7 @@ def converted(derivation: Derivation, conversions: Conversions) -> Converted:
     return Converted(
         steps=(*steps, *variants),
         functions=functions,
-        continuity=continuity_of(derivation, inverse) if inverse else None,
+        continuity=_continuity(derivation, inverse) if inverse else None,
         remarks=(conversions.without,) if conversions.without else (),
     )
 
@@ -95,17 +106,18 @@ def _inputs(derivation: Derivation, inverse: InverseConversion) -> list[Conversi
     found = []
     if "parameters" in inverse.given:
         found.append(ConversionInput(argument=derivation.argument("parameters")))
-    if isinstance(inverse.rule, TurnChain) and inverse.rule.kept:
-        found.append(ConversionInput(argument=_kept(derivation, inverse.rule), is_optional=True))
+    if "kept" in inverse.given:
+        kept = _kept(derivation, inverse.rule.kept)
+        found.append(ConversionInput(argument=kept, is_optional=True))
     return found
 
 
-def _kept(derivation: Derivation, rule: TurnChain) -> Argument:
+def _kept(derivation: Derivation, places: Sequence[int]) -> Argument:
     """The coordinates that a rotation does not determine."""
     q = derivation.argument("q")
 
     def chosen(of_all: Sequence[Each]) -> tuple[Each, ...]:
-        return tuple(of_all[place] for place in rule.kept)
+        return tuple(of_all[place] for place in places)
 
     return replace(
         q,
@@ -122,15 +134,13 @@ def _from_quaternion(derivation: Derivation, inverse: InverseConversion) -> Conv
     given = symbols(QUATERNION)
     values = NamedValues(given[0])
     quaternion = scaled(values, given)
-    order = "last" if inverse.is_scalar_last else "first"
-    listed = scalar_last(given) if inverse.is_scalar_last else given
+    order = "last" if inverse.rule.is_scalar_last else "first"
+    listed = scalar_last(given) if inverse.rule.is_scalar_last else given
     rotation = argument_of("quaternion", listed, f"a quaternion of any length, scalar {order}")
-    return function_of(
+    return values.function(
         "from_quaternion",
-        "q",
         [ConversionInput(argument=rotation), *_inputs(derivation, inverse)],
-        values,
-        _coordinates(values, derivation.model, inverse, quaternion),
+        inverse.rule.from_quaternion(values, derivation.model, quaternion),
         f"the coordinates of a quaternion, scalar {order}",
         *_remarks(inverse),
         "Its length does not matter; zero gives NaN.",
@@ -139,29 +149,16 @@ def _from_quaternion(derivation: Derivation, inverse: InverseConversion) -> Conv
 
 
 def _from_matrix(derivation: Derivation, inverse: InverseConversion) -> ConversionFunction:
-    model, rule = derivation.model, inverse.rule
+    model = derivation.model
     given = symbols(MATRIX)
     values = NamedValues(given[0])
     matrix = sp.Matrix(3, 3, given)
-    matrix = matrix.T if model.passive else matrix
-    if isinstance(rule, ClosedForm) and rule.rule == "direction_cosines":
-        outputs = _in_order(tuple(matrix), rule.order)
-    elif isinstance(rule, DavenportAngles):
-        left, right = rule.turned
-        turned = sp.Matrix(3, 3, [rounded(entry) for entry in left * matrix * right])
-        outputs = _davenport(values, rule, shepperd(values, turned))
-    else:
-        quaternion = shepperd(values, matrix)
-        if isinstance(rule, ClosedForm) and rule.rule in BOTH_SIGNS:
-            quaternion = short_way(values, quaternion)
-        outputs = _coordinates(values, model, inverse, quaternion)
+    outputs = inverse.rule.from_matrix(values, model, matrix.T if model.passive else matrix)
     shown = "A, the transpose of R" if model.passive else "R"
     rotation = argument_of("matrix", given, f"a rotation matrix {shown}")
-    return function_of(
+    return values.function(
         "from_rotation_matrix",
-        "q",
         [ConversionInput(argument=rotation, is_matrix=True), *_inputs(derivation, inverse)],
-        values,
         outputs,
         f"the coordinates of a rotation matrix {shown}, as `rotation_matrix` gives it",
         *_remarks(inverse),
@@ -181,58 +178,6 @@ def _unit(model: RotationModel) -> str:
     return next(iter(units)) if len(units) == 1 else f"({', '.join(model.coordinate_units)})"
 
 
-def _coordinates(
-    values: NamedValues, model: RotationModel, inverse: InverseConversion, quaternion: Vector
-) -> Vector:
-    """The coordinates of a scaled quaternion."""
-    rule = inverse.rule
-    if isinstance(rule, TurnChain):
-        found = dict(zip(rule.places, chain_coordinates(values, rule, quaternion), strict=True))
-        found |= {place: model.coordinates[place] for place in rule.kept}
-        return tuple(found[place] for place in range(len(model.coordinates)))
-    if isinstance(rule, DavenportAngles):
-        parts = map(rounded, rule.forms * sp.Matrix(quaternion))
-        return _davenport(values, rule, values.each(("a0", "a1", "a2", "a3"), parts))
-    return _in_order(RULES[rule.rule](values, quaternion), rule.order)
-
-
-def _in_order(found: Vector, order: Sequence[int]) -> Vector:
-    """What a rule gives, in the order of the model's coordinates."""
-    placed = dict(zip(order, found, strict=True))
-    return tuple(placed[place] for place in range(len(found)))
-
-
-def _davenport(values: NamedValues, rule: DavenportAngles, parts: Vector) -> Vector:
-    """The angles from the quaternion in the frame of the turns."""
-    far, near = values.length("far", parts[:2]), values.length("near", parts[2:])
-    total = values.let("half_sum", sp.atan2(parts[1], parts[0]))
-    difference = values.let("half_difference", sp.atan2(parts[3], parts[2]))
-    sign = -1 if rule.last_is_first_turn else 1
-    total, difference = at_poles(values, (near, far), (total, difference), sign)
-    middle = rule.sign * (2 * sp.atan2(near, far) - nearest(rule.offset))
-    first, last = outer_angles(values, total, difference)
-    return _in_order((first, middle, last), rule.places)
-
-
-def shepperd(values: NamedValues, matrix: sp.Matrix) -> Vector:
-    """The column of 4 p pᵀ with the largest diagonal entry, so that nothing cancels.
-
-    Its scalar is not negative where the first column is taken.
-    """
-    outer = outer_product(matrix)
-    names = [[f"k{a}{b}" for b in QUATERNION] for a in QUATERNION]
-    w, x, y, z = (
-        values.each(names[k], [outer[min(j, k), max(j, k)] for j in range(4)]) for k in range(4)
-    )
-    by_x, by_z = x[1] > w[0], z[3] > y[2]
-    upper = values.let("upper", Where(by_x, x[1], w[0]))
-    lower = values.let("lower", Where(by_z, z[3], y[2]))
-    return values.each(
-        QUATERNION,
-        [Where(lower > upper, Where(by_z, z[k], y[k]), Where(by_x, x[k], w[k])) for k in range(4)],
-    )
-
-
 def _quaternion_of_matrix(derivation: Derivation) -> ConversionFunction:
     """The quaternion of a rotation that is known by its matrix alone."""
     model = derivation.model
@@ -246,14 +191,13 @@ def _quaternion_of_matrix(derivation: Derivation) -> ConversionFunction:
     values = NamedValues(model.coordinates[0])
     quaternion = short_way(values, shepperd(values, sp.Matrix(3, 3, entries)))
     names = ("q", "parameters") if model.constants else ("q",)
-    function = function_of(
+    function = values.function(
         "quaternion",
-        "p",
         [ConversionInput(argument=derivation.argument(name)) for name in names],
-        values,
         unit(values, quaternion),
         "unit quaternion of the rotation, scalar first and not negative",
         f"It is read off from R by its largest component ({SHEPPERD}).",
+        symbol="p",
     )
     return replace(function, shared=tuple(zip(entries, matrix, strict=True)))
 
@@ -265,15 +209,14 @@ def _of_any_length(
     values = NamedValues(q[0])
     parts = unit(values, scaled(values, (q[3], *q[:3]) if is_last else q))
     order = "last" if is_last else "first"
-    return function_of(
+    return values.function(
         "quaternion",
-        "p",
         [ConversionInput(argument=derivation.argument("q"))],
-        values,
         scalar_last(parts) if is_last else parts,
         f"unit quaternion of the rotation, scalar {order}",
         f"Equation ({number_in_note}) of the note.",
         "The coordinates are divided by their length; zero gives NaN.",
+        symbol="p",
     )
 
 
@@ -285,14 +228,13 @@ def _of_rotation_vector(derivation: Derivation, number_in_note: int) -> Conversi
     none = sp.Eq(size, 0)
     length = values.let("length", sp.sqrt(Where(none, sp.S.One, size)))
     factor = values.let("factor", Where(none, sp.S.Half, sp.sin(length / 2) / length))
-    return function_of(
+    return values.function(
         "quaternion",
-        "p",
         [ConversionInput(argument=q)],
-        values,
         [Where(none, sp.S.One, sp.cos(length / 2)), *(factor * part for part in q.symbols)],
         "unit quaternion of the rotation, scalar first: cos(n/2) and v sin(n/2)/n",
         f"Equation ({number_in_note}) of the note; accurate at every length.",
+        symbol="p",
     )
 
 
@@ -308,21 +250,63 @@ def _shadow_sets(
     length = shorter.let("square", square(q.symbols))
     scale = shorter.let("scale", Where(length > 1, -length, sp.S.One))
     return (
-        function_of(
+        shadow.function(
             "shadow_set",
-            "s",
             [ConversionInput(argument=q)],
-            shadow,
             [-part / size for part in q.symbols],
             "the other set of the same rotation, −s/(s·s)",
             "The shadow of zero is at infinity and comes as NaN.",
+            symbol="s",
         ),
-        function_of(
+        shorter.function(
             "shorter_set",
-            "s",
             [ConversionInput(argument=q)],
-            shorter,
             [part / scale for part in q.symbols],
             "the same rotation by the set with s·s ≤ 1: the shadow set where s·s > 1",
+            symbol="s",
         ),
+    )
+
+
+def _continuity(derivation: Derivation, inverse: InverseConversion) -> Continuity | None:
+    """The continuity of the coordinates; None if they are unique."""
+    rule = inverse.rule
+    if not isinstance(rule, ClosedForm):
+        return _of_turns(derivation, rule, inverse.given)
+    if not rule.continuity:
+        return None
+    kind = "quaternion" if rule.has_both_signs else rule.rule
+    return Continuity(kind=kind, inputs=("q",), remarks=(rule.continuity,))
+
+
+def _of_turns(
+    derivation: Derivation, rule: DavenportAngles | TurnChain, given: Sequence[str]
+) -> Continuity:
+    model = derivation.model
+    names = ("q", *(name for name in given if name == "parameters"))
+    inputs = [ConversionInput(argument=derivation.argument(name)) for name in names]
+    values = NamedValues(model.coordinates[0])
+    relation = rule.relation(values)
+    turns = values.function(
+        "turns_of_coordinates",
+        inputs,
+        [*rule.turn_angles(model), *relation],
+        "angles of the turns",
+        symbol="",
+    )
+    found = symbols(f"turn_{k}" for k in range(1, len(rule.places) + 1))
+    followed = rule.inverse * (sp.Matrix(found) - sp.Matrix(rule.offsets))
+    placed = dict(zip(rule.places, followed, strict=True))
+    coordinates = NamedValues(model.coordinates[0]).function(
+        "coordinates_of_turns",
+        [*inputs, ConversionInput(argument=argument_of("turns", found, "angles of the turns"))],
+        [placed.get(place, q) for place, q in enumerate(model.coordinates)],
+        "coordinates",
+        symbol="",
+    )
+    remarks = [_TWO_SETS if relation else _WHOLE_TURNS]
+    if len(rule.places) < len(model.coordinates):
+        remarks.append("What the rotation does not determine stays as it is.")
+    return Continuity(
+        kind="turns", inputs=names, remarks=tuple(remarks), turns=turns, coordinates=coordinates
     )

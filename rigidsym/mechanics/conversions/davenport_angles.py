@@ -8,76 +8,143 @@ sin δ), with β′ = β + λ, σ = (α + γ)/2, δ = (α − γ)/2. Nothing can
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import reduce
+from typing import ClassVar
 
 import sympy as sp
 
-from rigidsym.formula.reader import formula
 from rigidsym.formula.sentence import Sentence, sentence
 from rigidsym.formula.symbol_names import named
-from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.conversions.function import NamedValues, Vector, nearest, rounded
+from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim, in_order
+from rigidsym.mechanics.conversions.three_turns import ACROSS, at_poles, outer_angles
+from rigidsym.mechanics.conversions.unit_quaternions import half_turn, product, shepperd
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import hat
 
-Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
+_HALF = r"\frac{\beta'}{2}"
+_COMPONENTS = (
+    rf"\cos{_HALF}\,\cos\sigma",
+    rf"\cos{_HALF}\,\sin\sigma",
+    rf"\sin{_HALF}\,\cos\delta",
+    rf"\sin{_HALF}\,\sin\delta",
+)
+
+_BECAUSE = sentence(
+    r"$\mathbf{C}$ is the fixed turn about the second axis that takes the first to the third. In "
+    "the frame of the first two axes and their cross product, the quaternion of "
+    r"$\mathbf{R}\,\mathbf{C}$ is $\kappa$ ($\cos\frac{\beta'}{2}\cos\sigma$, "
+    r"$\cos\frac{\beta'}{2}\sin\sigma$, $\sin\frac{\beta'}{2}\cos\delta$, "
+    r"$\sin\frac{\beta'}{2}\sin\delta$): $\beta'$ is the middle angle plus the angle of "
+    r"$\mathbf{C}$, $\sigma$ half the sum and $\delta$ half the difference of the outer angles. "
+    r"So $\sigma = \operatorname{atan2}(a_1, a_0)$, $\delta = \operatorname{atan2}(a_3, a_2)$, and "
+    r"$\tan\frac{\beta'}{2}$ is the quotient of the lengths of $(a_2, a_3)$ and $(a_0, a_1)$."
+)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class DavenportAngles:
+@dataclass(frozen=True, kw_only=True)
+class DavenportAngles(InverseRule):
     """The geometry of three turns about constant axes, the middle one across the others."""
 
     frame: sp.ImmutableMatrix  # columns e₁, ±e₂, e₁ × ±e₂; (3, 3)
     lean: tuple[sp.Expr, sp.Expr]  # parallel to (cos λ/2, sin λ/2), λ in [0, π]
     sign: int  # of the middle angle: −1 where the frame holds −e₂
     places: tuple[int, int, int]  # of α, β, γ among the coordinates
-    angle_names: tuple[str, str, str]  # of the coordinates, in their order
+
+    # The coordinates are the angles themselves.
+    inverse: ClassVar[sp.ImmutableMatrix] = sp.ImmutableMatrix(sp.eye(3))
+    offsets: ClassVar[Vector] = (sp.S.Zero, sp.S.Zero, sp.S.Zero)
 
     @property
     def offset(self) -> sp.Expr:
         """λ in radians, in [0, π]."""
-        across, along = self.lean[1], self.lean[0]
+        along, across = self.lean
         return 2 * sp.atan2(across, along)
 
-    @property
-    def range(self) -> tuple[sp.Expr, sp.Expr]:
-        """The interval in which the middle angle is given."""
+    def sentences(self, model: RotationModel) -> tuple[Sentence, Sentence]:
+        names = [named(q.func.__name__) for q in model.coordinates]
+        first, middle, third = (names[place] for place in self.places)
         low, high = -self.offset, sp.pi - self.offset
-        return (low, high) if self.sign > 0 else (-high, -low)
-
-    @property
-    def last_is_first_turn(self) -> bool:
-        """Whether the last coordinate is the angle of the leftmost turn, as it is for `zxz`."""
-        return self.places[0] == 2
-
-    @property
-    def forms(self) -> sp.ImmutableMatrix:
-        """The components in the frame of p (1 + C), as coefficients of (w, x, y, z); (4, 4)."""
-        scalar, part = self.lean
-        w, x, y, z = (part * e for e in (0, *self.frame[:, 1]))
-        right = sp.Matrix([[w, -x, -y, -z], [x, w, z, -y], [y, -z, w, x], [z, y, -x, w]])
-        into_frame = sp.diag(1, self.frame.T)
-        return sp.ImmutableMatrix(into_frame * (scalar * sp.eye(4) + right))
-
-    @property
-    def turned(self) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
-        """A and B with A R B the matrix of the two turns about e₁, in the frame."""
-        along, across = self.lean
-        square = along**2 + across**2
-        skew = hat(self.frame[:, 1])
-        lean = sp.eye(3) + (2 * along * across * skew + 2 * across**2 * skew**2) / square
-        return self.frame.T, sp.ImmutableMatrix((lean * self.frame).applyfunc(sp.expand))
-
-    @property
-    def branch(self) -> Sentence:
-        """Which of the possible angles are given."""
-        first, middle, third = (named(self.angle_names[place]) for place in self.places)
-        low, high = map(_text, self.range)
-        return sentence(
-            f"{{}} and {{}} are in (−π, π], {{}} is in [{low}, {high}]. At a pole, the ends of "
-            "that interval, only the sum or the difference of {} and {} is determined: there {} "
-            "is 0. Orientations within 8 eps (radians) of a pole count as poles.",
-            *(first, third, middle, first, third, named(self.angle_names[2])),
+        if self.sign < 0:
+            low, high = -high, -low
+        branch = sentence(
+            f"{{}} and {{}} are in (−π, π], {{}} is in [{_text(low)}, {_text(high)}]. At a pole, "
+            "the ends of that interval, only the sum or the difference of {} and {} is determined: "
+            "there {} is 0. Orientations within 8 eps (radians) of a pole count as poles.",
+            *(first, third, middle, first, third, names[2]),
         )
+        return _BECAUSE, branch
+
+    def _in_frame(self, quaternion: Sequence[sp.Expr]) -> sp.Matrix:
+        """The components of p (1 + C) in the frame, (4, 1)."""
+        scalar, part = self.lean
+        whole = product(tuple(quaternion), (scalar, *(part * self.frame[:, 1])))
+        return sp.diag(1, self.frame.T) * sp.Matrix(whole)
+
+    def claims(self, model: RotationModel) -> list[Claim]:
+        """The four components of p (1 + C) in the frame, for p the product of the three turns."""
+        turns = (half_turn(turn.direction, turn.angle) for turn in model.turns)
+        first, middle, third = (turn.angle for turn in model.turns)
+        half, (along, across) = self.sign * middle / 2, self.lean
+        cosine = along * sp.cos(half) - across * sp.sin(half)
+        sine = along * sp.sin(half) + across * sp.cos(half)
+        total, difference = (first + third) / 2, (first - third) / 2
+        expected = (
+            cosine * sp.cos(total),
+            cosine * sp.sin(total),
+            sine * sp.cos(difference),
+            sine * sp.sin(difference),
+        )
+        found = self._in_frame(reduce(product, turns))
+        return [
+            claim(rf"a_{place} = \kappa\,{text}", here - there)
+            for place, (here, there, text) in enumerate(
+                zip(found, expected, _COMPONENTS, strict=True)
+            )
+        ]
+
+    def from_quaternion(
+        self,
+        values: NamedValues,
+        model: RotationModel,  # noqa: ARG002
+        quaternion: Vector,
+    ) -> Vector:
+        parts = map(rounded, self._in_frame(quaternion))
+        return self._angles(values, values.each(("a0", "a1", "a2", "a3"), parts))
+
+    def from_matrix(
+        self,
+        values: NamedValues,
+        model: RotationModel,  # noqa: ARG002
+        matrix: sp.Matrix,
+    ) -> Vector:
+        """From the matrix of the two turns about e₁, in the frame."""
+        along, across = self.lean
+        skew = hat(self.frame[:, 1])
+        lean = 2 * along * across * skew + 2 * across**2 * skew**2
+        right = ((sp.eye(3) + lean / (along**2 + across**2)) * self.frame).applyfunc(sp.expand)
+        turned = (self.frame.T * matrix * right).applyfunc(rounded)
+        return self._angles(values, shepperd(values, turned))
+
+    def _angles(self, values: NamedValues, parts: Vector) -> Vector:
+        """The angles from the quaternion in the frame of the turns."""
+        far, near = values.length("far", parts[:2]), values.length("near", parts[2:])
+        total = values.let("half_sum", sp.atan2(parts[1], parts[0]))
+        difference = values.let("half_difference", sp.atan2(parts[3], parts[2]))
+        sign = -1 if self.places[0] == 2 else 1  # the last coordinate is 0 at poles
+        total, difference = at_poles(values, (near, far), (total, difference), sign)
+        middle = self.sign * (2 * sp.atan2(near, far) - nearest(self.offset))
+        first, last = outer_angles(values, total, difference)
+        return in_order((first, middle, last), self.places)
+
+    def turn_angles(self, model: RotationModel) -> Vector:
+        return tuple(model.coordinates[place] for place in self.places)
+
+    def relation(self, values: NamedValues) -> Vector:  # noqa: ARG002
+        """What relates two sets of angles; see `TurnChain.relation`."""
+        return (-self.sign * nearest(self.offset), sp.S.Zero, sp.pi, *ACROSS)
 
 
 def davenport_angles(model: RotationModel) -> DavenportAngles | None:
@@ -90,12 +157,6 @@ def davenport_angles(model: RotationModel) -> DavenportAngles | None:
     first, second, third = (sp.Matrix(turn.direction) for turn in model.turns)
     if sp.expand(first.dot(second)) != 0 or sp.expand(second.dot(third)) != 0:
         return None
-    return _geometry(model, first, second, third)
-
-
-def _geometry(
-    model: RotationModel, first: sp.Matrix, second: sp.Matrix, third: sp.Matrix
-) -> DavenportAngles:
     cosine = sp.expand(first.dot(third))
     sine = sp.expand(first.cross(third).dot(second))
     sign = -1 if sine.is_negative else 1
@@ -106,57 +167,13 @@ def _geometry(
     elif cosine == 1:
         lean = (sp.S.One, sp.S.Zero)
     frame = sp.Matrix.hstack(first, second, first.cross(second)).applyfunc(sp.expand)
-    angles = [turn.angle for turn in model.turns]
     first_place, middle_place, last_place = (model.coordinates.index(angle) for angle in angles)
-    a, b, c = (coordinate.func.__name__ for coordinate in model.coordinates)
     return DavenportAngles(
         frame=sp.ImmutableMatrix(frame),
         lean=lean,
         sign=sign,
         places=(first_place, middle_place, last_place),
-        angle_names=(a, b, c),
     )
-
-
-def davenport_claims(model: RotationModel, rule: DavenportAngles) -> list[Claim]:
-    """The four components of p (1 + C) in the frame, for p the product of the three turns."""
-    parts = sp.Matrix([1, 0, 0, 0])
-    for turn in model.turns:
-        parts = _times(parts, (sp.cos(turn.angle / 2), *_scaled(turn.direction, turn.angle)))
-    found = rule.forms * parts
-    first, middle, third = (turn.angle for turn in model.turns)
-    half, (along, across) = rule.sign * middle / 2, rule.lean
-    cosine = along * sp.cos(half) - across * sp.sin(half)
-    sine = along * sp.sin(half) + across * sp.cos(half)
-    total, difference = (first + third) / 2, (first - third) / 2
-    expected = (
-        cosine * sp.cos(total),
-        cosine * sp.sin(total),
-        sine * sp.cos(difference),
-        sine * sp.sin(difference),
-    )
-    return [
-        ((here - there,), _component(place))
-        for place, (here, there) in enumerate(zip(found, expected, strict=True))
-    ]
-
-
-def _component(place: int) -> Formula:
-    outer, inner = ("cos", "cos", "sin", "sin")[place], ("cos", "sin", "cos", "sin")[place]
-    angle = (r"\sigma", r"\delta")[place // 2]
-    half = r"\frac{\beta'}{2}"
-    return formula(rf"a_{place} = \kappa\,\{outer}{half}\,\{inner}{angle}")
-
-
-def _scaled(direction: tuple[sp.Expr, ...], angle: sp.Expr) -> tuple[sp.Expr, ...]:
-    return tuple(sp.sin(angle / 2) * part for part in direction)
-
-
-def _times(first: sp.Matrix, second: tuple[sp.Expr, ...]) -> sp.Matrix:
-    """The product of two quaternions, scalar first."""
-    w, x, y, z = first
-    left = sp.Matrix([[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]])
-    return left * sp.Matrix(second)
 
 
 def _text(angle: sp.Expr) -> str:

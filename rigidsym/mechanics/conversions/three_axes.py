@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import reduce
 
 import sympy as sp
 
-from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.conversions.function import dot, square
+from rigidsym.mechanics.conversions.inverse import Claim, claim
+from rigidsym.mechanics.conversions.unit_quaternions import half_turn, in_halves, product
 from rigidsym.models.chain import axis_turn, chain
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import time_function
-
-Claim = tuple[tuple[sp.Expr, ...], Formula]
 
 
 def three_axes() -> RotationModel:
@@ -32,29 +30,22 @@ def outer_claims(model: RotationModel) -> list[Claim]:
     """How the halves of the quaternion turn with the outer angles, and how long they are."""
     first, _, last = (sp.Matrix(turn.direction) for turn in model.turns)
     alpha, _, gamma = (turn.angle for turn in model.turns)
-    halves = [
-        (sp.cos(turn.angle / 2), *(sp.sin(turn.angle / 2) * part for part in turn.direction))
-        for turn in model.turns
-    ]
-    whole = reduce(quaternion_product, halves)
-    plus, minus = (_half(whole, first, last, sign) for sign in (-1, 1))
-    between_plus, between_minus = (_half(halves[1], first, last, sign) for sign in (-1, 1))
-    turned_plus = _turned(first, (alpha + gamma) / 2, between_plus)
-    turned_minus = _turned(first, (alpha - gamma) / 2, between_minus)
+    turns = [half_turn(turn.direction, turn.angle) for turn in model.turns]
+    found = in_halves(reduce(product, turns), first, last)
+    between = in_halves(turns[1], first, last)
     cosine = first.dot(model.matrix * last)
-    lengths = [2 * sum(part**2 for part in half) - 1 for half in (plus, minus)]
+
+    def turned(place: int, twice: sp.Expr, text: str) -> Claim:
+        """p± = exp(e₁ angle) m±, for twice the angle."""
+        expected = product(half_turn(first, twice), between[place])
+        return claim(text, *(a - b for a, b in zip(found[place], expected, strict=True)))
+
     return [
-        (
-            _difference(plus, turned_plus),
-            formula(r"\mathbf{p}_+ = e^{\mathbf{e}_1\sigma}\,\mathbf{m}_+"),
-        ),
-        (
-            _difference(minus, turned_minus),
-            formula(r"\mathbf{p}_- = e^{\mathbf{e}_1\delta}\,\mathbf{m}_-"),
-        ),
-        (
-            (lengths[0] - cosine, lengths[1] + cosine),
-            formula(r"2\,|\mathbf{p}_\pm|^2 = 1 \pm \mathbf{e}_1\cdot\mathbf{R}\,\mathbf{e}_3"),
+        turned(0, alpha + gamma, r"\mathbf{p}_+ = e^{\mathbf{e}_1\sigma}\,\mathbf{m}_+"),
+        turned(1, alpha - gamma, r"\mathbf{p}_- = e^{\mathbf{e}_1\delta}\,\mathbf{m}_-"),
+        claim(
+            r"2\,|\mathbf{p}_\pm|^2 = 1 \pm \mathbf{e}_1\cdot\mathbf{R}\,\mathbf{e}_3",
+            *(2 * square(half) - 1 - s * cosine for half, s in zip(found, (1, -1), strict=True)),
         ),
     ]
 
@@ -67,15 +58,13 @@ def middle_claims(model: RotationModel) -> list[Claim]:
     before, after = first.dot(middle), middle.dot(last)
     along, across = first.dot(last) - before * after, first.dot(middle.cross(last))
     return [
-        (
-            (cosine - before * after - along * sp.cos(beta) - across * sp.sin(beta),),
-            formula(
-                r"\mathbf{e}_1\cdot\mathbf{R}\,\mathbf{e}_3 = k_1 k_3 + A\cos\beta + B\sin\beta"
-            ),
+        claim(
+            r"\mathbf{e}_1\cdot\mathbf{R}\,\mathbf{e}_3 = k_1 k_3 + A\cos\beta + B\sin\beta",
+            cosine - before * after - along * sp.cos(beta) - across * sp.sin(beta),
         ),
-        (
-            (along**2 + across**2 - (1 - before**2) * (1 - after**2),),
-            formula("A^2 + B^2 = (1 - k_1^2)(1 - k_3^2)"),
+        claim(
+            "A^2 + B^2 = (1 - k_1^2)(1 - k_3^2)",
+            along**2 + across**2 - (1 - before**2) * (1 - after**2),
         ),
     ]
 
@@ -85,26 +74,16 @@ def half_claims(model: RotationModel) -> list[Claim]:
     first, middle, last = (sp.Matrix(turn.direction) for turn in model.turns)
     zero, one = sp.S.Zero, (sp.S.One, sp.S.Zero, sp.S.Zero, sp.S.Zero)
     squares, alongs, across = [], [], []
-    for sign in (1, -1):
-        unit = _half(one, first, last, -sign)
-        turned = quaternion_product((zero, *first), unit)
-        axis = _half((zero, *middle), first, last, -sign)
+    units, axes = (in_halves(whole, first, last) for whole in (one, (zero, *middle)))
+    for sign, unit, axis in zip((1, -1), units, axes, strict=True):
+        turned = product((zero, *first), unit)
         squares.append(dot(unit, unit) - (1 + sign * first.dot(last)) / 2)
         alongs.append(dot(unit, axis) - sign * first.dot(middle.cross(last)) / 2)
         across.append(dot(turned, axis) - (first.dot(middle) + sign * middle.dot(last)) / 2)
     return [
-        (
-            tuple(squares),
-            formula(r"2\,|\mathbf{1}_\pm|^2 = 1 \pm \mathbf{e}_1\cdot\mathbf{e}_3"),
-        ),
-        (
-            tuple(alongs),
-            formula(r"2\,\mathbf{1}_\pm\cdot\mathbf{e}_{2\pm} = \pm B"),
-        ),
-        (
-            tuple(across),
-            formula(r"2\,(\mathbf{e}_1\mathbf{1}_\pm)\cdot\mathbf{e}_{2\pm} = k_1 \pm k_3"),
-        ),
+        claim(r"2\,|\mathbf{1}_\pm|^2 = 1 \pm \mathbf{e}_1\cdot\mathbf{e}_3", *squares),
+        claim(r"2\,\mathbf{1}_\pm\cdot\mathbf{e}_{2\pm} = \pm B", *alongs),
+        claim(r"2\,(\mathbf{e}_1\mathbf{1}_\pm)\cdot\mathbf{e}_{2\pm} = k_1 \pm k_3", *across),
     ]
 
 
@@ -120,50 +99,14 @@ def triangle_claims(model: RotationModel) -> list[Claim]:
     apart = sp.sin((side + first - last) / 2) * sp.sin((side - first + last) / 2)
     together = sp.sin((first + last + side) / 2) * sp.sin((first + last - side) / 2)
     return [
-        (
-            (sines + cosines - sp.cos(side) - 2 * apart,),
-            formula(
-                r"\cos(\theta_1 - \theta_3) - \cos\chi = 2 \sin\tfrac{\chi + \theta_1 "
-                r"- \theta_3}{2} \sin\tfrac{\chi - \theta_1 + \theta_3}{2}"
-            ),
+        claim(
+            r"\cos(\theta_1 - \theta_3) - \cos\chi = 2 \sin\tfrac{\chi + \theta_1 "
+            r"- \theta_3}{2} \sin\tfrac{\chi - \theta_1 + \theta_3}{2}",
+            sines + cosines - sp.cos(side) - 2 * apart,
         ),
-        (
-            (sines - cosines + sp.cos(side) - 2 * together,),
-            formula(
-                r"\cos\chi - \cos(\theta_1 + \theta_3) = 2 \sin\tfrac{\theta_1 + "
-                r"\theta_3 + \chi}{2} \sin\tfrac{\theta_1 + \theta_3 - \chi}{2}"
-            ),
+        claim(
+            r"\cos\chi - \cos(\theta_1 + \theta_3) = 2 \sin\tfrac{\theta_1 + "
+            r"\theta_3 + \chi}{2} \sin\tfrac{\theta_1 + \theta_3 - \chi}{2}",
+            sines - cosines + sp.cos(side) - 2 * together,
         ),
     ]
-
-
-Parts = tuple[sp.Expr, ...]
-
-
-def quaternion_product(first: Parts, second: Parts) -> Parts:
-    """The product of two quaternions, scalar first, as it comes."""
-    w, *v = first
-    scalar, *u = second
-    one, two = sp.Matrix(v), sp.Matrix(u)
-    return (w * scalar - one.dot(two), *(w * two + scalar * one + one.cross(two)))
-
-
-def _half(whole: Parts, first: sp.Matrix, last: sp.Matrix, sign: int) -> Parts:
-    """x₊ = (x − e₁ x e₃)/2 for the sign −1, x₋ for +1."""
-    zero = sp.S.Zero
-    across = quaternion_product(quaternion_product((zero, *first), whole), (zero, *last))
-    return tuple((a + sign * b) / 2 for a, b in zip(whole, across, strict=True))
-
-
-def _turned(axis: sp.Matrix, angle: sp.Expr, parts: Parts) -> Parts:
-    """exp(e angle) parts."""
-    return quaternion_product((sp.cos(angle), *(sp.sin(angle) * axis)), parts)
-
-
-def dot(first: Iterable[sp.Expr], second: Iterable[sp.Expr]) -> sp.Expr:
-    """The sum of products, part by part, as it comes."""
-    return sp.Add(*(a * b for a, b in zip(first, second, strict=True)))
-
-
-def _difference(first: Parts, second: Parts) -> Parts:
-    return tuple(a - b for a, b in zip(first, second, strict=True))

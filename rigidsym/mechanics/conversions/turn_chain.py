@@ -19,14 +19,21 @@ from itertools import combinations, pairwise
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.formula.reader import formula
 from rigidsym.formula.sentence import Sentence, sentence
 from rigidsym.formula.symbol_names import named
-from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.conversions.function import NamedValues, Vector, rounded
+from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim
+from rigidsym.mechanics.conversions.three_turns import (
+    ACROSS,
+    angle_between,
+    angle_of_one,
+    angles_of_three,
+    angles_of_two,
+    flat_angle,
+)
+from rigidsym.mechanics.conversions.unit_quaternions import QUATERNION, half_turn, product
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import rodrigues
-
-Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
 
 WITTENBURG_LILOV_2003 = Citation(
     text="J. Wittenburg, L. Lilov, Decomposition of a Finite Rotation into Three Rotations about "
@@ -35,16 +42,18 @@ WITTENBURG_LILOV_2003 = Citation(
 _MOST = 3  # turns that a rotation determines
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class TurnChain:
+@dataclass(frozen=True, kw_only=True)
+class TurnChain(InverseRule):
     """The turns whose angles follow from the rotation, and all that is known beside them."""
+
+    source = WITTENBURG_LILOV_2003
 
     before: tuple[Turn, ...]  # known turns left of them: constant, or by angles that are kept
     solved: tuple[Turn, ...]  # one to three
     between: tuple[tuple[Turn, ...], ...]  # known turns behind each of them but the last
     after: tuple[Turn, ...]  # known turns right of them
     places: tuple[int, ...]  # of the coordinates that follow, among all
-    kept: tuple[int, ...]  # places of the coordinates that are given
+    kept: tuple[int, ...]  # places of the coordinates that the rotation does not determine
     inverse: sp.ImmutableMatrix  # solved coordinates = inverse (angles − offsets); numbers
     offsets: tuple[sp.Expr, ...]  # of the angles, in constants and kept coordinates
     constraints: tuple[sp.Expr, ...] = ()  # of the constants, which vanish
@@ -98,6 +107,77 @@ class TurnChain:
         """Whether an expression in constants vanishes for all of them, as the ring decides."""
         codec = codec_for([expression], constraints=self.constraints, order=0)
         return not codec.encode_quotient(expression).numerator
+
+    def sentences(self, model: RotationModel) -> tuple[Sentence, Sentence]:
+        branch = []
+        for text, *places in _branch(self):
+            names = [named(model.coordinates[place].func.__name__) for place in places]
+            blanks = " and ".join([", ".join(["{}"] * (len(names) - 1)), "{}"][-len(names) :])
+            branch += [*sentence(text.replace("{}", blanks), *names), " "]
+        return sentence(_because(self)), tuple(branch[:-1])
+
+    def claims(self, model: RotationModel) -> list[Claim]:
+        """R is the known turns before, the solved ones about the moved axes, the known after."""
+        before, after = ([turn.matrix for turn in known] for known in (self.before, self.right))
+        if not (before or after):
+            return []
+        solved = [rodrigues(a, turn.angle) for a, turn in zip(self.axes, self.solved, strict=True)]
+        whole = reduce(lambda a, b: a * b, [*before, *solved, *after])
+        names = [*"a" * bool(before), *map(str, range(1, len(solved) + 1)), *"b" * bool(after)]
+        text = r"\mathbf{R} = " + "".join(rf"\mathbf{{R}}_{name}" for name in names)
+        return [claim(text, *(whole - model.matrix))]
+
+    def from_quaternion(
+        self, values: NamedValues, model: RotationModel, quaternion: Vector
+    ) -> Vector:
+        """With the known turns taken off."""
+        for turn in self.before:
+            undone = half_turn(turn.direction, -turn.angle)
+            quaternion = values.each(QUATERNION, map(rounded, product(undone, quaternion)))
+        for turn in reversed(self.right):
+            undone = half_turn(turn.direction, -turn.angle)
+            quaternion = values.each(QUATERNION, map(rounded, product(quaternion, undone)))
+        axes = self._named_axes(values)
+        if len(axes) < _MOST:
+            angles = (angle_of_one, angles_of_two)[len(axes) - 1](values, axes, quaternion)
+        else:
+            angles = angles_of_three(
+                values,
+                axes,
+                quaternion,
+                is_across=self.is_across,
+                has_two_sets=self.has_two_sets,
+                mirror=self.mirror,
+            )
+        solved = self.inverse * (sp.Matrix(angles) - sp.Matrix(self.offsets))
+        found = dict(zip(self.places, solved, strict=True))
+        return tuple(found.get(place, q) for place, q in enumerate(model.coordinates))
+
+    def _named_axes(self, values: NamedValues) -> list[Vector]:
+        return [values.each(("axis_x", "axis_y", "axis_z"), axis) for axis in self.axes]
+
+    def turn_angles(self, model: RotationModel) -> Vector:  # noqa: ARG002
+        """The angles that are followed along a trajectory."""
+        count = _MOST if self.has_two_sets else len(self.places)
+        return tuple(turn.angle for turn in self.solved[:count])
+
+    def relation(self, values: NamedValues) -> Vector:
+        """What relates the two sets of angles of one rotation; empty if there is one set.
+
+        The flat middle angle, the difference and the sum of the sides, and of half of each its
+        cosine and its sine.
+        """
+        if not self.has_two_sets:
+            return ()
+        first, middle, last = self._named_axes(values)
+        sides = angle_between(values, first, middle), angle_between(values, middle, last)
+        base = flat_angle(values, first, middle, last)
+        apart = values.let("apart", sides[0] - sides[1])
+        together = values.let("together", sides[0] + sides[1])
+        if self.is_across:
+            return base, apart, together, *ACROSS
+        halves = (apart / 2, together / 2)
+        return base, apart, together, *(f(half) for half in halves for f in (sp.cos, sp.sin))
 
 
 def turn_chain(model: RotationModel) -> TurnChain | str:
@@ -190,16 +270,6 @@ def _mirror(turns: Sequence[Turn]) -> int:
     return 1 if first == last else -1 if first == -last else 0
 
 
-def description(model: RotationModel, rule: TurnChain) -> tuple[Sentence, Sentence]:
-    """Sentences: how the coordinates follow, and which of the possible ones are given."""
-    branch = []
-    for text, *places in _branch(rule):
-        names = [named(model.coordinates[place].func.__name__) for place in places]
-        blanks = " and ".join([", ".join(["{}"] * (len(names) - 1)), "{}"][-len(names) :])
-        branch += [*sentence(text.replace("{}", blanks), *names), " "]
-    return sentence(_because(rule)), tuple(branch[:-1])
-
-
 def _because(rule: TurnChain) -> str:
     known = (
         "The known turns are taken off, and the axes are taken as they leave them. "
@@ -274,27 +344,3 @@ def _branch(rule: TurnChain) -> Iterator[tuple[str, *tuple[int, ...]]]:
             "These turns need not reach every rotation: one further than √eps (radians) from all "
             "reachable ones gives NaN.",
         )
-
-
-def known_claims(model: RotationModel, rule: TurnChain) -> list[Claim]:
-    """R is the known turns before, the solved ones about the moved axes, and the known after."""
-    if not (rule.before or rule.right):
-        return []
-    factors = [turn.matrix for turn in rule.before]
-    factors += [
-        rodrigues(axis, turn.angle) for axis, turn in zip(rule.axes, rule.solved, strict=True)
-    ]
-    factors += [turn.matrix for turn in rule.right]
-    product = reduce(lambda a, b: a * b, factors)
-    count = len(rule.solved)
-    factors = [rf"\mathbf{{R}}_{k}" for k in range(1, count + 1)]
-    if rule.before:
-        factors = [r"\mathbf{R}_a", *factors]
-    if rule.right:
-        factors = [*factors, r"\mathbf{R}_b"]
-    return [
-        (
-            tuple(product - model.matrix),
-            formula(r"\mathbf{R} = " + "".join(factors)),
-        )
-    ]

@@ -8,7 +8,8 @@ import sympy as sp
 
 from rigidsym.formula.entries import indexed
 from rigidsym.formula.reader import formula
-from rigidsym.mechanics.conversions.conversions import SHEPPERD, Conversions, outer_product
+from rigidsym.mechanics.conversions.conversions import Conversions
+from rigidsym.mechanics.conversions.unit_quaternions import SHEPPERD, outer_product
 from rigidsym.notes.document.document import (
     Cited,
     Code,

@@ -1,4 +1,9 @@
-"""The middle one of three angles: from a spherical triangle, or from one half of the quaternion."""
+"""The angles of one to three turns about any axes, from the quaternion of their product.
+
+See `turn_chain` for the geometry: p₊ and p₋ are the halves of the quaternion by the first and the
+last axis, m₊ and m₋ those of what is between. The middle one of three angles follows from a
+spherical triangle, or from one half of the quaternion.
+"""
 
 from __future__ import annotations
 
@@ -7,18 +12,176 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from rigidsym.mechanics.conversions.three_axes import dot
-from rigidsym.mechanics.conversions.values import (
+from rigidsym.mechanics.conversions.function import (
     NamedValues,
     Vector,
     Where,
+    dot,
     nearest,
     number,
     rounded,
     square,
 )
+from rigidsym.mechanics.conversions.unit_quaternions import QUATERNION, in_halves
 
+ACROSS = (sp.S.One, sp.S.Zero, sp.S.Zero, sp.S.One)  # cosines and sines of 0 and π/2, exactly
 _STEPS = 2  # of least squares, from a start that is off by √eps at most
+
+
+def _halves(
+    values: NamedValues, parts: Vector, first: Vector, last: Vector
+) -> tuple[Vector, Vector, sp.Expr, sp.Expr]:
+    """p₊ and p₋, and their lengths."""
+    plus, minus = (
+        values.each([f"{name}_{part}" for part in QUATERNION], map(rounded, half))
+        for name, half in zip(("plus", "minus"), in_halves(parts, first, last), strict=True)
+    )
+    return plus, minus, values.length("far", plus), values.length("near", minus)
+
+
+def angle_of_one(values: NamedValues, axes: Sequence[Vector], parts: Vector) -> Vector:
+    plus, _, far, near = _halves(values, parts, axes[0], axes[0])
+    sine = values.let("sine", rounded(dot(plus[1:], axes[0])))
+    half = values.let("half", sp.atan2(sine, plus[0]))
+    beyond = values.let("swing", 2 * sp.atan2(near, far))
+    half = values.let("half", Where(beyond > values.reach, sp.nan, half))
+    return (values.wrapped("angle", 2 * half),)
+
+
+def angles_of_two(values: NamedValues, axes: Sequence[Vector], parts: Vector) -> Vector:
+    first, last = axes
+    _, _, far, near = _halves(values, parts, first, last)
+    total, difference = _from_one(values, parts, *_across_each_other(values, first, last))
+    swing = values.let("swing", 2 * sp.atan2(near, far))
+    beyond = values.let("beyond", sp.Abs(swing - angle_between(values, first, last)))
+    total, difference = at_poles(values, (near, far), (total, difference))
+    total = values.let("half_sum", Where(beyond > values.reach, sp.nan, total))
+    return outer_angles(values, total, difference)
+
+
+def angles_of_three(
+    values: NamedValues,
+    axes: Sequence[Vector],
+    parts: Vector,
+    *,
+    is_across: bool,
+    has_two_sets: bool,
+    mirror: int,
+) -> Vector:
+    """The angles of three turns; the first two if the third is by the first angle times `mirror`.
+
+    `is_across` says that the middle axis is across the others, `has_two_sets` that the middle
+    angle follows from the triangle.
+    """
+    plus, minus, far, near = _halves(values, parts, axes[0], axes[2])
+    by_sum, by_difference = _halves_between(axes, plus, 1), _halves_between(axes, minus, -1)
+    swing = values.let("swing", 2 * sp.atan2(near, far))
+    middle, base, beyond = _middle_of_triangle(values, axes, swing, is_across=is_across)
+    if not has_two_sets:
+        fixed, free = (by_difference, by_sum) if mirror > 0 else (by_sum, by_difference)
+        length = far if mirror > 0 else near
+        whole = values.length("whole", (near, far))
+        guesses = (middle, 2 * base - middle)
+        middle, beyond = _middle_of_half(values, fixed, free, length, whole, guesses)
+    half = values.let("half_middle", middle / 2)
+    turned = (sp.cos(half), sp.sin(half))
+    total = _outer(values, "half_sum", by_sum, turned)
+    difference = _outer(values, "half_difference", by_difference, turned)
+    if mirror:
+        total, difference, apart = _alike(values, mirror, (near, far), (total, difference))
+        beyond = values.let("beyond", Where(apart > beyond, apart, beyond)) if beyond else apart
+    else:
+        total, difference = at_poles(values, (near, far), (total, difference))
+    if beyond:
+        is_beyond = beyond > values.reach
+        total = values.let("half_sum", Where(is_beyond, sp.nan, total))
+        middle = values.let("middle", Where(is_beyond, sp.nan, middle))
+    first, last = outer_angles(values, total, difference)
+    return (first, middle) if mirror else (first, middle, last)
+
+
+def _outer(values: NamedValues, name: str, halves: tuple[Half, Half], turned: Vector) -> sp.Expr:
+    """The angle from m± to p±: half the sum or half the difference of the outer angles."""
+    a, b, c, d = _longer(values, halves, [half.compared(turned) for half in halves])
+    return values.let(name, sp.atan2(b * c - a * d, a * c + b * d))
+
+
+def outer_angles(values: NamedValues, total: sp.Expr, difference: sp.Expr) -> Vector:
+    """The outer angles from half their sum and half their difference."""
+    return (
+        values.wrapped("first", total + difference),
+        values.wrapped("last", total - difference),
+    )
+
+
+def at_poles(values: NamedValues, lengths: Vector, angles: Vector, sign: int = 1) -> Vector:
+    """Where a half of the quaternion vanishes, its angle is taken to be the other's, or minus it.
+
+    So one outer angle is zero: the last turn's, or the first's for sign −1. The lengths are those
+    of p₋ and p₊, the angles half the sum and half the difference of the outer ones.
+    """
+    (near, far), (total, difference) = lengths, angles
+    is_low, is_high = near <= values.tiny * far, far <= values.tiny * near
+    chosen = values.let("half_difference", Where(is_low, sign * total, difference))
+    return values.let("half_sum", Where(is_high, sign * difference, total)), chosen
+
+
+def _alike(values: NamedValues, mirror: int, lengths: Vector, angles: Vector) -> Vector:
+    """Outer angles that are equal, or opposite: the half that is 0 or π is made so.
+
+    Returns also how far it was from that.
+    """
+    (near, far), (total, difference) = lengths, angles
+    fixed, free = (difference, total) if mirror > 0 else (total, difference)
+    short, long = (near, far) if mirror > 0 else (far, near)
+    apart = values.let("apart", sp.Abs(sp.sin(fixed)) * short / values.length("whole", (near, far)))
+    is_turned = Where(sp.Abs(fixed) > sp.pi / 2, sp.pi, sp.S.Zero)
+    fixed = values.let("fixed", Where(short > values.tiny * long, is_turned, sp.S.Zero))
+    free = values.let("free", Where(long <= values.tiny * short, sp.S.Zero, free))
+    return (free, fixed, apart) if mirror > 0 else (fixed, free, apart)
+
+
+def _from_one(values: NamedValues, parts: Vector, sums: Vector, differences: Vector) -> Vector:
+    """Half the sum and half the difference of two angles: from 1± to p±, counted about e₁.
+
+    1± and e₁ 1± have the parts (s·s, ∓ d × s)/4 and (0, s)/2 with the sum s and the difference d
+    of the axes, d in place of s for 1₋. So nothing cancels where the axes are nearly parallel or
+    nearly opposite, and p± are short.
+    """
+    scalar, *vector = parts
+    cross = sp.Matrix(differences).cross(sp.Matrix(sums))
+    found = []
+    for name, sign, along in (("half_sum", -1, sums), ("half_difference", 1, differences)):
+        by_one = [_whole(values, part / 2) for part in (dot(along, along), *(sign * cross))]
+        across = [_whole(values, part) for part in along]
+        sine = values.let("sine", dot(vector, across))
+        found.append(values.let(name, sp.atan2(sine, dot((scalar, *vector), by_one))))
+    return tuple(found)
+
+
+def _whole(values: NamedValues, value: sp.Expr) -> sp.Expr:
+    """A number rounded once, so that the terms it is a sum of do not part; else a named value."""
+    return nearest(value) if value.is_number else values.let("v", value)
+
+
+def _across_each_other(values: NamedValues, first: Vector, last: Vector) -> tuple[Vector, Vector]:
+    """The sum and the difference of two unit vectors.
+
+    Axes that are rounded are not of one length, and the shorter of the two would hold some of the
+    _longer: that is taken off.
+    """
+    pairs = tuple(zip(first, last, strict=True))
+    sums, differences = (tuple(a + sign * b for a, b in pairs) for sign in (1, -1))
+    if all(part.is_number for part in (*first, *last)):
+        return sums, differences
+    s, d = values.each(["s"] * 3, sums), values.each(["d"] * 3, differences)
+    sizes = [values.let("size", dot(vector, vector)) for vector in (s, d)]
+    longest = values.let("longest", Where(sizes[0] > sizes[1], *sizes))
+    common = values.let("common", dot(s, d) / longest)
+    return (
+        tuple(a - common * b for a, b in zip(s, d, strict=True)),
+        tuple(b - common * a for a, b in zip(s, d, strict=True)),
+    )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,7 +205,7 @@ class Half:
         return (*self.by_cosine, *self.by_sine, self.square)
 
 
-def halves_between(axes: Sequence[Vector], half: Vector, sign: int) -> tuple[Half, Half]:
+def _halves_between(axes: Sequence[Vector], half: Vector, sign: int) -> tuple[Half, Half]:
     """By the vectors 1± and e₂±: the longer serves where p± and m± are short too."""
     first, middle, last = axes
     scalar, *vector = half
@@ -67,7 +230,7 @@ def halves_between(axes: Sequence[Vector], half: Vector, sign: int) -> tuple[Hal
     )
 
 
-def longer(values: NamedValues, halves: tuple[Half, Half], found: Sequence[Vector]) -> Vector:
+def _longer(values: NamedValues, halves: tuple[Half, Half], found: Sequence[Vector]) -> Vector:
     """The values by the vector that is longer: by one vector where that is known."""
     names = "abcdefgh"
     lengths = [half.square for half in halves]
@@ -103,7 +266,7 @@ def flat_angle(values: NamedValues, first: Vector, middle: Vector, last: Vector)
     return values.let("base", sp.atan2(sine, cosine))
 
 
-def middle_of_triangle(
+def _middle_of_triangle(
     values: NamedValues, axes: Sequence[Vector], swing: sp.Expr, *, is_across: bool
 ) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
     """The middle angle by the three sides, where the triangle is flat, and how far from one.
@@ -124,21 +287,20 @@ def _bend(values: NamedValues, axes: Sequence[Vector], swing: sp.Expr) -> tuple[
     apart = values.let("apart", sp.Abs(sides[0] - sides[1]) / 2)
     together = values.let("together", (sides[0] + sides[1]) / 2)
     half = values.let("half", swing / 2)
-    opened = values.positive("opened", _of_sines(values, half + apart, half - apart))
-    closed = values.positive("closed", _of_sines(values, together + half, together - half))
+    opened, closed = (
+        values.positive(name, sp.Mul(*map(sp.sin, values.each(("sum", "difference"), angles))))
+        for name, *angles in (
+            ("opened", half + apart, half - apart),
+            ("closed", together + half, together - half),
+        )
+    )
     bend = values.let("bend", 2 * sp.atan2(sp.sqrt(opened), sp.sqrt(closed)))
     near = values.let("near_side", apart - half)
     far = values.let("far_side", half - Where(together > sp.pi / 2, sp.pi - together, together))
     return bend, values.let("beyond", 2 * Where(near > far, near, far))
 
 
-def _of_sines(values: NamedValues, first: sp.Expr, second: sp.Expr) -> sp.Expr:
-    """The product of two sines; their angles are not taken apart."""
-    angles = values.each(("sum", "difference"), (first, second))
-    return sp.Mul(*map(sp.sin, angles))
-
-
-def middle_of_half(
+def _middle_of_half(
     values: NamedValues,
     fixed: tuple[Half, Half],
     free: tuple[Half, Half],
@@ -154,8 +316,8 @@ def middle_of_half(
     squares (Gauss, Newton) compare the fixed halves, and the lengths of the free ones, which tell
     more where these are short.
     """
-    *given, m = _measured(values, longer(values, fixed, [(*h.given, *h.matrix) for h in fixed]))
-    (n,) = _measured(values, longer(values, free, [half.matrix for half in free]))
+    *given, m = _measured(values, _longer(values, fixed, [(*h.given, *h.matrix) for h in fixed]))
+    (n,) = _measured(values, _longer(values, free, [half.matrix for half in free]))
     size = m[-1]
     a, b = values.each("ab", (part / (size * whole) for part in given))
     half = _nearest(values, (a, b), m, guesses)
