@@ -9,6 +9,13 @@ from types import NoneType
 
 import click
 from gallery import rotation_gallery, solid_gallery  # noqa: F401
+from literature import (  # noqa: F401
+    bodies_of_literature,
+    kinematics_of_literature,
+    rotations_of_literature,
+    sources,
+    wrong_formulas,
+)
 from schema import rows, schema
 
 import rigidsym
