@@ -61,7 +61,7 @@ class EquationsOfMotion:
     def lagrangian(self) -> Found:
         return Found(
             sp.ImmutableMatrix([[self.kinetic - self.work.potential]]),
-            "One point is fixed, so that the kinetic energy is that of the rotation about it.",
+            "One point is fixed, so that all kinetic energy belongs to the rotation about it.",
         )
 
     def energy(self) -> Found:

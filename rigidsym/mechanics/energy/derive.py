@@ -74,7 +74,7 @@ class _Energy:
         residual = summed - self._scalar(twice)
         return Found(
             sp.ImmutableMatrix([[self._translational]]),
-            "The energy of translation is that of the total mass moving with the centre of mass.",
+            "The centre of mass has the kinetic energy of a particle of mass M.",
             (self.prove.vanishes(residual, claims.TRANSLATION_OF_PARTICLES),),
         )
 
@@ -121,7 +121,7 @@ class _Energy:
         summed = self._of_particles(self._crossed(self.centre, self.velocity))
         return Found(
             self.present.matrix(momentum),
-            "The angular momentum of the centre-of-mass motion is that of the total mass.",
+            "The centre of mass has the angular momentum of a particle of mass M.",
             (self.prove.vanishes(summed - momentum, claims.MOMENTUM_OF_CENTRE),),
         )
 

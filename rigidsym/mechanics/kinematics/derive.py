@@ -86,7 +86,7 @@ class _Kinematics:
             case 0:
                 return "The rotation matrix is given."
             case 1:
-                return "The rotation matrix is that of the turn."
+                return "The rotation is a single turn."
         return "Multiplying the matrices of the turns gives the rotation matrix."
 
     def rotation_rate(self) -> Found:
@@ -244,7 +244,7 @@ class _Kinematics:
         claim = claims.rotates(ROTATION, ALPHA_BODY, ALPHA)
         return Found(
             self.present.matrix(body),
-            "Its body components are the derivatives of those of the angular velocity, since "
+            "In the body frame it is enough to differentiate the components of Ω′, since "
             "Ω × Ω vanishes.",
             (self.prove.vanishes(residual, claim),),
         )

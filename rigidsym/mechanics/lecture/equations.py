@@ -31,8 +31,8 @@ _EQUATIONS = r"""
     Seen from there a particle is at $\mathbf{x}_i$, where
     $\mathbf{r}_i = \mathbf{r}_C + \mathbf{x}_i$. So $\sum_i m_i\,\mathbf{x}_i = \mathbf{0}$ at
     all times, and $\sum_i m_i\,\dot{\mathbf{x}}_i = \mathbf{0}$: when the velocities are squared,
-    the cross term vanishes, and the energy splits into that of the total mass moving with the
-    centre of mass and that of the motion about it,
+    the cross term vanishes, and the energy splits into the energy of the total mass moving with
+    the centre of mass and the energy of the motion about it,
     = E_K
     = E_C + E_R
     = \frac{1}{2}M|\dot{\mathbf{r}}_C|^2 + \frac{1}{2}\sum_i m_i|\dot{\mathbf{x}}_i|^2
@@ -99,8 +99,8 @@ _EQUATIONS = r"""
       \boldsymbol{\Omega}'^T\mathbf{R}^T\mathbf{I}\,\mathbf{R}\,\boldsymbol{\Omega}'
 
 9  inertia_turns  2.1
-    The matrix in the middle is therefore the inertia tensor in the new basis. It is also what (4)
-    gives for the places $\mathbf{x}'_i = \mathbf{R}^{-1}\mathbf{x}_i$ seen from there:
+    The matrix in the middle is therefore the inertia tensor in the new basis. With the
+    places $\mathbf{x}'_i = \mathbf{R}^{-1}\mathbf{x}_i$ seen from there, (4) gives the same:
     = \mathbf{I}'
     = \mathbf{R}^T\mathbf{I}\,\mathbf{R}
     tensor_turns: \mathbf{R}^T\,\mathbf{I}(\mathbf{R}\mathbf{x}'_i)\,\mathbf{R} =
@@ -150,14 +150,14 @@ _EQUATIONS = r"""
       \mathbf{x}_i\times\dot{\mathbf{r}}_C) = \mathbf{0}
 
 12  parts_of_the_momentum  3.1
-    These are the angular momentum of the centre-of-mass motion and that of the rotation:
+    The first belongs to the motion of the centre of mass, the second to the rotation:
     = \mathbf{L}_C = \mathbf{r}_C\times(M\dot{\mathbf{r}}_C), \qquad \mathbf{L}_R
     = \sum_i \mathbf{x}_i\times(m_i\dot{\mathbf{x}}_i)
     momentum_splits: \sum_i \mathbf{r}_i\times(m_i\dot{\mathbf{r}}_i) = \mathbf{L}_C +
       \mathbf{L}_R
 
 13  momentum_of_rotation  3.1
-    With (3) the second part is linear in the angular velocity, and the tensor is that of (4):
+    By (3) the second part is linear in the angular velocity, with the tensor of (4):
     = \mathbf{L}_R
     = \mathbf{I}\,\boldsymbol{\Omega}
     momentum_is_linear: \sum_i m_i\,\mathbf{x}_i\times(\boldsymbol{\Omega}\times\mathbf{x}_i) =

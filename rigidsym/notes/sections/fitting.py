@@ -154,12 +154,12 @@ def _again(names: Mapping[str, Sequence[Text]]) -> Text:
     """Where abbreviations were explained, by the labels of the equations."""
     if sum(map(len, names.values())) > _MOST_NAMES:
         places = [(EquationReference(label),) for label in names]
-        return ("The abbreviations are again those of ", *listed(places))
-    said: list[Text] = []
-    for label, own in names.items():
-        verb = " are those of " if len(own) > 1 else " is that of "
-        said.append((*listed(own), verb, EquationReference(label)))
-    return ("Again ", *listed(said))
+        return ("The abbreviations are defined in ", *listed(places))
+    again: list[Text] = [
+        (*listed(own), f" {'are' if len(own) > 1 else 'is'} as in ", EquationReference(label))
+        for label, own in names.items()
+    ]
+    return ("Here ", *listed(again))
 
 
 def _is_of_motion(step: Step) -> bool:

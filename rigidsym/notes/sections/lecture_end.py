@@ -25,38 +25,28 @@ from rigidsym.notes.sections.summary import SHEET, row_height, summary
 from rigidsym.notes.sections.symbol_tables import symbols
 
 _LEAD = 2.0  # lines that the words before a row of equations take
-_OF_THE_THEORY: Sequence[tuple[str, str, str, str]] = (  # symbol, meaning, unit, equation
-    ("m_i", "mass of a particle", "kg", ""),
-    ("M", "mass of the body", "kg", ""),
-    (r"\mathbf{r}_i", "position of a particle", "m", ""),
-    (r"\mathbf{r}_C", "position of the centre of mass", "m", "centre_of_mass"),
-    (r"\mathbf{x}_i", "position of a particle relative to the centre of mass", "m", ""),
-    (r"\mathbf{x}'_i", "the same, body components", "m", ""),
-    (r"\mathbf{e}_j", "vectors of an orthonormal basis", "1", ""),
-    (r"\mathbf{e}'_j", "the same, turned", "1", "components_in_another_basis"),
-    (
-        r"\mathbf{I}",
-        "inertia tensor about the centre of mass, space components",
-        "kg m²",
-        "inertia_of_particles",
-    ),
-    (r"d^{\perp}_i", "distance of a particle from a line", "m", ""),
-)
-_PARTS = "parts_of_the_momentum"
-_BY_THE_BODY: Sequence[tuple[str, str, str, str]] = (  # where no body has them as quantities
-    (r"\mathbf{I}'", "the inertia tensor, body components", "kg m²", "inertia_turns"),
-    ("E_C", "kinetic energy of the centre-of-mass motion", "J", "energy_splits"),
-    ("E_R", "kinetic energy of the rotation about the centre of mass", "J", "energy_splits"),
-    ("E_K", "kinetic energy", "J", "energy_splits"),
-    (
-        r"\mathbf{L}_C",
-        "angular momentum of the centre-of-mass motion",
-        "kg m²/s",
-        _PARTS,
-    ),
-    (r"\mathbf{L}_R", "angular momentum of the rotation", "kg m²/s", _PARTS),
-    (r"\mathbf{L}", "angular momentum about the origin", "kg m²/s", "momentum_splits"),
-)
+# symbol | meaning | unit | equation
+_OF_THE_THEORY = r"""
+m_i | mass of a particle | kg |
+M | mass of the body | kg |
+\mathbf{r}_i | position of a particle | m |
+\mathbf{r}_C | position of the centre of mass | m | centre_of_mass
+\mathbf{x}_i | position of a particle relative to the centre of mass | m |
+\mathbf{x}'_i | the same, body components | m |
+\mathbf{e}_j | vectors of an orthonormal basis | 1 |
+\mathbf{e}'_j | the same, turned | 1 | components_in_another_basis
+\mathbf{I} | inertia tensor about the centre, space components | kg m² | inertia_of_particles
+d^{\perp}_i | distance of a particle from a line | m |
+"""
+_OF_A_BODY = r"""
+\mathbf{I}' | the inertia tensor, body components | kg m² | inertia_turns
+E_C | kinetic energy of the centre-of-mass motion | J | energy_splits
+E_R | kinetic energy of the rotation about the centre of mass | J | energy_splits
+E_K | kinetic energy | J | energy_splits
+\mathbf{L}_C | angular momentum of the centre-of-mass motion | kg m²/s | parts_of_the_momentum
+\mathbf{L}_R | angular momentum of the rotation | kg m²/s | parts_of_the_momentum
+\mathbf{L} | angular momentum about the origin | kg m²/s | momentum_splits
+"""
 
 
 def symbols_of_the_lecture(
@@ -73,19 +63,19 @@ def symbols_of_the_lecture(
         return span
 
     table = symbols(derivation, letters)
-    theory = [*map(_row, _OF_THE_THEORY)]
+    theory = list(_rows(_OF_THE_THEORY))
     known = {str(row[0]) for row in theory}
     others = [row for row in table.rows if str(row[0]) not in known]
     held = {str(span) for row in others for span in row[0]}
-    theory += [row for row in map(_row, _BY_THE_BODY) if str(row[0][0]) not in held]
+    theory += [row for row in _rows(_OF_A_BODY) if str(row[0][0]) not in held]
     rows = (tuple(tuple(map(placed, cell)) for cell in row) for row in others)
     return replace(table, rows=(*theory, *rows))
 
 
-def _row(entry: tuple[str, str, str, str]) -> tuple[Text, ...]:
-    typed, about, unit, label = entry
-    reference: Text = (EquationReference(label),) if label else ()
-    return (formula(typed),), (about,), (unit,), reference
+def _rows(table: str) -> Iterator[tuple[Text, ...]]:
+    for line in table.strip().splitlines():
+        typed, about, unit, label = (part.strip() for part in line.split("|"))
+        yield (formula(typed),), (about,), (unit,), (EquationReference(label),) if label else ()
 
 
 def summary_of_the_lecture(

@@ -143,7 +143,7 @@ def _points(derivation: Derivation) -> Iterator[Row]:
     whose = "at rest in space" if derivation.model.passive else "of the body"
     yield (POSITION,), (f"position of a point {whose}, space components",), ("m",), ()
     yield (BODY_POSITION,), ("the same, body components",), ("m",), ()
-    yield (OPERATOR,), ("matrix of ", _CROSS, ", for a vector ", _U), ("that of ", _U), ()
+    yield (OPERATOR,), ("matrix of ", _CROSS, ", for a vector ", _U), ("unit of ", _U), ()
 
 
 def functions(derivation: Derivation, module: str, names: Sequence[str]) -> Iterator[NoteBlock]:
