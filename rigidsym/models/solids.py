@@ -56,7 +56,7 @@ _RADII = (
 )
 _HOLLOW = (("outer_radius", "inner_radius"),)
 _SIDES = Length("sides", ("a", "b", "c"), "side")
-_CORNERS = tuple(f"{axis}_{k}" for k in range(4) for axis in "xyz")
+_CORNERS = "x_0 y_0 z_0 x_1 y_1 z_1 x_2 y_2 z_2 x_3 y_3 z_3"
 _ABOUT_Z = "centred, about the z-axis"
 _ROUND = "u*cos(v), u*sin(v), w"  # u from the z-axis
 _BALL = "u*sin(v)*cos(w), u*sin(v)*sin(w), u*cos(v)"  # v from the z-axis
@@ -170,10 +170,10 @@ SHAPES: Mapping[str, Shape] = MappingProxyType(
         "tetrahedron": Shape(
             "Tetrahedron",
             "by its four corners",
-            (Length("corners", _CORNERS, "coordinate of a corner"),),
-            ", ".join(
-                f"{x}_0 + u*({x}_1 - {x}_0) + v*({x}_2 - {x}_0) + w*({x}_3 - {x}_0)" for x in "xyz"
-            ),
+            (Length("corners", tuple(_CORNERS.split()), "coordinate of a corner"),),
+            "x_0 + u*(x_1 - x_0) + v*(x_2 - x_0) + w*(x_3 - x_0), "
+            "y_0 + u*(y_1 - y_0) + v*(y_2 - y_0) + w*(y_3 - y_0), "
+            "z_0 + u*(z_1 - z_0) + v*(z_2 - z_0) + w*(z_3 - z_0)",
             "0..1, 0..1 - u, 0..1 - u - v",
         ),
     }

@@ -53,7 +53,7 @@ _KEYS = {  # that go with a kind
 _AXES = ("x", "y", "z")
 _POINT = 'three coordinates, such as [0, 0, "h"]'
 _MOMENTS = ("A", "B", "C")
-_TENSOR = [[f"I_{min(i, j)}{max(i, j)}" for j in (1, 2, 3)] for i in (1, 2, 3)]
+_TENSOR = (("I_11", "I_12", "I_13"), ("I_12", "I_22", "I_23"), ("I_13", "I_23", "I_33"))
 _ROUNDING = 1e-14  # relative to the largest moment: smaller numbers are rounding errors
 
 
@@ -302,28 +302,34 @@ def _read_known(reader: BodyReader) -> Known:
     return Known(mass=mass, centre=sp.ImmutableMatrix(centre), inertia=sp.ImmutableMatrix(inertia))
 
 
+def _readers() -> tuple[Any, Any]:
+    """The readers of particles and of meshes, which need NumPy; a rotation alone does not."""
+    from rigidsym.data.mass import mesh, point_masses
+
+    return point_masses, mesh
+
+
 def _read_cloud(reader: BodyReader) -> Known:
     """particles = "cloud.npy": particles in NPY, CSV or Parquet."""
-    from rigidsym.data.mass.point_masses import inertia_of
-
     columns = [*reader.table.texts("columns", "names of the columns").values()] or None
     allow = bool(reader.table.flag("allow"))
+    particles, _ = _readers()
     return _in_file(
-        reader, "particles", lambda path: inertia_of(path, columns=columns, allow=allow)
+        reader, "particles", lambda path: particles.inertia_of(path, columns=columns, allow=allow)
     )
 
 
 def _read_mesh(reader: BodyReader) -> Known:
     """mesh = "part.stl", with its mass or density, and its length unit in metres as `scale`."""
-    from rigidsym.data.mass.mesh import mesh_inertia, read_mesh_file
-
     table = reader.table
     mass, density, scale = (table.number(key) for key in ("mass", "density", "scale"))
     allow = bool(table.flag("allow"))
+    _, meshes = _readers()
 
     def measured(path: Path) -> MassProperties:
-        mesh = read_mesh_file(path, scale=1.0 if scale is None else scale)
-        return mesh_inertia(mesh, mass=mass, density=density, allow=allow)
+        mesh = meshes.read_mesh_file(path, scale=1.0 if scale is None else scale)
+        found: MassProperties = meshes.mesh_inertia(mesh, mass=mass, density=density, allow=allow)
+        return found
 
     return _in_file(reader, "mesh", measured)
 

@@ -10,12 +10,12 @@ from itertools import product
 from rigidsym.errors import QuantityError, RequestError
 from rigidsym.kernels.module import KernelModule
 from rigidsym.motion import Motion
-from rigidsym.tools.evaluate.work import ResultColumn
+from rigidsym.tools.evaluate.work import ResultColumn, Work
 
 CONVERSIONS = ("quaternion", "from_quaternion", "from_rotation_matrix")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class FunctionArgument:
     """A vector or matrix that a function takes, with a name and a unit for each component."""
 
@@ -25,23 +25,9 @@ class FunctionArgument:
     shape: tuple[int, ...] = (-1,)
 
 
-_QUATERNION = FunctionArgument(name="quaternion", names=("qw", "qx", "qy", "qz"), units=("",) * 4)
-_MATRIX = FunctionArgument(
-    name="matrix",
-    names=tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3)),
-    units=("",) * 9,
-    shape=(3, 3),
-)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Callables:
-    """Callables of one module, their arguments, and the columns of their results."""
-
-    kernels: KernelModule
-    calls: tuple[tuple[str, tuple[str, ...]], ...]  # each with the names of its arguments
-    arguments: tuple[FunctionArgument, ...]  # of all of them
-    outputs: tuple[ResultColumn, ...]
+_QUATERNION = FunctionArgument("quaternion", ("qw", "qx", "qy", "qz"), ("",) * 4)
+_ENTRIES = ("r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33")
+_MATRIX = FunctionArgument("matrix", _ENTRIES, ("",) * 9, (3, 3))
 
 
 def derived_for(names: Sequence[str]) -> tuple[str, ...]:
@@ -49,37 +35,26 @@ def derived_for(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name not in CONVERSIONS) or ("rotation_matrix",)
 
 
-def functions_of(motion: Motion, names: Sequence[str], target: str, *, degrees: bool) -> Callables:
-    """Some functions of a motion, which has derived what they need.
+def functions_of(
+    motion: Motion, names: Sequence[str], target: str, *, degrees: bool
+) -> tuple[Work, tuple[FunctionArgument, ...]]:
+    """Some functions of a motion, which has derived what they need, and all their arguments.
 
     Raises QuantityError for an unknown name, and RequestError for a quantity without inputs.
     """
     chosen = motion.select(derived_for(names))
-    converts = not {*CONVERSIONS}.isdisjoint(names)
-    kernels = chosen.kernels(target, conversions=converts)
+    kernels = chosen.kernels(target, conversions=not {*CONVERSIONS}.isdisjoint(names))
     calls = tuple((name, _inputs(chosen, kernels, name)) for name in names)
     wanted = {argument for _, taken in calls for argument in taken}
-    known = [
-        *(
-            FunctionArgument(
-                name=a.name, names=a.names, units=a.units, shape=() if a.is_scalar else (-1,)
-            )
-            for a in chosen.arguments
-        ),
-        _QUATERNION,
-        _MATRIX,
-    ]
+    of_motion = [FunctionArgument(a.name, a.names, a.units) for a in chosen.arguments]
     outputs = tuple(
         ResultColumn(name, unit, degrees and is_angle(unit))
         for function in names
         for name, unit in _results(chosen, function)
     )
-    return Callables(
-        kernels=kernels,
-        calls=calls,
-        arguments=tuple(argument for argument in known if argument.name in wanted),
-        outputs=outputs,
-    )
+    known = (*of_motion, _QUATERNION, _MATRIX)
+    arguments = tuple(argument for argument in known if argument.name in wanted)
+    return Work(kernels=kernels, calls=calls, outputs=outputs), arguments
 
 
 def is_angle(unit: str) -> bool:

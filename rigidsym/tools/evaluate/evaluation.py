@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -101,12 +101,12 @@ def evaluation(
     be met, such as an unknown ending of the result, and QuantityError.
     """
     reader, path, output = _opened(source, path)
-    functions = functions_of(motion, quantities, target, degrees=degrees)
+    work, arguments = functions_of(motion, quantities, target, degrees=degrees)
     try:
         names = reader.names if columns is None else names_for(columns, reader.width)
         header = None if names is None else ColumnNames(names)
         used, inputs = inputs_of(
-            functions.arguments, header, reader.width, given=given or {}, degrees=degrees
+            arguments, header, reader.width, given=given or {}, degrees=degrees
         )
         kept = dict(_kept(header, name) for name in keep)
     except RequestError:
@@ -115,20 +115,13 @@ def evaluation(
         raise DataError(f"{reader.source}: {error}") from None
     if not used:
         raise RequestError(f"{reader.source}: no column is used; every row has the same result")
-    work = Work(
-        kernels=functions.kernels,
-        calls=functions.calls,
-        inputs=inputs,
-        outputs=functions.outputs,
-        threads=threads,
-    )
     return Evaluation(
         reader=reader,
         columns=used,
-        names=tuple(n for a in functions.arguments if inputs[a.name].columns for n in a.names),
+        names=tuple(n for a in arguments if inputs[a.name].columns for n in a.names),
         kept=tuple(kept),
         kept_names=tuple(kept.values()),
-        work=work,
+        work=replace(work, inputs=inputs, threads=threads),
         path=path,
         rows=rows,
         missing=missing,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from types import ModuleType
 
@@ -51,8 +51,8 @@ class Work:
 
     kernels: KernelModule
     calls: tuple[tuple[str, tuple[str, ...]], ...]  # functions, with the names of their arrays
-    inputs: Mapping[str, Input]  # by the names of the arrays
     outputs: tuple[ResultColumn, ...]
+    inputs: Mapping[str, Input] = field(default_factory=dict)  # by the names of the arrays
     threads: int = 1
 
     def of(self, table: Table) -> Table:

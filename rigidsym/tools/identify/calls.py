@@ -36,27 +36,31 @@ def calls(reading: Reading) -> dict[str, str]:
 def _turns(reading: Reading) -> Iterator[str]:
     """The angles and rates of the turns in their order, if they are not the columns."""
     if not reading.is_plain:
-        for columns in ("angles", "rates") if reading.velocity else ("angles",):
-            taken = f"{columns}[..., {list(reading.columns)}] * {list(reading.signs)}"
-            yield f"{_name(reading, columns)} = {taken}"
+        taken = f"[..., {list(reading.columns)}] * {list(reading.signs)}"
+        yield f"turns = angles{taken}"
+        if reading.velocity:
+            yield f"turn_rates = rates{taken}"
 
 
-def _name(reading: Reading, columns: str) -> str:
-    return columns if reading.is_plain else {"angles": "turns", "rates": "turn_rates"}[columns]
+def _angles(reading: Reading) -> str:
+    return "angles" if reading.is_plain else "turns"
+
+
+def _rates(reading: Reading) -> str:
+    return "rates" if reading.is_plain else "turn_rates"
 
 
 def _radians(reading: Reading) -> str:
-    turns = _name(reading, "angles")
-    return f"np.radians({turns})" if reading.degrees else turns
+    return f"np.radians({_angles(reading)})" if reading.degrees else _angles(reading)
 
 
 def _scipy(reading: Reading) -> Iterator[str]:
     degrees = ", degrees=True" if reading.degrees else ""
     inverse = ".inv()" if reading.passive else ""
-    turns = _name(reading, "angles")
     yield "from scipy.spatial.transform import Rotation"
     yield from _turns(reading)
-    yield f'rotation = Rotation.from_euler("{reading.sequence}", {turns}{degrees}){inverse}'
+    arguments = f'"{reading.sequence}", {_angles(reading)}{degrees}'
+    yield f"rotation = Rotation.from_euler({arguments}){inverse}"
     if reading.frames != AS_THE_TURNS:
         yield from _frames(reading)
         yield f"rotation = {_framed(reading, 'rotation', 'Rotation.from_matrix({})', '*')}"
@@ -111,7 +115,7 @@ def _sympy_motion(reading: Reading, velocity: Velocity) -> Iterator[str]:
     yield from _turns(reading)
     yield 'q = dynamicsymbols("q1:4")'
     yield f"at = dict(zip(q, {_radians(reading)}))"
-    yield f"rates_at = dict(zip([x.diff() for x in q], {_name(reading, 'rates')}))"
+    yield f"rates_at = dict(zip([x.diff() for x in q], {_rates(reading)}))"
     yield from _sympy_frames(reading, "q")
     if reading.scalar_last is None:
         yield f"matrix = msubs({_sympy_matrix(reading)}, at)"
@@ -142,7 +146,7 @@ def _rigidsym(reading: Reading) -> Iterator[str]:
             yield "quaternion = quaternion[..., [1, 2, 3, 0]]"
     if reading.velocity:
         name = f"angular_velocity_{reading.velocity.frame}"
-        yield f"omega = kernels.{name}({_radians(reading)}, {_name(reading, 'rates')})"
+        yield f"omega = kernels.{name}({_radians(reading)}, {_rates(reading)})"
         if side := _side_of(reading.velocity, reading):
             yield f"omega = omega @ {side}"
         yield from _scaled(reading.velocity)

@@ -38,13 +38,8 @@ def identify(
     `nearest` is the nearest reading.
     Raises SampleError for samples that are not finite, not rotations, or of the wrong shape.
     """
-    given = {
-        "angles": angles,
-        "matrix": matrix,
-        "quaternion": quaternion,
-        "rates": rates,
-        "omega": omega,
-    }
+    given = {"angles": angles, "matrix": matrix, "quaternion": quaternion}
+    given |= {"rates": rates, "omega": omega}
     return identify_source(from_arrays(given, names), tolerance=tolerance)
 
 
@@ -71,22 +66,17 @@ def identify_source(
 ) -> Identification:
     """The same for any source of samples."""
     outcome = fit(source, tolerance, progress)
-    answers = outcome.answers
-    has_velocity = answers[0].reading.velocity is not None
-    is_fit = answers[0].fits
+    best = outcome.answers[0]
+    has_velocity = best.reading.velocity is not None
+    count = sum(1 for _ in distinct(source.columns.layouts))
     return Identification(
-        answers=answers if is_fit else (),
-        nearest=None if is_fit else answers[0],
+        answers=outcome.answers if best.fits else (),
+        nearest=None if best.fits else best,
         tolerance=outcome.tolerance,
-        samples=answers[0].samples,
-        tried=len(list(distinct(source.columns.layouts)))
-        * (len(VELOCITIES) if has_velocity else 1),
+        samples=best.samples,
+        tried=count * (len(VELOCITIES) if has_velocity else 1),
         names=source.columns.names,
         converted=source.columns.converted,
         has_velocity=has_velocity,
-        further=separation([answer.reading for answer in answers], outcome),
+        further=separation([answer.reading for answer in outcome.answers], outcome),
     )
-
-
-def _count(layouts: Sequence[bool | None], has_velocity: bool) -> int:
-    return len(list(distinct(layouts))) * (len(VELOCITIES) if has_velocity else 1)

@@ -38,24 +38,40 @@ class Identification:
         return bool(self.answers)
 
     def text(self, *, everything: bool = False) -> str:
-        """The report of `rigidsym identify`; with `everything`, that of --all."""
-        return "\n".join(_text(self, everything=everything))
+        """The report of `rigidsym identify`; with `everything`, that of --all.
+
+        Its lines have 80 columns unless the names of the angles are long.
+        """
+        if self.nearest:
+            lines = _no_fit(self, self.nearest)
+        elif len(self.answers) == 1:
+            lines = _single(self, self.answers[0])
+        else:
+            lines = _several(self, everything=everything)
+        return "\n".join(lines)
 
     def record(self) -> dict[str, Any]:
-        """The report of `rigidsym identify --json`, as plain data."""
-        return _record(self)
+        """The report of `rigidsym identify --json`: dictionaries, lists, texts and numbers."""
+        tolerance, names = self.tolerance, self.names
+        return {
+            "schema": SCHEMA,
+            "schema_version": SCHEMA_VERSION,
+            "fits": self.fits,
+            "samples": self.samples,
+            "tried": self.tried,
+            "angle_names": list(names),
+            "tolerance": {
+                "orientation_rad": tolerance.orientation,
+                "velocity_relative": tolerance.velocity if self.has_velocity else None,
+                "because": tolerance.because,
+            },
+            "answers": [_answer(answer, names) for answer in self.answers],
+            "nearest": self.nearest and _answer(self.nearest, names),
+            "further": self.further and _separation(self.further),
+        }
 
     def __str__(self) -> str:
         return self.text()
-
-
-def _text(found: Identification, *, everything: bool) -> Iterator[str]:
-    """The lines of the report, of 80 columns unless the names of the angles are long."""
-    if found.nearest:
-        return _no_fit(found, found.nearest)
-    if len(found.answers) == 1:
-        return _single(found, found.answers[0])
-    return _several(found, everything=everything)
 
 
 def _single(found: Identification, answer: Answer) -> Iterator[str]:
@@ -168,15 +184,10 @@ def _no_fit(found: Identification, nearest: Answer) -> Iterator[str]:
         yield f"  {nearest.fitting} of {nearest.samples} samples fit"
     worst = max(nearest.residual, nearest.velocity_residual or 0.0)
     if worst <= _ACCEPTABLE:
-        yield f"--tolerance {_above(worst)} would accept it."
+        yield f"--tolerance {worst * 1.05:.2g} would accept it."
     else:
         yield f"Even the best match is {degrees(worst):.2g}° off: do the angles and the attitude"
         yield "belong to the same instant and the same body?"
-
-
-def _above(value: float) -> str:
-    """A value rounded up to two digits or so."""
-    return f"{value * 1.05:.2g}"
 
 
 def _residual(answer: Answer) -> str:
@@ -210,27 +221,6 @@ def _wrapped(words: str, head: str, width: int = 80) -> Iterator[str]:
             line, piece = margin, part
         line += piece
     yield line
-
-
-def _record(found: Identification) -> dict[str, Any]:
-    """Everything as dictionaries, lists, texts and numbers."""
-    tolerance = found.tolerance
-    return {
-        "schema": SCHEMA,
-        "schema_version": SCHEMA_VERSION,
-        "fits": found.fits,
-        "samples": found.samples,
-        "tried": found.tried,
-        "angle_names": list(found.names),
-        "tolerance": {
-            "orientation_rad": tolerance.orientation,
-            "velocity_relative": tolerance.velocity if found.has_velocity else None,
-            "because": tolerance.because,
-        },
-        "answers": [_answer(answer, found.names) for answer in found.answers],
-        "nearest": _answer(found.nearest, found.names) if found.nearest else None,
-        "further": _separation(found.further) if found.further else None,
-    }
 
 
 def _answer(answer: Answer, names: Sequence[str]) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import chain
 
 from rigidsym.data.columns import ColumnNames, counted
 from rigidsym.errors import DataError
@@ -29,7 +30,7 @@ _WITHOUT_HEADER = {
 }
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Columns:
     """The position of each part in a row, counted from 0."""
 
@@ -62,20 +63,13 @@ def by_width(width: int) -> Columns:
     """The columns of an array without names; raises SampleError for other widths than 7, 12, ..."""
     if width not in _WITHOUT_HEADER:
         known = "; ".join(f"{number} ({parts})" for number, parts in _WITHOUT_HEADER.items())
-        raise SampleError(
-            [
-                f"{counted(width, 'column')} without names: expected {known}; "
-                "or name them with --columns"
-            ]
-        )
+        found = f"{counted(width, 'column')} without names"
+        raise SampleError([f"{found}: expected {known}; or name them with --columns"])
     start = 3 + (9 if width in (12, 18) else 4)
-    has_velocity = width > start
-    return Columns(
-        angles=(0, 1, 2),
-        attitude=tuple(range(3, start)),
-        rates=tuple(range(start, start + 3)) if has_velocity else (),
-        omega=tuple(range(start + 3, start + 6)) if has_velocity else (),
-    )
+    angles, attitude = (0, 1, 2), tuple(range(3, start))
+    if width == start:
+        return Columns(angles, attitude)
+    return Columns(angles, attitude, (start, start + 1, start + 2), tuple(range(start + 3, width)))
 
 
 def by_name(names: Sequence[str]) -> Columns:
@@ -104,25 +98,23 @@ def _by_name(header: ColumnNames) -> Columns:
         faults.append("both a matrix and a quaternion are named; leave one out")
     if faults:
         raise SampleError(faults)
-    parts = [[header.find([name]) or 0 for name in part] for part in (angles, attitude)]
-    for part in (rates, omega):
-        parts.append([header.find([name]) or 0 for name in part] if has_velocity else [])
-    factors = [*_factors(header, parts[0], ""), *[1.0] * len(parts[1])]
+    of_motion = (rates, omega) if has_velocity else ((), ())
+    a, b, c, d = parts = [
+        tuple(header.find([name]) or 0 for name in part) for part in (angles, attitude, *of_motion)
+    ]
+    used = list(chain.from_iterable(parts))
+    factors = [*_factors(header, parts[0], ""), *[1.0] * len(attitude)]
     factors += [factor for part in parts[2:] for factor in _factors(header, part, "/s")]
-    used = [column for part in parts for column in part]
+    changed = [header.names[k] for k, factor in zip(used, factors, strict=True) if factor != 1]
     return Columns(
-        angles=tuple(parts[0]),
-        attitude=tuple(parts[1]),
-        rates=tuple(parts[2]),
-        omega=tuple(parts[3]),
+        angles=a,
+        attitude=b,
+        rates=c,
+        omega=d,
         names=angles,
         scalar_last=_scalar_last(attitude),
-        factors=tuple(factors) if any(factor != 1 for factor in factors) else (),
-        converted=tuple(
-            header.names[column]
-            for column, factor in zip(used, factors, strict=True)
-            if factor != 1
-        ),
+        factors=tuple(factors) if changed else (),
+        converted=tuple(changed),
     )
 
 

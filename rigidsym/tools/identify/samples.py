@@ -118,19 +118,13 @@ def check(
             (row, f"{name}: a number that is missing or not finite") for row in block.rows[~good]
         ]
     rest = block.at(finite)
-    turns = _turns(rest, slack)
+    turns = rest.defects() <= slack
+    if block.is_matrix:
+        turns &= np.linalg.det(rest.matrices) > 0
     wrong = np.flatnonzero(~turns).tolist()
     faults += [(int(rest.rows[k]), _what_is_wrong(rest, k)) for k in wrong]
     said = [f"{place(row)}: {fault}" for row, fault in sorted(faults)[:MOST_SHOWN]]
     return rest.at(turns), said, len(faults)
-
-
-def _turns(block: SampleBlock, slack: float) -> NDArray[np.bool_]:
-    """Whether each matrix or quaternion is a rotation."""
-    good = block.defects() <= slack
-    if block.is_matrix:
-        good &= np.linalg.det(block.matrices) > 0
-    return np.asarray(good)
 
 
 def _what_is_wrong(block: SampleBlock, k: int) -> str:

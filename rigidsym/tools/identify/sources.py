@@ -20,13 +20,9 @@ from rigidsym.tools.identify.samples import SampleBlock, SampleError
 
 BLOCK = 16384  # rows that are in memory at once
 SPREAD = 64  # rows that are looked at first
-_SHAPES = {
-    "angles": ((3,),),
-    "matrix": ((3, 3), (9,)),
-    "quaternion": ((4,),),
-    "rates": ((3,),),
-    "omega": ((3,),),
-}
+_THREE = ((3,),)
+_SHAPES: dict[str, tuple[tuple[int, ...], ...]] = {"angles": _THREE, "matrix": ((3, 3), (9,))}
+_SHAPES |= {"quaternion": ((4,),), "rates": _THREE, "omega": _THREE}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -63,14 +59,14 @@ class SampleSource:
         if columns.factors:
             table = table * np.array(columns.factors)
         at = np.cumsum([3, len(columns.attitude), len(columns.rates)])
-        angles, attitude, rates, omega = np.split(table, at, axis=1)
-        has_velocity = bool(columns.rates)
+        angles, attitude, *velocity = np.split(table, at, axis=1)
+        rates, omega = velocity if columns.rates else (None, None)
         return SampleBlock(
             rows=chunk.rows,
             angles=angles,
             attitude=attitude,
-            rates=rates if has_velocity else None,
-            omega=omega if has_velocity else None,
+            rates=rates,
+            omega=omega,
             done=chunk.share,
         )
 
@@ -112,15 +108,12 @@ def from_arrays(
         faults.append(f"every part needs one row a sample, got {said}")
     if len(names) != 3 or len(set(names)) != 3:
         faults.append(f"expected three different names of angles, got {', '.join(names)}")
-    if not faults and not min(counts.values()):
-        faults.append("no samples")
-    if faults:
-        raise SampleError(faults)
+    if faults or not min(counts.values()):
+        raise SampleError(faults or ["no samples"])
     width = 13 if "quaternion" in arrays else 18
-    columns = by_width(width if "omega" in arrays else width - 6)
+    columns = replace(by_width(width - 6 * ("omega" not in arrays)), names=tuple(names))
     order = [arrays[name] for name in _SHAPES if name in arrays]
-    named = replace(columns, names=tuple(names))
-    return SampleSource(reader=ArrayReader(*order), columns=named)
+    return SampleSource(reader=ArrayReader(*order), columns=columns)
 
 
 def _shaped(name: str, value: ArrayLike) -> tuple[NDArray[Any], list[str]]:
