@@ -17,7 +17,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Line, Piece, break_lines
 from rigidsym.formula.scalars import formula_of, matrix_of
 from rigidsym.formula.sheet_pen import Aligned, SheetPen
-from rigidsym.formula.tree import Formula, Matrix, equal
+from rigidsym.formula.tree import EQUALS, Formula, Matrix, equal
 from rigidsym.formula.widths import EQUAL, QUAD
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
@@ -59,9 +59,9 @@ class Rows:
 
     def written(self, pen: SheetPen) -> str:
         if self.are_aligned:
-            return pen.aligned(self.lines, is_high=self.is_high)
+            return pen.aligned(self.lines, self.is_high)
         bodies = [pen.continued(line.body, line.indent) for line in self.lines]
-        return pen.gathered(bodies, is_high=self.is_high)
+        return pen.gathered(bodies, self.is_high)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +115,7 @@ def pack(equations: Sequence[Equation], letters: Letters, width: float, pen: She
         else:
             lines.append(shown.text)
             room = width - shown.width
-    return lines[0] if len(lines) == 1 else pen.gathered(lines, is_high=True)
+    return lines[0] if len(lines) == 1 else pen.gathered(lines, True)
 
 
 def broken(formula: Formula, width: float, pen: SheetPen) -> list[Line]:
@@ -174,7 +174,7 @@ class _Setter:
             first, above, last = map(pen.write, (sides[0], equal(*sides[1:]), matrix))
             lines = (Aligned(first.text, above.text, "="), Aligned("", last.text, "="))
             needed = first.width + EQUAL + max(above.width, last.width)
-            yield Display(pen.aligned(lines, is_high=True), needed)
+            yield Display(pen.aligned(lines, True), needed)
 
     def _definitions(
         self, names: Sequence[Formula], values: Sequence[Formula], width: float
@@ -201,7 +201,7 @@ class _Setter:
     def _headed(self, name: Formula, body: str) -> str:
         """The first line of a definition, without a place to align it."""
         head = self.pen.write(name).text
-        return f"{head} {self.pen.sign('=', is_binary=True).text.strip()} {body}"
+        return f"{head} {self.pen.sign(EQUALS, is_binary=True).text.strip()} {body}"
 
     def _listing(
         self, names: Sequence[Formula], entries: Sequence[Formula], width: float

@@ -91,7 +91,7 @@ class LatexPen(SheetPen):
     def spelt_fraction(self, above: str, below: str) -> str:
         return rf"\frac{{{above}}}{{{below}}}"
 
-    def spelt_bracket(self, bracket: str, size: Size, *, is_open: bool) -> str:
+    def spelt_bracket(self, bracket: str, size: Size, is_open: bool) -> str:
         return _LEFT[size][not is_open] + bracket
 
     def spelt_root(self, inside: str) -> str:
@@ -120,18 +120,18 @@ class LatexPen(SheetPen):
     def continued(self, text: str, indent: int) -> str:
         return r"\quad" * indent + f" {{}}{text}" if indent else text
 
-    def aligned(self, lines: Sequence[Aligned], *, is_high: bool) -> str:
-        return _environment("aligned", self.joined(map(self.line, lines), is_high=is_high))
+    def aligned(self, lines: Sequence[Aligned], is_high: bool) -> str:
+        return _environment("aligned", self.joined(map(self.line, lines), is_high))
 
     def line(self, line: Aligned) -> str:
         """Head, sign and body; a line that goes on is indented."""
         sign = f"{line.sign} " if line.sign else ""
         return f"{line.head} &{sign}{self.continued(line.body, line.indent)}".strip()
 
-    def gathered(self, lines: Sequence[str], *, is_high: bool) -> str:
-        return _environment("gathered", self.joined(lines, is_high=is_high))
+    def gathered(self, lines: Sequence[str], is_high: bool) -> str:
+        return _environment("gathered", self.joined(lines, is_high))
 
-    def joined(self, lines: Sequence[str] | map[str], *, is_high: bool) -> str:
+    def joined(self, lines: Sequence[str] | map[str], is_high: bool) -> str:
         return self.row_end.format(7 if is_high else 2).join(lines)
 
 

@@ -80,7 +80,7 @@ class MathmlPen(SheetPen):
     def spelt_fraction(self, above: str, below: str) -> str:
         return f"<mfrac>{_one(above)}{_one(below)}</mfrac>"
 
-    def spelt_bracket(self, bracket: str, size: Size, *, is_open: bool) -> str:
+    def spelt_bracket(self, bracket: str, size: Size, is_open: bool) -> str:
         kind = _SIZES[size]
         if bracket == "|":
             kind += ' lspace="0" rspace="0"'
@@ -118,7 +118,7 @@ class MathmlPen(SheetPen):
     def continued(self, text: str, indent: int) -> str:
         return _QUAD * indent + text
 
-    def aligned(self, lines: Sequence[Aligned], *, is_high: bool) -> str:  # noqa: ARG002
+    def aligned(self, lines: Sequence[Aligned], is_high: bool) -> str:  # noqa: ARG002
         rows = (
             f'<mtr><mtd class="end">{line.head}</mtd><mtd class="start">'
             f"{self.spelt_sign(line.sign, True) if line.sign else ''}"
@@ -127,7 +127,7 @@ class MathmlPen(SheetPen):
         )
         return f'<mtable displaystyle="true">{"".join(rows)}</mtable>'
 
-    def gathered(self, lines: Sequence[str], *, is_high: bool) -> str:  # noqa: ARG002
+    def gathered(self, lines: Sequence[str], is_high: bool) -> str:  # noqa: ARG002
         rows = "".join(_table_row([line]) for line in lines)
         return f'<mtable displaystyle="true">{rows}</mtable>'
 

@@ -16,18 +16,11 @@ from typing import ClassVar, Self
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.tree import (
     Apply,
-    Big,
-    Bracket,
     Differential,
     Formula,
-    Fraction,
-    FunctionCall,
     Gap,
-    Indexed,
-    Matrix,
     Numeral,
     Power,
-    Radical,
     Rate,
     Row,
     Sign,
@@ -72,6 +65,9 @@ class Segment:
     level: int = 0  # in how many brackets the sign stands that it starts with
 
 
+_EMPTY = Segment("", 0.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Piece:
     """Part of a formula that has been written."""
@@ -89,11 +85,27 @@ class Piece:
         """The same, which nothing can break."""
         return replace(self, chunks=(Segment(self.text, self.width),))
 
+    def deeper(self, level: int) -> Piece:
+        """The same, so many brackets deeper."""
+        first, *others = self.chunks
+        chunks = (first, *(replace(chunk, level=chunk.level + level) for chunk in others))
+        return replace(self, chunks=chunks)
+
+
+def atom(
+    text: str, width: float, binding: Binding = Binding.NAME, height: Height = Height.FLAT
+) -> Piece:
+    """A piece without a place to break."""
+    return Piece((Segment(text, width),), width, binding, height)
+
 
 class Pen:
-    """Writes formulas in one language; a subclass spells, this class walks."""
+    """Writes formulas in one language; a subclass has a method named after each kind of node."""
 
     blank: ClassVar[float] = 0.0  # width of the blank between two chunks
+    sign: Callable[..., Piece]  # of a Sign; with is_binary where it stands between two parts
+    between: Callable[[Formula, Formula], Piece]  # the space between two factors
+    around: Callable[..., Piece]  # a piece in brackets of a kind
 
     def __init__(
         self, notation: Notation = DEFAULT, *, loose: bool = False, short: bool = False
@@ -112,72 +124,39 @@ class Pen:
         return type(self)(self.notation, loose=loose or self.loose, short=short or self.short)
 
     def node(self, formula: Formula) -> Piece:
-        """One node, whose notation is settled."""
-        match formula:
-            case Symbol():
-                return self.symbol(formula)
-            case Row(parts):
-                return self.row(parts)
-            case Numeral(digits):
-                return self.number(digits)
-            case FunctionCall(function, argument, exponent):
-                return self.call(function, self.node(argument), exponent, argument)
-            case Power(base, exponent):
-                return self.power(base, exponent)
-            case Fraction(above, below):
-                return self.fraction(self.node(above), self.node(below))
-            case Bracket(inside, kind):
-                return self.bracket(self.node(inside), kind)
-            case Rate():
-                return self.rate(formula)
-            case Radical(inside):
-                return self.root(self.node(inside))
-            case Apply(head, inside):
-                applied = self.bracket(self.node(inside), "()")
-                return self.glued((self.node(head), applied), Binding.BRACKET)
-            case Indexed(base, index):
-                return self.indexed(self.node(base), self.indices(index))
-            case Matrix(rows):
-                return self.matrix([[self.node(entry) for entry in line] for line in rows])
-            case Big(sign, below, above):
-                bounds = (self.node(bound) if bound else None for bound in (below, above))
-                return self.big(sign, *bounds)
-            case Words(words):
-                return self.words(words)
-            case Differential(letter):
-                return self.differential(letter)
-            case Sign(character):
-                return self.sign(character, is_binary=False)
-            case Gap():
-                return self.gap()
-        raise TypeError(f"no pen for {type(formula).__name__}")
+        """One node, whose notation is settled; raises TypeError for a kind without a method."""
+        kind = type(formula).__name__
+        method = getattr(self, kind.lower(), None)
+        if method is None:
+            raise TypeError(f"no pen for {kind}")
+        return method(formula)
 
-    def row(self, parts: Sequence[Formula], *, is_tight: bool = False) -> Piece:
+    def row(self, node: Row, *, is_tight: bool = False) -> Piece:
         """Factors, and signs at which a line may end; `is_tight` in an index."""
         pieces: list[Piece] = []
         before: Formula | None = None
-        for place, part in enumerate(parts):
+        for place, part in enumerate(node.parts):
             if isinstance(part, Sign):
                 is_binary = before is not None and not isinstance(before, Sign)
-                sign = self.sign(part.character, is_binary=is_binary and not is_tight)
+                sign = self.sign(part, is_binary=is_binary and not is_tight)
                 if is_binary and part.character in _BREAKS:
-                    sign = replace(sign, chunks=(Segment("", 0.0), *sign.chunks))
+                    sign = replace(sign, chunks=(_EMPTY, *sign.chunks))
                 pieces.append(sign)
             else:
                 if before is not None and not isinstance(before, Sign | Gap) and not is_tight:
                     pieces.append(self.between(before, part))
-                is_alone = _is_alone(parts, place)
+                is_alone = _is_alone(node.parts, place)
                 pieces.append(self.node(part) if is_alone else self.factor(part))
             before = part
-        return self.glued(pieces, _binding(parts))
+        return self.glued(pieces, _binding(node.parts))
 
     def indices(self, index: Formula) -> Piece:
         """An index, whose parts stand close together."""
-        return self.row(index.parts if isinstance(index, Row) else (index,), is_tight=True)
+        return self.row(index if isinstance(index, Row) else Row((index,)), is_tight=True)
 
     def glued(self, pieces: Iterable[Piece], binding: Binding = Binding.CALL) -> Piece:
         """Pieces side by side, which break where each of them does."""
-        chunks = [Segment("", 0.0)]
+        chunks = [_EMPTY]
         height = Height.FLAT
         for piece in pieces:
             first, *others = piece.chunks
@@ -185,94 +164,27 @@ class Pen:
             chunks[-1] = Segment(last.text + first.text, last.width + first.width, last.level)
             chunks += others
             height = max(height, piece.height)
-        return self.whole(chunks, binding, height)
-
-    def whole(
-        self, chunks: Sequence[Segment], binding: Binding, height: Height = Height.FLAT
-    ) -> Piece:
-        width = sum(chunk.width for chunk in chunks) + self.blank * (len(chunks) - 1)
-        return Piece(tuple(chunks), width, binding, height)
-
-    def atom(
-        self,
-        text: str,
-        width: float,
-        binding: Binding = Binding.NAME,
-        height: Height = Height.FLAT,
-    ) -> Piece:
-        return Piece((Segment(text, width),), width, binding, height)
+        return Piece(tuple(chunks), _width(chunks, self.blank), binding, height)
 
     def within(self, opening: Piece, inside: Piece, closing: Piece, level: int = 1) -> Piece:
         """A piece in brackets, whose signs stand deeper by `level`."""
-        return self.glued((opening, self.deeper(inside, level), closing), Binding.BRACKET)
-
-    def deeper(self, piece: Piece, level: int) -> Piece:
-        """The same, so many brackets deeper."""
-        first, *others = piece.chunks
-        chunks = (first, *(replace(chunk, level=chunk.level + level) for chunk in others))
-        return replace(piece, chunks=chunks)
+        return self.glued((opening, inside.deeper(level), closing), Binding.BRACKET)
 
     def factor(self, part: Formula) -> Piece:
         """One of several factors."""
         return self.node(part)
 
-    def rate(self, rate: Rate) -> Piece:
-        """The quotient of differentials; the whole of a bracket stands behind it."""
-        raise NotImplementedError
+    def apply(self, node: Apply) -> Piece:
+        applied = self.around(self.node(node.inside), "()")
+        return self.glued((self.node(node.head), applied), Binding.BRACKET)
 
-    def differentials(self, rate: Rate) -> tuple[Formula, Formula]:
+    def differentials(self, rate: Rate) -> tuple[Piece, Piece]:
         """What stands above and below the line: d²x and dt²."""
         d, time = Differential(), Symbol("t")
         if rate.order == 1:
-            return row(d, rate.of), row(d, time)
+            return self.node(row(d, rate.of)), self.node(row(d, time))
         order = Numeral(str(rate.order))
-        return row(Power(d, order), rate.of), row(d, Power(time, order))
-
-    def symbol(self, symbol: Symbol) -> Piece:
-        raise NotImplementedError
-
-    def indexed(self, base: Piece, index: Piece) -> Piece:
-        raise NotImplementedError
-
-    def number(self, digits: str) -> Piece:
-        raise NotImplementedError
-
-    def sign(self, character: str, *, is_binary: bool) -> Piece:
-        raise NotImplementedError
-
-    def between(self, before: Formula, after: Formula) -> Piece:
-        """The space between two factors."""
-        raise NotImplementedError
-
-    def call(self, function: str, argument: Piece, exponent: int, given: Formula) -> Piece:
-        raise NotImplementedError
-
-    def power(self, base: Formula, exponent: Formula) -> Piece:
-        raise NotImplementedError
-
-    def fraction(self, above: Piece, below: Piece) -> Piece:
-        raise NotImplementedError
-
-    def bracket(self, inside: Piece, kind: str) -> Piece:
-        raise NotImplementedError
-
-    def root(self, inside: Piece) -> Piece:
-        raise NotImplementedError
-
-    def matrix(self, rows: Sequence[Sequence[Piece]]) -> Piece:
-        raise NotImplementedError
-
-    def big(self, sign: str, below: Piece | None, above: Piece | None) -> Piece:
-        raise NotImplementedError
-
-    def words(self, words: str) -> Piece:
-        raise NotImplementedError
-
-    def differential(self, letter: str) -> Piece:
-        raise NotImplementedError
-
-    def gap(self) -> Piece:
-        raise NotImplementedError
+        return self.node(row(Power(d, order), rate.of)), self.node(row(d, Power(time, order)))
 
 
 @lru_cache(maxsize=16384)
@@ -333,15 +245,14 @@ def _lines(
         return [chunks]
     level = min(chunk.level for chunk in chunks[1:])
     cuts = [0, *(k for k, chunk in enumerate(chunks) if k and chunk.level == level), len(chunks)]
-    lines: list[list[Segment]] = []
+    lines: list[Sequence[Segment]] = []
     for start, end in pairwise(cuts):
-        part = list(chunks[start:end])
+        part = chunks[start:end]
         if lines and _width([*lines[-1], *part], blank) <= width:
-            lines[-1] += part
+            lines[-1] = [*lines[-1], *part]
         elif _width(part, blank) <= width:
             lines.append(part)
         else:
             # only a term that is too wide for a line of its own is broken inside its brackets
-            room = width - indent * (level % DIVISOR)
-            lines += map(list, _lines(part, room, indent, blank))
-    return lines  # type: ignore[return-value]
+            lines += _lines(part, width - indent * (level % DIVISOR), indent, blank)
+    return lines

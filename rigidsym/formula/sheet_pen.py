@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from rigidsym.formula import widths
-from rigidsym.formula.pen import Binding, Height, Pen, Piece
+from rigidsym.formula.pen import Binding, Height, Pen, Piece, atom
 from rigidsym.formula.tree import (
+    Big,
     Bracket,
     Differential,
     Formula,
+    Fraction,
     FunctionCall,
+    Gap,
+    Indexed,
+    Matrix,
     Numeral,
     Power,
+    Radical,
     Rate,
+    Sign,
     Symbol,
     Words,
     is_differential,
@@ -38,81 +44,110 @@ class Aligned:
 
 
 class SheetPen(Pen):
-    """Subclasses spell; widths are those of the note's font in ems."""
+    """Subclasses spell, from the texts of the parts; widths are those of the note's font in ems."""
 
-    def symbol(self, symbol: Symbol) -> Piece:
+    wide_gap: str
+    spelt_symbol: Callable[[Symbol, str | None], str]  # with its index
+    spelt_index: Callable[[str, str], str]
+    spelt_number: Callable[[str], str]
+    spelt_sign: Callable[[str, bool], str]  # whether it is binary
+    spelt_gap: Callable[[Formula, Formula, bool], str]  # between two factors, whether it is thin
+    spelt_function: Callable[[str, int, Piece], str]  # with its exponent, before the argument
+    spelt_power: Callable[[Formula, str, str], str]  # base, its text, exponent
+    spelt_fraction: Callable[[str, str], str]
+    spelt_bracket: Callable[[str, Size, bool], str]  # whether it opens
+    spelt_root: Callable[[str], str]
+    spelt_matrix: Callable[[Sequence[Sequence[Piece]]], str]
+    spelt_big: Callable[[str, str, str], str]  # sign, below, above
+    spelt_words: Callable[[str], str]
+    spelt_differential: Callable[[str], str]
+    boxed: Callable[[str], str]  # a result that a reader looks up
+    continued: Callable[[str, int], str]  # a line that goes on, so many quads to the right
+    # lines below one another, aligned at their signs or each in the middle; whether they are high
+    aligned: Callable[[Sequence[Aligned], bool], str]
+    gathered: Callable[[Sequence[str], bool], str]
+
+    def symbol(self, node: Symbol) -> Piece:
         index = None
-        width = widths.letter_width(symbol)
-        if symbol.prime:
-            width += widths.PRIME if symbol.prime == "′" else widths.SCRIPT
-        if symbol.index is not None:
-            written = self.indices(symbol.index)
+        width = widths.letter_width(node)
+        if node.prime:
+            width += widths.PRIME if node.prime == "′" else widths.SCRIPT
+        if node.index is not None:
+            written = self.indices(node.index)
             index = written.text
             width += widths.SCRIPT * written.width
-        return self.atom(self.spelt_symbol(symbol, index), width)
+        return atom(self.spelt_symbol(node, index), width)
 
-    def indexed(self, base: Piece, index: Piece) -> Piece:
+    def indexed(self, node: Indexed) -> Piece:
+        base, index = self.node(node.base), self.indices(node.index)
         width = base.width + widths.SCRIPT * index.width
-        return self.atom(self.spelt_index(base.text, index.text), width, height=base.height)
+        return atom(self.spelt_index(base.text, index.text), width, height=base.height)
 
-    def number(self, digits: str) -> Piece:
-        return self.atom(self.spelt_number(digits), widths.DIGIT * len(digits), Binding.NUMBER)
+    def numeral(self, node: Numeral) -> Piece:
+        width = widths.DIGIT * len(node.digits)
+        return atom(self.spelt_number(node.digits), width, Binding.NUMBER)
 
-    def sign(self, character: str, *, is_binary: bool) -> Piece:
-        return self.atom(self.spelt_sign(character, is_binary), widths.sign_width(character))
+    def sign(self, node: Sign, *, is_binary: bool = False) -> Piece:
+        text = self.spelt_sign(node.character, is_binary)
+        return atom(text, widths.sign_width(node.character))
 
     def between(self, before: Formula, after: Formula) -> Piece:
         is_thin = _is_thin(before, after) or self._is_short(after)
-        return self.atom(self.spelt_gap(before, after, is_thin), widths.THIN if is_thin else 0.0)
+        return atom(self.spelt_gap(before, after, is_thin), widths.THIN if is_thin else 0.0)
 
-    def call(self, function: str, argument: Piece, exponent: int, given: Formula) -> Piece:
-        if self._is_short(FunctionCall(function, given)):
-            letter = Symbol(function[0], index=given)
-            return self.node(letter if exponent == 1 else Power(letter, Numeral(str(exponent))))
-        width = widths.function_width(function)
-        if exponent != 1:
+    def functioncall(self, node: FunctionCall) -> Piece:
+        if self._is_short(node):
+            letter = Symbol(node.function[0], index=node.argument)
+            power = Power(letter, Numeral(str(node.exponent)))
+            return self.node(letter if node.exponent == 1 else power)
+        width = widths.function_width(node.function)
+        if node.exponent != 1:
             width += widths.SCRIPT * widths.DIGIT
-        head = self.spelt_function(function, exponent, argument)
-        return self.glued((self.atom(head, width), argument))
+        argument = self.node(node.argument)
+        head = self.spelt_function(node.function, node.exponent, argument)
+        return self.glued((atom(head, width), argument))
 
     def _is_short(self, part: Formula) -> bool:
         """Whether a function is abbreviated to a letter, and so stands as one among factors."""
         return self.short and isinstance(part, FunctionCall) and part.function in ("sin", "cos")
 
-    def power(self, base: Formula, exponent: Formula) -> Piece:
-        raised = self.node(exponent)
+    def power(self, node: Power) -> Piece:
+        base, raised = node.base, self.node(node.exponent)
         if isinstance(base, Bracket):
             within = self.node(base.inside)
             if self.size_around(within) != "stretched":
-                return self.bracket(within, base.kind, raised)
+                return self.around(within, base.kind, raised)
         inside = self.node(base)
         text = self.spelt_power(base, inside.text, raised.text)
         width = inside.width + widths.SCRIPT * raised.width
-        return self.atom(text, width, Binding.POWER, inside.height)
+        return atom(text, width, Binding.POWER, inside.height)
 
-    def fraction(self, above: Piece, below: Piece) -> Piece:
+    def fraction(self, node: Fraction) -> Piece:
+        above, below = self.node(node.above), self.node(node.below)
+        return self._quotient(above, below, max(above.height, below.height, Height.TALL))
+
+    def rate(self, node: Rate) -> Piece:
+        """The quotient of differentials; the whole of a bracket stands behind it."""
+        if isinstance(node.of, Bracket):
+            return self.glued((self.rate(Rate(row(), node.order)), self.node(node.of)))
+        return self._quotient(*self.differentials(node), Height.RATE)
+
+    def _quotient(self, above: Piece, below: Piece, height: Height) -> Piece:
         width = max(above.width, below.width) + widths.FRACTION
-        height = max(above.height, below.height, Height.TALL)
-        return self.atom(self.spelt_fraction(above.text, below.text), width, height=height)
+        return atom(self.spelt_fraction(above.text, below.text), width, height=height)
 
-    def rate(self, rate: Rate) -> Piece:
-        if isinstance(rate.of, Bracket):
-            quotient = Rate(row(), rate.order)
-            return self.glued((self.rate(quotient), self.node(rate.of)))
-        above, below = map(self.node, self.differentials(rate))
-        width = max(above.width, below.width) + widths.FRACTION
-        height = Height.RATE
-        return self.atom(self.spelt_fraction(above.text, below.text), width, height=height)
+    def bracket(self, node: Bracket) -> Piece:
+        return self.around(self.node(node.inside), node.kind)
 
-    def bracket(self, inside: Piece, kind: str, exponent: Piece | None = None) -> Piece:
+    def around(self, inside: Piece, kind: str, exponent: Piece | None = None) -> Piece:
         size = self.size_around(inside)
         width = widths.BRACKET + widths.LARGE[size]
-        left = self.atom(self.spelt_bracket(kind[0], size, is_open=True), width)
-        end = self.spelt_bracket(kind[1], size, is_open=False)
+        left = atom(self.spelt_bracket(kind[0], size, True), width)
+        end = self.spelt_bracket(kind[1], size, False)
         if exponent is not None:  # the last line may hold nothing else of the bracket
             end = self.spelt_power(Bracket(row()), end, exponent.text)
             width += widths.SCRIPT * exponent.width
-        whole = self.within(left, inside, self.atom(end, width))
+        whole = self.within(left, inside, atom(end, width))
         return whole.solid() if size == "stretched" else whole
 
     def size_around(self, inside: Piece) -> Size:
@@ -121,90 +156,30 @@ class SheetPen(Pen):
             return "flat"
         return "large" if inside.height == Height.RATE or self.loose else "stretched"
 
-    def root(self, inside: Piece) -> Piece:
+    def radical(self, node: Radical) -> Piece:
+        inside = self.node(node.inside)
         height = Height.ROOTED if inside.height >= Height.TALL else inside.height
-        return self.atom(self.spelt_root(inside.text), inside.width + widths.ROOT, height=height)
+        return atom(self.spelt_root(inside.text), inside.width + widths.ROOT, height=height)
 
-    def matrix(self, rows: Sequence[Sequence[Piece]]) -> Piece:
+    def matrix(self, node: Matrix) -> Piece:
+        rows = [[self.node(entry) for entry in line] for line in node.rows]
         columns = [max(entry.width for entry in column) for column in zip(*rows, strict=True)]
         gaps = widths.COLUMN_GAP * (len(columns) - 1)
         width = sum(columns) + gaps + widths.TALL_BRACKETS
-        return self.atom(self.spelt_matrix(rows), width, Binding.BRACKET, Height.TALL)
+        return atom(self.spelt_matrix(rows), width, Binding.BRACKET, Height.TALL)
 
-    def big(self, sign: str, below: Piece | None, above: Piece | None) -> Piece:
-        return self.atom(
-            self.spelt_big(sign, below.text if below else "", above.text if above else ""),
-            widths.BIG,
-        )
+    def big(self, node: Big) -> Piece:
+        below, above = (self.node(b).text if b else "" for b in (node.below, node.above))
+        return atom(self.spelt_big(node.sign, below, above), widths.BIG)
 
-    def words(self, words: str) -> Piece:
-        return self.atom(self.spelt_words(words), widths.words_width(words))
+    def words(self, node: Words) -> Piece:
+        return atom(self.spelt_words(node.words), widths.words_width(node.words))
 
-    def differential(self, letter: str) -> Piece:
-        return self.atom(self.spelt_differential(letter), 0.62)
+    def differential(self, node: Differential) -> Piece:
+        return atom(self.spelt_differential(node.letter), 0.62)
 
-    def gap(self) -> Piece:
-        return self.atom(self.wide_gap, 2 * widths.QUAD)
-
-    wide_gap: str
-
-    @abstractmethod
-    def spelt_symbol(self, symbol: Symbol, index: str | None) -> str: ...
-
-    @abstractmethod
-    def spelt_index(self, base: str, index: str) -> str: ...
-
-    @abstractmethod
-    def spelt_number(self, digits: str) -> str: ...
-
-    @abstractmethod
-    def spelt_sign(self, character: str, is_binary: bool) -> str: ...
-
-    @abstractmethod
-    def spelt_gap(self, before: Formula, after: Formula, is_thin: bool) -> str: ...
-
-    @abstractmethod
-    def spelt_function(self, function: str, exponent: int, argument: Piece) -> str: ...
-
-    @abstractmethod
-    def spelt_power(self, base: Formula, inside: str, exponent: str) -> str: ...
-
-    @abstractmethod
-    def spelt_fraction(self, above: str, below: str) -> str: ...
-
-    @abstractmethod
-    def spelt_bracket(self, bracket: str, size: Size, *, is_open: bool) -> str: ...
-
-    @abstractmethod
-    def spelt_root(self, inside: str) -> str: ...
-
-    @abstractmethod
-    def spelt_matrix(self, rows: Sequence[Sequence[Piece]]) -> str: ...
-
-    @abstractmethod
-    def spelt_big(self, sign: str, below: str, above: str) -> str: ...
-
-    @abstractmethod
-    def spelt_words(self, words: str) -> str: ...
-
-    @abstractmethod
-    def spelt_differential(self, letter: str) -> str: ...
-
-    @abstractmethod
-    def boxed(self, inside: str) -> str:
-        """A result that a reader looks up."""
-
-    @abstractmethod
-    def continued(self, text: str, indent: int) -> str:
-        """A line that goes on, so many quads to the right."""
-
-    @abstractmethod
-    def aligned(self, lines: Sequence[Aligned], *, is_high: bool) -> str:
-        """Lines below one another, aligned at their signs."""
-
-    @abstractmethod
-    def gathered(self, lines: Sequence[str], *, is_high: bool) -> str:
-        """Lines below one another, each in the middle."""
+    def gap(self, _: Gap) -> Piece:
+        return atom(self.wide_gap, 2 * widths.QUAD)
 
 
 def _is_thin(before: Formula, after: Formula) -> bool:

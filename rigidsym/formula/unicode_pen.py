@@ -3,28 +3,36 @@
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Sequence
+from functools import cache
 from typing import ClassVar
 
-from rigidsym.formula.pen import DIVISOR, Binding, Pen, Piece
+from rigidsym.formula.pen import DIVISOR, Binding, Pen, Piece, atom
 from rigidsym.formula.tree import (
     Apply,
     Big,
     Bracket,
+    Differential,
     Formula,
     Fraction,
     FunctionCall,
+    Gap,
+    Indexed,
+    Matrix,
     Numeral,
     Power,
+    Radical,
     Rate,
+    Sign,
     Symbol,
     Words,
     is_differential,
 )
 
 _DOTS = ("", "\u0307", "\u0308")
-_FRACTIONS = {("1", "2"): "½", ("1", "3"): "⅓", ("2", "3"): "⅔", ("1", "4"): "¼", ("3", "4"): "¾"}
-_FRACTIONS[("1", "8")] = "⅛"
+_FRACTIONS: dict[Formula, str] = {
+    Fraction(Numeral(above), Numeral(below)): short
+    for above, below, short in ("12½", "13⅓", "23⅔", "14¼", "34¾", "18⅛")
+}
 _ABOVE = str.maketrans("0123456789-−+TB", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻⁺ᵀᴮ")
 _BELOW = str.maketrans(
     "0123456789+-−=()aeoruhklmnpstijβγρφχ", "₀₁₂₃₄₅₆₇₈₉₊₋₋₌₍₎ₐₑₒᵣᵤₕₖₗₘₙₚₛₜᵢⱼᵦᵧᵨᵩᵪ"
@@ -34,9 +42,10 @@ _SPACED = "+−±=≤<∈⇔×"
 
 def columns(text: str) -> int:
     """Columns of a terminal: accents above a letter take none, wide characters two."""
-    return sum(map(_character_columns, text))
+    return len(text) if text.isascii() else sum(map(_character_columns, text))
 
 
+@cache
 def _character_columns(character: str) -> int:
     if unicodedata.combining(character):
         return 0
@@ -46,105 +55,111 @@ def _character_columns(character: str) -> int:
 class UnicodePen(Pen):
     blank: ClassVar[float] = 1.0
 
-    def _atom(self, text: str, binding: Binding = Binding.NAME) -> Piece:
-        return self.atom(text, columns(text), binding)
-
-    def symbol(self, symbol: Symbol) -> Piece:
-        head, tail = symbol.letter[0], symbol.letter[1:]
-        arrow = "\u20d7" if symbol.face == "arrow" else ""
+    def symbol(self, node: Symbol) -> Piece:
+        head, tail = node.letter[0], node.letter[1:]
+        arrow = "\u20d7" if node.face == "arrow" else ""
         text = head + tail + arrow
-        if symbol.dots:
-            text = unicodedata.normalize("NFC", head + _DOTS[symbol.dots]) + tail + arrow
-        stem = self._atom(text + symbol.prime)
-        return stem if symbol.index is None else self.indexed(stem, self.indices(symbol.index))
+        if node.dots:
+            text = unicodedata.normalize("NFC", head + _DOTS[node.dots]) + tail + arrow
+        text += node.prime
+        return _atom(text if node.index is None else self._with_index(text, node.index))
 
-    def indexed(self, base: Piece, index: Piece) -> Piece:
+    def indexed(self, node: Indexed) -> Piece:
+        return _atom(self._with_index(self.node(node.base).text, node.index))
+
+    def _with_index(self, base: str, index: Formula) -> str:
         """An index in small figures, or behind a low line."""
-        close = index.text.replace(" ", "")
+        written = self.indices(index).text
+        close = written.replace(" ", "")
         is_small = all(ord(c) in _BELOW for c in close)
-        below = close.translate(_BELOW) if is_small else f"_{index.text}"
-        return self._atom(base.text + below)
+        return base + (close.translate(_BELOW) if is_small else f"_{written}")
 
-    def number(self, digits: str) -> Piece:
-        return self._atom(digits, Binding.NUMBER)
+    def numeral(self, node: Numeral) -> Piece:
+        return _atom(node.digits, Binding.NUMBER)
 
-    def sign(self, character: str, *, is_binary: bool) -> Piece:
+    def sign(self, node: Sign, *, is_binary: bool = False) -> Piece:
+        character = node.character
         if character in ",;":
-            return self._atom(f"{character} " if is_binary else character)
+            return _atom(f"{character} " if is_binary else character)
         if character not in _SPACED or not is_binary:
-            return self._atom(character)
+            return _atom(character)
         starts_a_line = character in "+−±=≤<⇔"
-        return self._atom(f"{character} " if starts_a_line else f" {character} ")
+        return _atom(f"{character} " if starts_a_line else f" {character} ")
 
     def between(self, before: Formula, after: Formula) -> Piece:
-        return self._atom(_space(before, after))
+        return _atom(_space(before, after))
 
     def factor(self, part: Formula) -> Piece:
         """A quotient beside another factor is ½, or stands in brackets."""
         if isinstance(part, Fraction):
-            if isinstance(part.above, Numeral) and isinstance(part.below, Numeral):
-                short = _FRACTIONS.get((part.above.digits, part.below.digits))
-                if short:
-                    return self._atom(short, Binding.NUMBER)
-            return self.bracket(self.node(part), "()")
+            short = _FRACTIONS.get(part)
+            return _atom(short, Binding.NUMBER) if short else self.around(self.node(part))
         return self.node(part)
 
-    def call(self, function: str, argument: Piece, exponent: int, _: Formula) -> Piece:
-        head = function + (str(exponent).translate(_ABOVE) if exponent != 1 else "")
+    def functioncall(self, node: FunctionCall) -> Piece:
+        head = node.function + (str(node.exponent).translate(_ABOVE) if node.exponent != 1 else "")
+        argument = self.node(node.argument)
         if argument.binding == Binding.QUOTIENT:
-            argument = self.bracket(argument, "()")
+            argument = self.around(argument)
         gap = "" if argument.binding == Binding.BRACKET else " "
-        return self.glued((self._atom(head + gap), argument))
+        return self.glued((_atom(head + gap), argument))
 
-    def power(self, base: Formula, exponent: Formula) -> Piece:
-        written = self._at_least(Binding.NAME, self.node(base))
-        text = self.node(exponent).text
+    def power(self, node: Power) -> Piece:
+        written = self._at_least(Binding.NAME, self.node(node.base))
+        text = self.node(node.exponent).text
         if all(ord(c) in _ABOVE for c in text):
             raised = text.translate(_ABOVE)
         else:
-            is_word = isinstance(exponent, Symbol | Numeral)
+            is_word = isinstance(node.exponent, Symbol | Numeral)
             raised = f"^{text}" if is_word else f"^({text})"
-        return self.glued((written, self._atom(raised)), Binding.POWER)
+        return self.glued((written, _atom(raised)), Binding.POWER)
 
-    def fraction(self, above: Piece, below: Piece) -> Piece:
-        top = self._at_least(Binding.PRODUCT, above)
+    def fraction(self, node: Fraction) -> Piece:
+        top, below = self._at_least(Binding.PRODUCT, self.node(node.above)), self.node(node.below)
         if below.binding < Binding.POWER:
-            below = self.within(self._atom("("), below, self._atom(")"), DIVISOR)
+            below = self.within(_atom("("), below, _atom(")"), DIVISOR)
         else:  # with brackets of its own
-            below = self.deeper(below, DIVISOR - 1)
-        return self.glued((top, self._atom("/"), below), Binding.QUOTIENT)
+            below = below.deeper(DIVISOR - 1)
+        return self.glued((top, _atom("/"), below), Binding.QUOTIENT)
 
-    def rate(self, rate: Rate) -> Piece:
-        above, below = self.differentials(rate)
-        return self.glued((self.node(above), self._atom("/"), self.node(below)))
+    def rate(self, node: Rate) -> Piece:
+        above, below = self.differentials(node)
+        return self.glued((above, _atom("/"), below))
 
-    def bracket(self, inside: Piece, kind: str) -> Piece:
-        return self.within(self._atom(kind[0]), inside, self._atom(kind[1]))
+    def bracket(self, node: Bracket) -> Piece:
+        return self.around(self.node(node.inside), node.kind)
 
-    def root(self, inside: Piece) -> Piece:
+    def around(self, inside: Piece, kind: str = "()") -> Piece:
+        return self.within(_atom(kind[0]), inside, _atom(kind[1]))
+
+    def radical(self, node: Radical) -> Piece:
+        inside = self.node(node.inside)
         is_bare = inside.binding in (Binding.NAME, Binding.NUMBER)
-        shown = inside if is_bare else self.bracket(inside, "()")
-        return self.glued((self._atom("√"), shown), Binding.POWER)
+        return self.glued((_atom("√"), inside if is_bare else self.around(inside)), Binding.POWER)
 
-    def matrix(self, rows: Sequence[Sequence[Piece]]) -> Piece:
-        inside = "; ".join(", ".join(entry.text for entry in row) for row in rows)
-        return self._atom(f"({inside})", Binding.BRACKET)
+    def matrix(self, node: Matrix) -> Piece:
+        rows = (", ".join(self.node(entry).text for entry in line) for line in node.rows)
+        return _atom(f"({'; '.join(rows)})", Binding.BRACKET)
 
-    def big(self, sign: str, below: Piece | None, above: Piece | None) -> Piece:  # noqa: ARG002
-        return self._atom("Σ" if sign == "∑" else sign)
+    def big(self, node: Big) -> Piece:
+        return _atom("Σ" if node.sign == "∑" else node.sign)
 
-    def words(self, words: str) -> Piece:
-        return self._atom(words)
+    def words(self, node: Words) -> Piece:
+        return _atom(node.words)
 
-    def differential(self, letter: str) -> Piece:
-        return self._atom(letter)
+    def differential(self, node: Differential) -> Piece:
+        return _atom(node.letter)
 
-    def gap(self) -> Piece:
-        return self._atom("")
+    def gap(self, _: Gap) -> Piece:
+        return _atom("")
 
     def _at_least(self, binding: Binding, piece: Piece) -> Piece:
         """The piece, in brackets where it is held together less tightly."""
-        return piece if piece.binding >= binding else self.bracket(piece, "()")
+        return piece if piece.binding >= binding else self.around(piece)
+
+
+def _atom(text: str, binding: Binding = Binding.NAME) -> Piece:
+    return atom(text, columns(text), binding)
 
 
 def _space(before: Formula, after: Formula) -> str:
@@ -158,10 +173,7 @@ def _space(before: Formula, after: Formula) -> str:
         return "·"
     if isinstance(before, Bracket) and isinstance(after, Bracket):
         return ""
-    is_number = isinstance(before, Numeral) or (isinstance(before, Fraction) and before in _SHORT)
+    is_number = isinstance(before, Numeral) or before in _FRACTIONS
     if is_number and not isinstance(after, FunctionCall | Rate | Fraction | Big):
         return " " if isinstance(after, Symbol) and after.letter.isdigit() else ""
     return " "
-
-
-_SHORT = {Fraction(Numeral(a), Numeral(b)) for a, b in _FRACTIONS}

@@ -143,7 +143,7 @@ class _LatexPrinter:
         number = [rf"\tag{{{equation.number}}}\label{{{label}}}"] if equation.number else []
         return [
             rf"{{\freely\begin{{{environment}}}",
-            self.pen.joined(lines, is_high=rows.is_high),
+            self.pen.joined(lines, rows.is_high),
             *number,
             rf"\end{{{environment}}}}}",
         ]
