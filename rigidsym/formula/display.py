@@ -14,10 +14,11 @@ import sympy as sp
 
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.pen import Line, Piece, break_lines
+from rigidsym.formula.pen import Line, break_lines
 from rigidsym.formula.scalars import formula_of, matrix_of
 from rigidsym.formula.sheet_pen import Aligned, SheetPen
 from rigidsym.formula.tree import EQUALS, Formula, Matrix, equal
+from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.formula.widths import EQUAL, QUAD
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
@@ -60,8 +61,15 @@ class Rows:
     def written(self, pen: SheetPen) -> str:
         if self.are_aligned:
             return pen.aligned(self.lines, self.is_high)
-        bodies = [pen.continued(line.body, line.indent) for line in self.lines]
-        return pen.gathered(bodies, self.is_high)
+        return pen.gathered(self._bodies(pen), self.is_high)
+
+    def joined(self, pen: LatexPen) -> str:
+        """The same without its environment."""
+        lines = map(pen.line, self.lines) if self.are_aligned else self._bodies(pen)
+        return pen.joined(lines, self.is_high)
+
+    def _bodies(self, pen: SheetPen) -> list[str]:
+        return [pen.continued(line.body, line.indent) for line in self.lines]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +99,16 @@ def display(
         return setter.display(equation, width)
     inside = setter.display(equation, width - BOX)
     return replace(inside, text=setter.pen.boxed(inside.text), width=inside.width + BOX)
+
+
+def spoken(equation: Equation, letters: Letters) -> str:
+    """The equation on one line of Unicode; a matrix row by row."""
+    value: list[Formula] = []
+    if equation.scalar is not None:
+        value = [formula_of(equation.scalar, letters)]
+    elif equation.matrix is not None:
+        value = [Matrix(tuple(map(tuple, matrix_of(equation.matrix, letters))))]
+    return UnicodePen(letters.notation).write(equal(*equation.sides, *value)).text
 
 
 def height(equation: Equation, letters: Letters) -> float:
@@ -248,14 +266,3 @@ class _Setter:
             if widest(lines) <= room:
                 break
         return lines
-
-
-def inline_parts(piece: Piece) -> list[str]:
-    """A formula among words, cut before each sign outside all brackets."""
-    parts: list[str] = []
-    for chunk in piece.chunks:
-        if parts and chunk.level:
-            parts[-1] += f" {chunk.text}"
-        else:
-            parts.append(chunk.text)
-    return parts

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from html import escape
 
 from rigidsym.formula.pen import Height, Piece
-from rigidsym.formula.sheet_pen import Aligned, SheetPen, Size
+from rigidsym.formula.sheet_pen import Aligned, Inline, SheetPen, Size
 from rigidsym.formula.tree import Big, Formula, FunctionCall, Symbol
+from rigidsym.formula.unicode_pen import UnicodePen
 
 _THIN, _QUAD = '<mspace width=".1667em"/>', '<mspace width="1em"/>'
 _DOTS = ("", "˙", "¨")
 _PRIME = {"′": '<mo class="prime">′</mo>', "ᴮ": '<mi mathvariant="normal">B</mi>'}
 _VARIANTS = {"φ": "ϕ", "ε": "ϵ"}  # the letters that \phi and \epsilon are
 _UPRIGHT = "ΓΔΘΛΞΠΣΥΦΨΩ"  # as TeX has them
+_INLINE = 13.0  # ems of a formula between words on a phone
 _LARGE = ' minsize="1.623em" maxsize="1.623em"'
 _SIZES = {"flat": ' stretchy="false"', "large": _LARGE, "stretched": ""}
 _STYLES = {"bold": "BOLD", "arrow": "", "sans": "SANS-SERIF", "upright": "", "italic": "ITALIC"}
@@ -24,10 +26,18 @@ _STYLES = {"bold": "BOLD", "arrow": "", "sans": "SANS-SERIF", "upright": "", "it
 class MathmlPen(SheetPen):
     wide_gap = '<mspace width="2em"/>'
 
-    def element(self, formula: Formula, spoken: str) -> str:
-        """A formula among words."""
-        piece = self.write(formula)
-        return math(piece.text, spoken, is_tall=piece.height >= Height.RATE)
+    def inline(self, formulas: Iterable[Formula]) -> dict[Formula, Inline]:
+        """As elements; one too wide for a phone in parts that may go on several lines."""
+        return {formula: self._inline(formula) for formula in formulas}
+
+    def _inline(self, formula: Formula) -> Inline:
+        piece, spoken = self.write(formula), UnicodePen(self.notation).write(formula)
+        parts, texts = [piece.text], [spoken.text]
+        if piece.width > _INLINE and len(inline_parts(piece)) == len(inline_parts(spoken)):
+            parts, texts = inline_parts(piece), inline_parts(spoken)
+        is_tall = piece.height > Height.FLAT
+        written = [math(p, t, is_tall=is_tall) for p, t in zip(parts, texts, strict=True)]
+        return Inline(tuple(written), is_tall)
 
     def spelt_symbol(self, symbol: Symbol, index: str | None) -> str:
         text = _letters(symbol)
@@ -130,6 +140,17 @@ class MathmlPen(SheetPen):
     def gathered(self, lines: Sequence[str], is_high: bool) -> str:  # noqa: ARG002
         rows = "".join(_table_row([line]) for line in lines)
         return f'<mtable displaystyle="true">{rows}</mtable>'
+
+
+def inline_parts(piece: Piece) -> list[str]:
+    """A formula among words, cut before each sign outside all brackets."""
+    parts: list[str] = []
+    for chunk in piece.chunks:
+        if parts and chunk.level:
+            parts[-1] += f" {chunk.text}"
+        else:
+            parts.append(chunk.text)
+    return parts
 
 
 def math(inside: str, spoken: str, *, is_display: bool = False, is_tall: bool = False) -> str:

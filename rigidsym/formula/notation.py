@@ -95,6 +95,10 @@ class Notation:
             text = pattern.sub(partial(_named, own), text)
         return text
 
+    def named(self, span: Any) -> Any:
+        """The same for the words among the spans of a text."""
+        return self.words(span) if isinstance(span, str) else span
+
     def applied(self, formula: Formula) -> Formula:
         """The formula in this notation; twice is the same as once."""
         return formula if self.is_default else _applied(formula, self)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from rigidsym.formula import widths
 from rigidsym.formula.pen import Binding, Height, Pen, Piece, atom
@@ -43,6 +43,13 @@ class Aligned:
     height: Height = Height.FLAT
 
 
+class Inline(NamedTuple):
+    """A formula among words, in parts between which a line may end."""
+
+    parts: tuple[str, ...]
+    is_tall: bool
+
+
 class SheetPen(Pen):
     """Subclasses spell, from the texts of the parts; widths are those of the note's font in ems."""
 
@@ -66,6 +73,11 @@ class SheetPen(Pen):
     # lines below one another, aligned at their signs or each in the middle; whether they are high
     aligned: Callable[[Sequence[Aligned], bool], str]
     gathered: Callable[[Sequence[str], bool], str]
+
+    def inline(self, formulas: Iterable[Formula]) -> dict[Formula, Inline]:
+        """Each formula as it stands among words."""
+        pieces = ((formula, self.write(formula)) for formula in formulas)
+        return {formula: Inline((p.text,), p.height > Height.FLAT) for formula, p in pieces}
 
     def symbol(self, node: Symbol) -> Piece:
         index = None

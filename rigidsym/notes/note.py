@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.notation import DEFAULT, FRAMES, Notation
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document.document import Document
 from rigidsym.notes.formats import FORMATS
@@ -75,7 +75,10 @@ def note(
         notation=notation,
         conversions=conversions,
     )
-    return Note(in_style(composer.document, style))
+    document = composer.document
+    if notation.frames != FRAMES:
+        document = document.changed(lambda text: tuple(map(notation.named, text)))
+    return Note(in_style(document, style))
 
 
 def _composer_of(derivation: Derivation) -> type[Composer]:

@@ -7,6 +7,8 @@ import unicodedata
 
 def cleaned(text: str) -> str:
     """The text with a blank in place of each character that is not printed, or ends a line."""
+    if text.isprintable() and text.isascii():
+        return text
     return "".join(" " if _is_hidden(c) else c for c in unicodedata.normalize("NFC", text))
 
 

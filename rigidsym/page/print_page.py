@@ -45,6 +45,7 @@ _SHOWN = {  # what the figure can show, and whether it does at first
     "frames": ("Intermediate frames", False),
     "trace": ("Trace of the axis", True),
 }
+_TURN = "Turn {} of {}: by {} about {}"
 _NAMES = {"own": "This body"}
 _OF_TURNS = ("sum", "rings", "frames")
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
@@ -123,9 +124,9 @@ class PagePrinter(HtmlPrinter):
             return ""
         return f'<p class="copy" data-of="{escape(equation.label)}">{equation.number}</p>'
 
-    def words(self, text: Text) -> str:
+    def sentence(self, text: Text) -> str:
         """A sentence, in the notation of the document."""
-        return self._block(Paragraph(text))
+        return self.block(Paragraph(tuple(map(self.notation.named, text))))
 
 
 def _script(functions: Functions, data: object) -> str:
@@ -177,10 +178,12 @@ def _turn_words(model: RotationModel, document: Document, printer: PagePrinter) 
         axes = [Symbol("N", index=Numeral(str(k))) for k in range(1, len(model.turns) + 1)]
     angles = [turn["name"] for turn in stage_of(model, document.letters)["turns"]]
     sentences = [
-        printer.words(words("Turn {} of {}: by {} about {}", str(k), str(len(axes)), angle, axis))
+        printer.sentence(
+            words("Turn {} of {}: by {} about {}", str(k), str(len(axes)), angle, axis)
+        )
         for k, (angle, axis) in enumerate(zip(angles, axes, strict=True), start=1)
     ]
-    return [*sentences, printer.words((sum_of_turns(model, document.letters),))]
+    return [*sentences, printer.sentence((sum_of_turns(model, document.letters),))]
 
 
 def _value(step: Step, printer: PagePrinter, *, in_degrees: bool) -> dict[str, Any]:
@@ -190,7 +193,7 @@ def _value(step: Step, printer: PagePrinter, *, in_degrees: bool) -> dict[str, A
     unit = "°/s" if in_degrees and quantity.unit else unit_in_words(quantity.unit or "")
     return {
         "id": f"{quantity.name}-value",
-        "symbol": printer.formula(quantity.symbol),
+        "symbol": printer.span(quantity.symbol),
         "about": escape(printer.notation.words(quantity.about)),
         "unit": escape(unit) if quantity.unit else "",
         "rows": range(rows),
@@ -216,7 +219,7 @@ def _poles(derivation: Derivation, printer: PagePrinter) -> Iterator[dict[str, A
             for place in point.places
             if is_shown
         ]
-        yield {"places": places, "words": printer.words(singular(point, derivation))}
+        yield {"places": places, "words": printer.sentence(singular(point, derivation))}
 
 
 def _pole(functions: Functions) -> str:
@@ -230,7 +233,7 @@ def _shown(control: Control, printer: PagePrinter) -> dict[str, str]:
     unit = control.unit.replace("°", "degrees").replace("/s", " per second")
     return {
         "key": control.key,
-        "symbol": printer.formula(control.symbol),
+        "symbol": printer.span(control.symbol),
         "name": escape(f"{control.name}{', in ' if unit else ''}{unit}"),
         "unit": escape(control.unit),
         "low": f"{control.low:g}",

@@ -6,8 +6,8 @@ hold SymPy matrices, so that each printer can break and abbreviate them for its 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import chain, zip_longest
 
 from rigidsym.formula.display import Equation as Equation
@@ -65,7 +65,7 @@ def listed(items: Sequence[Text], last: str = " and ") -> Text:
     """The texts a, b, c as: a, b and c."""
     joints = [*[", "] * (len(items) - 2), last] if len(items) > 1 else []
     mixed = chain.from_iterable((*item, joint) for item, joint in zip_longest(items, joints))
-    return tuple(span for span in mixed if span)
+    return tuple(span for span in mixed if span not in (None, ""))
 
 
 def plain(text: Text) -> str:
@@ -170,12 +170,45 @@ class Document:
         """The number of an equation, by its label."""
         return next(e.number for e in self.equations if e.label == label and e.number)
 
+    @property
+    def formulas(self) -> tuple[Formula, ...]:
+        """The formulas that stand among words, and the claims, in order, each once."""
+        spans = (span for text in self._texts() for span in text)
+        claims = (claim for e in self.equations for claim in (*e.proved, *e.unproved))
+        return tuple(dict.fromkeys(s for s in chain(spans, claims) if isinstance(s, Formula)))
+
     def _texts(self) -> Iterator[Text]:
-        for section in self.sections:
-            for block in section.blocks:
-                if isinstance(block, Paragraph):
-                    yield block.text
-                elif isinstance(block, Figure):
-                    yield from (block.caption, block.description)
-                elif isinstance(block, NoteTable):
-                    yield from (cell for row in block.rows for cell in row)
+        blocks = (block for section in self.sections for block in section.blocks)
+        return chain.from_iterable(map(texts_of, blocks))
+
+    def changed(self, change: Callable[[Text], Text]) -> Document:
+        """The document with each of its texts changed."""
+        sections = (
+            replace(section, blocks=tuple(_changed(block, change) for block in section.blocks))
+            for section in self.sections
+        )
+        return replace(self, sections=tuple(sections))
+
+
+def texts_of(block: NoteBlock) -> Iterator[Text]:
+    """The texts of a block, in order."""
+    match block:
+        case Paragraph(text):
+            yield text
+        case Figure():
+            yield from (block.caption, block.description)
+        case NoteTable():
+            yield from chain(block.head, *block.rows)
+
+
+def _changed(block: NoteBlock, change: Callable[[Text], Text]) -> NoteBlock:
+    match block:
+        case Paragraph(text):
+            return Paragraph(change(text))
+        case Figure():
+            caption, description = change(block.caption), change(block.description)
+            return replace(block, caption=caption, description=description)
+        case NoteTable():
+            rows = tuple(tuple(map(change, row)) for row in block.rows)
+            return replace(block, head=tuple(map(change, block.head)), rows=rows)
+    return block

@@ -4,27 +4,22 @@ from __future__ import annotations
 
 from rigidsym.formula.display import PAGE, Rows, display, pack
 from rigidsym.formula.latex_pen import LatexPen
+from rigidsym.formula.sheet_pen import Inline
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import (
-    Cited,
-    Code,
     CodeBlock,
     Document,
     Equation,
-    EquationReference,
     EquationRow,
     Figure,
-    NoteBlock,
     NoteTable,
     Paragraph,
-    Section,
-    Span,
-    Strong,
     Text,
 )
 from rigidsym.notes.figure.tikz import tikz
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.paging import paged
+from rigidsym.notes.formats.printer import Printer
 from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
@@ -85,45 +80,36 @@ def _utf16(text: str) -> str:
     return ("\ufeff" + cleaned(text)).encode("utf-16-be", "replace").hex().upper()
 
 
-class _LatexPrinter:
-    """Blocks and spans of one document in LaTeX."""
+class _LatexPrinter(Printer):
+    pen: LatexPen
+    words = staticmethod(escape)
 
     def __init__(self, document: Document) -> None:
-        self.document = document
-        self.notation = document.letters.notation
-        self.pen = LatexPen(self.notation)
+        super().__init__(document, LatexPen(document.letters.notation))
 
-    def body(self, section: Section) -> str:
-        return "\n".join(map(self._block, section.blocks))
+    def paragraph(self, block: Paragraph) -> str:
+        # no empty line: a display that follows belongs to the paragraph
+        return "\n" + self.text(block.text)
 
-    def _block(self, block: NoteBlock) -> str:
-        match block:
-            case Paragraph():
-                # no empty line: a display that follows belongs to the paragraph
-                return "\n" + self._text(block.text)
-            case Equation():
-                return self._equation(block)
-            case EquationRow():
-                packed = pack(block.equations, self.document.letters, _LINE, self.pen)
-                return f"\\[\n{packed}\n\\]"
-            case NoteTable():
-                return "\n".join(map(self._table, paged(block)))
-            case Figure():
-                return self._figure(block)
-            case CodeBlock():
-                return f"{{\\keep\n\\begin{{verbatim}}\n{block.code}\n\\end{{verbatim}}\n}}"
+    def equationrow(self, block: EquationRow) -> str:
+        return f"\\[\n{pack(block.equations, self.document.letters, _LINE, self.pen)}\n\\]"
 
-    def _equation(self, equation: Equation) -> str:
+    def codeblock(self, block: CodeBlock) -> str:
+        return f"{{\\keep\n\\begin{{verbatim}}\n{block.code}\n\\end{{verbatim}}\n}}"
+
+    def equation(self, equation: Equation) -> str:
         width = PAGE if equation.number else _LINE
         shown = display(equation, self.document.letters, width, self.pen)
-        announced = self._text(announcement(equation, shown.done))
+        announced = self.text(announcement(equation, shown.done))
         lines = [announced] if announced else []
         if shown.rows and shown.rows.height > _TALL:
             lines += self._over_pages(equation, shown.rows)
         else:
             lines += self._at_once(equation, shown.text)
         if equation.number:
-            lines.append(rf"\remark{{{self._claims(equation)}}}{{{self._function(equation)}}}")
+            said = " ".join(f"{claim}." for claim in self.claims(equation))
+            function = self._typed(equation.function) if equation.function else ""
+            lines.append(rf"\remark{{{said}}}{{{function}}}")
         return "\n".join(lines)
 
     def _at_once(self, equation: Equation, inside: str) -> list[str]:
@@ -135,87 +121,63 @@ class _LatexPrinter:
     def _over_pages(self, equation: Equation, rows: Rows) -> list[str]:
         """Lines between which a page may end, which a box would keep together."""
         environment = "align*" if rows.are_aligned else "gather*"
-        pen, label = self.pen, self._label(equation.label)
-        lines = [
-            pen.line(line) if rows.are_aligned else pen.continued(line.body, line.indent)
-            for line in rows.lines
-        ]
+        label = self._label(equation.label)
         number = [rf"\tag{{{equation.number}}}\label{{{label}}}"] if equation.number else []
         return [
             rf"{{\freely\begin{{{environment}}}",
-            self.pen.joined(lines, rows.is_high),
+            rows.joined(self.pen),
             *number,
             rf"\end{{{environment}}}}}",
         ]
 
-    def _claims(self, equation: Equation) -> str:
-        kinds = (("Proved", equation.proved), (r"\textbf{Unproved}", equation.unproved))
-        return " ".join(
-            f"{kind}: {', '.join(map(self._display_style, claims))}."
-            for kind, claims in kinds
-            if claims
-        )
+    def claim(self, claim: Formula) -> str:
+        """A formula in a line of its own height; fractions in small type would be hard to read."""
+        (text,), is_tall = self.inline(claim)
+        return rf"$\displaystyle {text}$" if is_tall else f"${text}$"
 
-    def _function(self, equation: Equation) -> str:
-        return rf"\texttt{{{escape(equation.function)}}}" if equation.function else ""
+    def notetable(self, table: NoteTable) -> str:
+        return "\n".join(map(self._table, paged(table)))
 
     def _table(self, table: NoteTable) -> str:
         head, *rows = (
             " & ".join(map(self._cell, row)) + r" \\" for row in (table.head, *table.rows)
         )
-        return "\n".join(
-            [
-                rf"\begin{{ruled}}{{{_columns(table)}}}{{{escape(table.caption)}}}",
-                head,
-                r"\midrule",
-                *rows,
-                r"\end{ruled}",
-            ]
-        )
-
-    def _figure(self, figure: Figure) -> str:
-        number = self.document.figures.index(figure) + 1
-        words = self._text(
-            (Strong(f"Figure {number}."), " ", *figure.caption, " ", *figure.description)
-        )
-        drawing = f"\n\\begin{{drawing}}\n{tikz(figure.drawing)}\n\\end{{drawing}}"
-        return f"{drawing}\n\\inthefigure{{{words}}}"
+        # l for a column of one line a cell, T for the one of words
+        columns = "".join("T" if k == table.of_words else "l" for k in range(len(table.head)))
+        begin = rf"\begin{{ruled}}{{{columns}}}{{{escape(table.caption)}}}"
+        return "\n".join([begin, head, r"\midrule", *rows, r"\end{ruled}"])
 
     def _cell(self, text: Text) -> str:
-        return "".join(self._tall(s) if isinstance(s, Formula) else self._span(s) for s in text)
-
-    def _text(self, text: Text) -> str:
-        return "".join(map(self._span, text))
-
-    def _span(self, span: Span) -> str:
-        match span:
-            case str():
-                return escape(self.notation.words(span))
-            case Formula():
-                return f"${self.pen.write(span).text}$"
-            case Code():
-                return rf"\texttt{{{_breakable(escape(span.text))}}}"
-            case Strong():
-                return rf"\textbf{{{escape(span.text)}}}"
-            case EquationReference():
-                return rf"\eqref{{{self._label(span.label)}}}"
-            case Cited():
-                return self._cited(span)
-
-    def _display_style(self, formula: Formula) -> str:
-        """A formula in a line of its own height; fractions in small type would be hard to read."""
-        written = self.pen.write(formula)
-        style = r"\displaystyle " if written.height else ""
-        return f"${style}{written.text}$"
+        return "".join(self._tall(s) if isinstance(s, Formula) else self.span(s) for s in text)
 
     def _tall(self, formula: Formula) -> str:
-        """The same in a table, where the fractions of neighbouring rows would touch."""
-        written = self._display_style(formula)
-        return rf"\tall{{{written}}}" if self.pen.write(formula).height else written
+        """In a table, where the fractions of neighbouring rows would touch."""
+        written = self.claim(formula)
+        return rf"\tall{{{written}}}" if self.inline(formula).is_tall else written
 
-    def _cited(self, cited: Cited) -> str:
-        place = f"[{escape(cited.place)}]" if cited.place else ""
-        return rf"\cite{place}{{{self.key(self.document.source_number(cited))}}}"
+    def figure(self, figure: Figure) -> str:
+        drawing = f"\n\\begin{{drawing}}\n{tikz(figure.drawing)}\n\\end{{drawing}}"
+        return f"{drawing}\n\\inthefigure{{{self.figure_words(figure)}}}"
+
+    def formula_of(self, inline: Inline) -> str:
+        return f"${inline.parts[0]}$"
+
+    def _typed(self, code: str) -> str:
+        return rf"\texttt{{{escape(code)}}}"
+
+    def code(self, text: str) -> str:
+        """A line may end within: names in it are long, and no word of them has a hyphen."""
+        typed = self._typed(text)
+        return typed.replace(r"\_", r"\_\allowbreak ").replace("(", r"(\allowbreak ")
+
+    def strong(self, text: str) -> str:
+        return rf"\textbf{{{escape(text)}}}"
+
+    def reference(self, label: str) -> str:
+        return rf"\eqref{{{self._label(label)}}}"
+
+    def citation(self, number: int, place: str) -> str:
+        return rf"\cite{f'[{escape(place)}]' if place else ''}{{{self.key(number)}}}"
 
     def key(self, source: int) -> str:
         """The key of a source, unique among the notes that may be bound together."""
@@ -223,13 +185,3 @@ class _LatexPrinter:
 
     def _label(self, label: str) -> str:
         return f"{self.document.name}:{label}"
-
-
-def _breakable(code: str) -> str:
-    """Code that a line may end in: names in it are long, and no word of them has a hyphen."""
-    return code.replace(r"\_", r"\_\allowbreak ").replace("(", r"(\allowbreak ")
-
-
-def _columns(table: NoteTable) -> str:
-    """l for a column of one line a cell, T for the one of words."""
-    return "".join("T" if place == table.of_words else "l" for place in range(len(table.head)))

@@ -12,23 +12,19 @@ from collections.abc import Iterator, Sequence
 
 from rigidsym.formula.display import display, pack
 from rigidsym.formula.latex_pen import MarkdownPen
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.sheet_pen import Inline
 from rigidsym.notes.document.document import (
-    Cited,
-    Code,
     CodeBlock,
     Document,
     Equation,
-    EquationReference,
     EquationRow,
     Figure,
     NoteTable,
     Paragraph,
     Section,
-    Span,
-    Strong,
     Text,
 )
+from rigidsym.notes.formats.printer import Printer
 from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 
@@ -66,13 +62,9 @@ def _unlisted(start: re.Match[str]) -> str:
     return f"{blank}\\{mark}" if mark else f"{blank}{number}\\{point}"
 
 
-class _MarkdownPrinter:
-    """Blocks and spans of one document in Markdown."""
-
+class _MarkdownPrinter(Printer):
     def __init__(self, document: Document) -> None:
-        self.document = document
-        self.notation = document.letters.notation
-        self.pen = MarkdownPen(self.notation)
+        super().__init__(document, MarkdownPen(document.letters.notation))
 
     def section(self, section: Section) -> Iterator[str | CodeBlock]:
         prose = [f"## {escape(section.title)}"]
@@ -82,7 +74,7 @@ class _MarkdownPrinter:
                 yield block
                 prose = []
             else:
-                prose.append(self._block(block))
+                prose.append(self.block(block))
         if prose:
             yield "\n\n".join(prose)
 
@@ -90,68 +82,47 @@ class _MarkdownPrinter:
         lines = (f"{place}. {escape(s)}" for place, s in enumerate(self.document.sources, start=1))
         return "\n".join(["## Sources", "", *lines])
 
-    def _block(self, block: Paragraph | Equation | EquationRow | Figure | NoteTable) -> str:
-        match block:
-            case Paragraph():
-                return _LINE_START.sub(_unlisted, self._text(block.text).lstrip())
-            case Equation():
-                return "\n\n".join(self._equation(block))
-            case EquationRow():
-                return _display(pack(block.equations, self.document.letters, _WIDTH, self.pen))
-            case Figure():
-                return self._text(block.description)
-            case NoteTable():
-                return self._table(block)
+    def paragraph(self, block: Paragraph) -> str:
+        return _LINE_START.sub(_unlisted, self.text(block.text).lstrip())
 
-    def _equation(self, equation: Equation) -> Iterator[str]:
+    def equation(self, equation: Equation) -> str:
         shown = display(equation, self.document.letters, _WIDTH, self.pen)
-        announced = announcement(equation, shown.done)
-        if announced:
-            yield self._text(announced)
+        announced = self.text(announcement(equation, shown.done))
         tag = f"\n\\tag{{{equation.number}}}" if equation.number else ""
-        yield _display(shown.text + tag)
-        remarks = [*self._claims(equation), *self._function(equation)]
-        if remarks:
-            yield " · ".join(remarks)
+        function = [_code(equation.function)] if equation.function else []
+        remarks = " · ".join([*self.claims(equation), *function])
+        return "\n\n".join(filter(None, [announced, _display(shown.text + tag), remarks]))
 
-    def _claims(self, equation: Equation) -> Iterator[str]:
-        kinds = (("Proved", equation.proved), ("**Unproved**", equation.unproved))
-        for kind, claims in kinds:
-            if claims:
-                yield f"{kind}: {', '.join(map(self._span, claims))}"
+    def equationrow(self, block: EquationRow) -> str:
+        return _display(pack(block.equations, self.document.letters, _WIDTH, self.pen))
 
-    def _function(self, equation: Equation) -> Iterator[str]:
-        if equation.function:
-            yield self._span(Code(equation.function))
+    def figure(self, figure: Figure) -> str:
+        return self.text(figure.description)
 
-    def _table(self, table: NoteTable) -> str:
+    def notetable(self, table: NoteTable) -> str:
         rows = [self._row(table.head), "|---" * len(table.head) + "|", *map(self._row, table.rows)]
         return f"*{escape(table.caption)}*\n\n" + "\n".join(rows)
 
     def _row(self, cells: Sequence[Text]) -> str:
-        return f"| {' | '.join(map(self._text, cells))} |"
+        return f"| {' | '.join(map(self.text, cells))} |"
 
-    def _text(self, text: Text) -> str:
-        return "".join(map(self._span, text))
+    def words(self, words: str) -> str:
+        return _inside(words)
 
-    def _span(self, span: Span) -> str:
-        match span:
-            case str():
-                return _inside(self.notation.words(span))
-            case Formula():
-                return f"${self.pen.write(span).text}$"
-            case Code():
-                return _code(span.text)
-            case Strong():
-                return f"**{escape(span.text)}**"
-            case EquationReference():
-                return f"({self.document.number(span.label)})"
-            case Cited():
-                return self._cited(span)
+    def formula_of(self, inline: Inline) -> str:
+        return f"${inline.parts[0]}$"
 
-    def _cited(self, cited: Cited) -> str:
-        place = f", {_inside(cited.place)}" if cited.place else ""
-        return f"[{self.document.source_number(cited)}{place}]"
+    def code(self, text: str) -> str:
+        return _code(text)
+
+    def strong(self, text: str) -> str:
+        return f"**{escape(text)}**"
+
+    def reference(self, label: str) -> str:
+        return f"({self.document.number(label)})"
+
+    def citation(self, number: int, place: str) -> str:
+        return f"[{number}{f', {_inside(place)}' if place else ''}]"
 
 
 def _inside(text: str) -> str:

@@ -1,0 +1,87 @@
+"""The walk over a document, for every format that is one text: blocks, spans, what is beside them.
+
+A subclass has a method for each kind of block and of span, named after it, and its pen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import ClassVar
+
+from rigidsym.formula.sheet_pen import Inline, SheetPen
+from rigidsym.formula.tree import Formula
+from rigidsym.notes.document.document import (
+    Cited,
+    Code,
+    Document,
+    Equation,
+    EquationReference,
+    Figure,
+    NoteBlock,
+    Section,
+    Span,
+    Strong,
+    Text,
+)
+
+
+class Printer:
+    """Blocks and spans of one document in one format."""
+
+    separator: ClassVar[str] = "\n"  # between two blocks
+    words: Callable[[str], str]
+    formula_of: Callable[[Inline], str]  # among words
+    code: Callable[[str], str]
+    strong: Callable[[str], str]
+    reference: Callable[[str], str]  # to an equation, by its label
+    citation: Callable[[int, str], str]  # of a source, by its number, and a place in it
+
+    def __init__(self, document: Document, pen: SheetPen) -> None:
+        self.document = document
+        self.pen = pen
+        self._inlines = pen.inline(document.formulas)
+
+    def body(self, section: Section) -> str:
+        return self.separator.join(map(self.block, section.blocks))
+
+    def block(self, block: NoteBlock) -> str:
+        return str(getattr(self, type(block).__name__.lower())(block))
+
+    def text(self, text: Text) -> str:
+        return "".join(map(self.span, text))
+
+    def span(self, span: Span) -> str:
+        match span:
+            case str():
+                return self.words(span)
+            case Formula():
+                return self.formula_of(self.inline(span))
+            case Code(text):
+                return self.code(text)
+            case Strong(text):
+                return self.strong(text)
+            case EquationReference(label):
+                return self.reference(label)
+            case Cited():
+                return self.citation(self.document.source_number(span), span.place)
+
+    def inline(self, formula: Formula) -> Inline:
+        """A formula as it stands among words."""
+        return self._inlines.get(formula) or self.pen.inline((formula,))[formula]
+
+    def claims(self, equation: Equation) -> Iterator[str]:
+        """What was proved of an equation, and what was not."""
+        kinds = (("Proved", equation.proved), (self.strong("Unproved"), equation.unproved))
+        for kind, claims in kinds:
+            if claims:
+                yield f"{kind}: {', '.join(map(self.claim, claims))}"
+
+    def claim(self, claim: Formula) -> str:
+        return self.span(claim)
+
+    def figure_words(self, figure: Figure) -> str:
+        """What is said below a figure."""
+        number = self.document.figures.index(figure) + 1
+        return self.text(
+            (Strong(f"Figure {number}."), " ", *figure.caption, " ", *figure.description)
+        )
