@@ -16,8 +16,7 @@ import rigidsym as rs
 from helpers.browser import look_at, open_page, require_chromium
 from helpers.elements import ODD, Elements, odd_model
 from helpers.motions import derived
-from rigidsym.formula.display import inline_parts
-from rigidsym.formula.mathml_pen import MathmlPen
+from rigidsym.formula.mathml_pen import MathmlPen, inline_parts
 from rigidsym.formula.reader import formula
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.mechanics.derive import derive

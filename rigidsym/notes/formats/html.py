@@ -27,7 +27,7 @@ from rigidsym.notes.document.document import (
     plain,
 )
 from rigidsym.notes.figure.svg import svg
-from rigidsym.notes.formats.printer import Printer
+from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
@@ -78,7 +78,7 @@ def escape(words: str) -> str:
     return escape_markup(cleaned(words))
 
 
-class HtmlPrinter(Printer):
+class HtmlPrinter(NotePrinter):
     def __init__(self, document: Document) -> None:
         self.notation = document.letters.notation
         super().__init__(document, MathmlPen(self.notation))

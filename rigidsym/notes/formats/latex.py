@@ -19,7 +19,7 @@ from rigidsym.notes.document.document import (
 from rigidsym.notes.figure.tikz import tikz
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.paging import paged
-from rigidsym.notes.formats.printer import Printer
+from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
@@ -80,7 +80,7 @@ def _utf16(text: str) -> str:
     return ("\ufeff" + cleaned(text)).encode("utf-16-be", "replace").hex().upper()
 
 
-class _LatexPrinter(Printer):
+class _LatexPrinter(NotePrinter):
     pen: LatexPen
     words = staticmethod(escape)
 

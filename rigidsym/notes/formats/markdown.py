@@ -24,7 +24,7 @@ from rigidsym.notes.document.document import (
     Section,
     Text,
 )
-from rigidsym.notes.formats.printer import Printer
+from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 
@@ -62,7 +62,7 @@ def _unlisted(start: re.Match[str]) -> str:
     return f"{blank}\\{mark}" if mark else f"{blank}{number}\\{point}"
 
 
-class _MarkdownPrinter(Printer):
+class _MarkdownPrinter(NotePrinter):
     def __init__(self, document: Document) -> None:
         super().__init__(document, MarkdownPen(document.letters.notation))
 

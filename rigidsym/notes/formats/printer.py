@@ -25,7 +25,7 @@ from rigidsym.notes.document.document import (
 )
 
 
-class Printer:
+class NotePrinter:
     """Blocks and spans of one document in one format."""
 
     separator: ClassVar[str] = "\n"  # between two blocks
