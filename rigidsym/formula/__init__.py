@@ -4,5 +4,5 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import WRITERS
 from rigidsym.formula.unicode_pen import UnicodePen
 
-WRITERS["latex"] = lambda formula: LatexPen().write(formula).text
-WRITERS["text"] = lambda formula: UnicodePen().write(formula).text
+WRITERS["latex"] = LatexPen
+WRITERS["text"] = UnicodePen

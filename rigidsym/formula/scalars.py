@@ -12,9 +12,9 @@ from functools import lru_cache
 import sympy as sp
 
 from rigidsym.formula.latex_pen import LatexPen
-from rigidsym.formula.letters import Letters
-from rigidsym.formula.order import (
+from rigidsym.formula.letters import (
     FUNCTIONS,
+    Letters,
     is_application,
     is_negative,
     ordered_factors,

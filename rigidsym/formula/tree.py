@@ -6,9 +6,9 @@ the terms; the pens (LaTeX, Markdown, MathML, Unicode) choose spaces and the siz
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 Face = Literal["italic", "bold", "arrow", "upright", "sans"]
 Prime = Literal["", "′", "ᴮ"]
@@ -21,12 +21,12 @@ class Formula:
     @property
     def latex(self) -> str:
         """In LaTeX, in the notation it was composed in."""
-        return WRITERS["latex"](self)
+        return str(WRITERS["latex"]().write(self).text)
 
     @property
     def text(self) -> str:
         """On one line of Unicode, in the notation it was composed in."""
-        return WRITERS["text"](self)
+        return str(WRITERS["text"]().write(self).text)
 
     def __bool__(self) -> bool:
         return self != NOTHING
@@ -154,7 +154,7 @@ class Matrix(Formula):
     rows: tuple[tuple[Formula, ...], ...]
 
 
-WRITERS: dict[str, Callable[[Formula], str]] = {}  # the package enters its pens here
+WRITERS: dict[str, Callable[[], Any]] = {}  # the package enters its pens here
 NOTHING = Row(())
 EQUALS, PLUS, MINUS, COMMA = Sign("="), Sign("+"), Sign("−"), Sign(",")
 TRANSPOSE = Symbol("T", "sans")
@@ -193,3 +193,42 @@ def is_differential(formula: Formula) -> bool:
     """Whether a letter follows that is differentiated: d, ∂, d²."""
     base = formula.base if isinstance(formula, Power) else formula
     return isinstance(base, Differential)
+
+
+def indexed(symbol: Formula, shape: tuple[int, ...]) -> tuple[Formula, ...]:
+    """The symbol with the index of each entry, in light face; (a₁, a₂, a₃) lists its own."""
+    if isinstance(symbol, Bracket) and isinstance(symbol.inside, Row):
+        return tuple(part for part in symbol.inside.parts if not isinstance(part, Sign))
+    return tuple(_indexed(symbol, index) for index in _indices(shape))
+
+
+def _indices(shape: tuple[int, ...]) -> Iterator[str]:
+    if len(shape) == 1:
+        return (str(row + 1) for row in range(shape[0]))
+    rows, columns = shape
+    return (f"{row + 1}{column + 1}" for row in range(rows) for column in range(columns))
+
+
+def _indexed(symbol: Formula, index: str) -> Formula:
+    """R₂₃, or L_R,1 where the symbol has an index of its own; brackets around what is compound."""
+    number = Numeral(index)
+    if isinstance(symbol, Rate) and isinstance(symbol.of, Symbol):
+        symbol = replace(symbol.of, dots=symbol.order)
+    if not isinstance(symbol, Symbol):
+        return Indexed(Bracket(_light(symbol)), number)
+    own = symbol.index
+    return replace(symbol, face="italic", index=number if own is None else row(own, COMMA, number))
+
+
+def _light(symbol: Formula) -> Formula:
+    """The symbol without bold face."""
+    if isinstance(symbol, Symbol):
+        return replace(symbol, face="italic")
+    if isinstance(symbol, Row):
+        return Row(tuple(map(_light, symbol.parts)))
+    changed = {
+        name: _light(part)
+        for name in ("base", "of", "inside")
+        if isinstance(part := getattr(symbol, name, None), Formula)
+    }
+    return replace(symbol, **changed) if changed else symbol

@@ -11,8 +11,7 @@ import sympy as sp
 
 from rigidsym.algebra.adjoin import rate_of
 from rigidsym.errors import ModelError
-from rigidsym.formula.reader import formula
-from rigidsym.formula.symbol_names import named
+from rigidsym.formula.reader import formula, named
 from rigidsym.mechanics.derivation import Argument
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME, time_function

@@ -32,7 +32,7 @@ from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.models.body import general_inertia, principal_moments
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.notes.document.document import NoteTable
-from rigidsym.notes.formats.paging import paged
+from rigidsym.notes.formats.latex import paged
 from rigidsym.notes.formats.pdf import missing_programs, typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.text.expression import parse_expression

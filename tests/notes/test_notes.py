@@ -10,9 +10,8 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.motions import derived
-from rigidsym.formula.entries import indexed
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Symbol
+from rigidsym.formula.tree import Symbol, indexed
 from rigidsym.formula.unicode_pen import columns
 from rigidsym.mechanics.derivation import Derivation, Place, Proof, Singularity
 from rigidsym.mechanics.derive import derive

@@ -15,8 +15,8 @@ from typing import ClassVar
 
 import sympy as sp
 
+from rigidsym.formula.reader import named
 from rigidsym.formula.sentence import Sentence, sentence
-from rigidsym.formula.symbol_names import named
 from rigidsym.mechanics.conversions.function import NamedValues, Vector, nearest, rounded
 from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim, in_order
 from rigidsym.mechanics.conversions.three_turns import ACROSS, at_poles, outer_angles

@@ -8,7 +8,7 @@ from math import hypot
 
 from rigidsym.notes.figure.camera import Point
 from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Stroke
-from rigidsym.notes.sanitize import cleaned
+from rigidsym.notes.formats.printer import cleaned
 
 _EM = 18.0  # pixels
 _SCALE = _EM / TYPE_SIZE

@@ -27,9 +27,8 @@ from rigidsym.notes.document.document import (
     plain,
 )
 from rigidsym.notes.figure.svg import svg
-from rigidsym.notes.formats.printer import NotePrinter
+from rigidsym.notes.formats.printer import NotePrinter, cleaned
 from rigidsym.notes.prose.prose import announcement
-from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
 
 ENDING = "html"

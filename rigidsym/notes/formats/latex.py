@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+from math import ceil
+
 from rigidsym.formula.display import PAGE, Rows, display, pack
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.sheet_pen import Inline
@@ -15,13 +19,12 @@ from rigidsym.notes.document.document import (
     NoteTable,
     Paragraph,
     Text,
+    plain,
 )
 from rigidsym.notes.figure.tikz import tikz
 from rigidsym.notes.formats.escape import escape
-from rigidsym.notes.formats.paging import paged
-from rigidsym.notes.formats.printer import NotePrinter
+from rigidsym.notes.formats.printer import NotePrinter, cleaned
 from rigidsym.notes.prose.prose import announcement
-from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
 from rigidsym.version import __version__
 
@@ -185,3 +188,32 @@ class _LatexPrinter(NotePrinter):
 
     def _label(self, label: str) -> str:
         return f"{self.document.name}:{label}"
+
+
+_ROWS = 40  # on a page, beside a heading
+_WORDS = 44  # letters of a column of words
+
+Row = tuple[Text, ...]
+
+
+def paged(table: NoteTable) -> Iterator[NoteTable]:
+    """The table, or its parts; those after the first say in the caption that they go on."""
+    heights = [max(map(_lines, row)) for row in table.rows]
+    room = sum(heights) / max(1, ceil(sum(heights) / _ROWS))  # parts of about one height
+    part: list[Row] = []
+    used, caption = 0, table.caption
+    for row, height in zip(table.rows, heights, strict=True):
+        if part and used >= room:
+            yield replace(table, caption=caption, rows=tuple(part))
+            part, used, caption = [], 0, f"{table.caption}, continued"
+        part.append(row)
+        used += height
+    yield replace(table, caption=caption, rows=tuple(part))
+
+
+def _lines(cell: Text) -> int:
+    """How high a cell stands: a fraction is as high as two lines."""
+    if any(isinstance(span, Formula) and LatexPen().write(span).height for span in cell):
+        return 2
+    words = any(isinstance(span, str) and " " in span for span in cell)
+    return ceil(len(plain(cell)) / _WORDS) or 1 if words else 1

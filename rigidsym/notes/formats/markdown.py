@@ -24,9 +24,8 @@ from rigidsym.notes.document.document import (
     Section,
     Text,
 )
-from rigidsym.notes.formats.printer import NotePrinter
+from rigidsym.notes.formats.printer import NotePrinter, cleaned
 from rigidsym.notes.prose.prose import announcement
-from rigidsym.notes.sanitize import cleaned
 
 ENDING = "md"
 _WIDTH = 40.0  # ems

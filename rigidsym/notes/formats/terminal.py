@@ -9,19 +9,17 @@ from typing import TYPE_CHECKING, Literal
 
 import sympy as sp
 
-from rigidsym.formula.entries import RESIDUAL, indexed
-from rigidsym.formula.grid import grid
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.pen import break_lines
 from rigidsym.formula.scalars import formula_of, matrix_of
-from rigidsym.formula.tree import Formula, equal, row
-from rigidsym.formula.unicode_pen import UnicodePen, columns
+from rigidsym.formula.tree import Formula, equal, indexed, row
+from rigidsym.formula.unicode_pen import UnicodePen, columns, grid
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document.document import Span, Text, plain
-from rigidsym.notes.formula.derivation_letters import entry_names, letters_of
+from rigidsym.notes.formula.derivation_letters import RESIDUAL, entry_names, letters_of
 from rigidsym.notes.prose.prose import turn
 from rigidsym.notes.prose.singular_words import failures, geometry, measured, singular_title
 from rigidsym.notes.prose.vector_words import sum_of_vectors

@@ -7,15 +7,15 @@ from functools import lru_cache
 
 import sympy as sp
 
-from rigidsym.formula.entries import indexed
 from rigidsym.formula.letters import Letters, VectorLength
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.tree import Formula, indexed
 from rigidsym.mechanics.derivation import Argument, Step
 from rigidsym.mechanics.kinematics.vector_forms import LENGTH
 from rigidsym.models.rotation import RotationModel
 
+RESIDUAL = formula(r"\boldsymbol{\Delta}")  # what is left over of a claim
 VECTOR = formula(r"\mathbf{v}")
 _LENGTHS = ("n", "l", "r")  # one that nothing in the model is called by is taken
 _ORDERS = {"q": 0, "q_dot": 1, "q_ddot": 2, "centre": 0, "centre_dot": 1}

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from rigidsym.formula.letters import Letters
-from rigidsym.formula.order import is_negative
+from rigidsym.formula.letters import Letters, is_negative
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import MINUS, Formula, Matrix, bracketed, row

@@ -6,11 +6,10 @@ from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
-from rigidsym.formula.entries import indexed
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import PLUS, Formula, Numeral, Symbol, equal, joined, row
+from rigidsym.formula.tree import PLUS, Formula, Numeral, Symbol, equal, indexed, joined, row
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME

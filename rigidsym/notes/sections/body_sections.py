@@ -8,11 +8,10 @@ from dataclasses import replace
 import sympy as sp
 
 from rigidsym.data.mass.properties import MassProperties
-from rigidsym.formula.entries import indexed
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import Big, Differential, Formula, bracketed, row
+from rigidsym.formula.tree import Big, Differential, Formula, bracketed, indexed, row
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.mechanics.mass.numbers import in_numbers

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rigidsym.formula.entries import RESIDUAL, indexed
+from rigidsym.formula.tree import indexed
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.notes.document.document import (
     Equation,
@@ -15,6 +15,7 @@ from rigidsym.notes.document.document import (
     Strong,
     Text,
 )
+from rigidsym.notes.formula.derivation_letters import RESIDUAL
 from rigidsym.notes.prose.prose import proofs_in_words
 
 Claim = tuple[str, Proof]  # the label of an equation, and what was claimed there

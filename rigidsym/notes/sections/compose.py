@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from rigidsym.formula.entries import indexed
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import equal, row
+from rigidsym.formula.tree import equal, indexed, row
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import sympy as sp
 
-from rigidsym.formula.entries import indexed
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.mechanics.conversions.unit_quaternions import SHEPPERD, outer_product
