@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import sympy as sp
 
 from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import indexed
 from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.mechanics.conversions.unit_quaternions import SHEPPERD, outer_product
 from rigidsym.notes.document.document import (
