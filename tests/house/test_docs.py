@@ -25,7 +25,7 @@ import pytest
 from helpers.command import ROOT
 from rigidsym.models.solids import SHAPES
 from rigidsym.pipeline import vocabulary
-from rigidsym.spec import derivation_file, distribution_table, rotation_table
+from rigidsym.spec import body_table, derivation_file, rotation_table
 
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
@@ -175,12 +175,12 @@ def test_the_schema_has_the_keys_of_the_reader(path, keys, schema):
 
 
 def test_the_schema_has_every_key_of_a_body(schema):
-    shapes = [{"shape": shape} for shape in (*SHAPES, "polyhedron", "given")]
-    tables = [*shapes, {"particles": "cloud.npy"}, {"mesh": "a.stl"}, {"inertia": []}]
-    keys = {key for table in tables for key in distribution_table.keys_of(table, next(iter(table)))}
+    lengths = {length.key for shape in SHAPES.values() for length in shape.lengths}
+    keys = {key for kind in body_table._KEYS.values() for key in kind} | lengths
     body = schema["properties"]["body"]["properties"]
-    assert set(body) == keys | {"parts", "principal_moments", "allow"}
-    assert set(body["parts"]["items"]["properties"]) == keys | {*distribution_table._PLACE}
+    assert set(body) == keys | {*body_table._KINDS, "allow"}
+    of_part = {*body_table._OF_PARTS} - {"parts"} | {"label", "at", "turned", "hole"}
+    assert set(body["parts"]["items"]["properties"]) == keys | of_part
 
 
 @pytest.mark.parametrize("text", ["rotation = 3", "[rotation]\nsequenc = 'ZXZ'", "[notation]"])
