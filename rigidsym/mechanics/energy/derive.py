@@ -7,9 +7,8 @@ energies are follow from these two.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
-from types import MappingProxyType
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -30,7 +29,7 @@ OF_PARTICLES = particles.SYMBOLS  # that the ring of energies has to hold
 def steps(values: Values, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
     """(name, what was found) of the energies and momenta that are wanted."""
     work = _Energy(values)
-    yield from ((name, _STEPS[name](work)) for name in wanted)
+    yield from ((name, getattr(work, name)()) for name in wanted)
 
 
 class _Energy:
@@ -196,16 +195,3 @@ class _Energy:
 
     def _crossed(self, first: RingMatrix, second: RingMatrix) -> RingMatrix:
         return self.values.column(cross(self.ring, first.entries, second.entries))
-
-
-_STEPS: Mapping[str, Callable[[_Energy], Found]] = MappingProxyType(
-    {
-        "translational_energy": _Energy.translational_energy,
-        "rotational_energy": _Energy.rotational_energy,
-        "kinetic_energy": _Energy.kinetic_energy,
-        "angular_momentum_centre": _Energy.angular_momentum_centre,
-        "angular_momentum_rotation_body": _Energy.angular_momentum_rotation_body,
-        "angular_momentum_rotation": _Energy.angular_momentum_rotation,
-        "angular_momentum": _Energy.angular_momentum,
-    }
-)

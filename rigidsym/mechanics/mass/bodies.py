@@ -17,7 +17,7 @@ from rigidsym.models.distribution import KEYS, Distribution, Solid
 from rigidsym.models.so3 import symbolic
 from rigidsym.models.solids import shape_of, shaped
 
-Rows = list[list[Quotient]]
+_TITLES = {"Particles": "System of particles", "Composite": "Composite body"}
 
 
 def rigid_body(body: RigidBody | BodyDescription | Distribution) -> RigidBody:
@@ -73,52 +73,39 @@ def _integrated(
     moments = moments_of(distribution)
     if moments.mass == 0:
         raise BodyError(f"{name}: the mass is zero; expected a positive mass")
-    field = Rationals(moments.expressions)
-    centre, about_centre = central(field, moments)
+    centre, inertia = _central(moments)
+    kind = type(distribution).__name__
+    known = distribution.title if isinstance(distribution, Solid) else _TITLES.get(kind, kind)
     symbols = [(entry, "") for entry in moments.expressions]
     return RigidBody(
         name=name,
-        title=title or title_of(distribution),
+        title=title or known,
         mass=moments.mass,
-        inertia=sp.ImmutableMatrix(3, 3, [field.write(e) for row in about_centre for e in row]),
-        centre=sp.ImmutableMatrix([field.write(entry) for entry in centre]),
+        inertia=inertia,
+        centre=centre,
         parameters=described(parameters, *symbols),
         allow=allow,
         distribution=distribution,
     )
 
 
-def title_of(distribution: Distribution) -> str:
-    if isinstance(distribution, Solid):
-        return distribution.title
-    return {"Particles": "System of particles", "Composite": "Composite body"}.get(
-        type(distribution).__name__, type(distribution).__name__
-    )
-
-
-def central(field: Rationals, moments: Moments) -> tuple[list[Quotient], Rows]:
-    """The centre c = S/M, and the inertia tensor about it, from J − S Sᵀ/M."""
+def _central(moments: Moments) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+    """The centre c = S/M, (3, 1), and the inertia tensor tr(J) 1 − J about it, from J − S Sᵀ/M."""
+    field = Rationals(moments.expressions)
     inverse = field.read(moments.mass).inverse()
     first = [field.read(entry) for entry in moments.first]
     second = field.read_matrix(moments.second)
-    about_centre = [
-        [second[i][j] + field.negative(first[i] * first[j] * inverse) for j in range(3)]
-        for i in range(3)
-    ]
-    return [entry * inverse for entry in first], inertia_from(field, about_centre)
 
+    def about_centre(i: int, j: int) -> Quotient:
+        return second[i][j] + field.negative(first[i] * first[j] * inverse)
 
-def inertia_from(field: Rationals, second: Rows) -> Rows:
-    """tr(J) 1 − J."""
-    return [
-        [
-            second[(i + 1) % 3][(i + 1) % 3] + second[(i + 2) % 3][(i + 2) % 3]
-            if i == j
-            else field.negative(second[i][j])
-            for j in range(3)
-        ]
-        for i in range(3)
-    ]
+    def entry(i: int, j: int) -> sp.Expr:
+        if i != j:
+            return field.write(field.negative(about_centre(i, j)))
+        return field.write(field.total(about_centre(k, k) for k in range(3) if k != i))
+
+    centre = sp.ImmutableMatrix([field.write(part * inverse) for part in first])
+    return centre, sp.ImmutableMatrix(3, 3, entry)
 
 
 def solid(

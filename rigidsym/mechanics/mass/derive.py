@@ -6,7 +6,7 @@ the body's constants, and, for the tensor in space, over the ring of the rotatio
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from types import MappingProxyType
 
@@ -41,7 +41,7 @@ def steps(values: Values, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
     assert values.body is not None
     work = _Inertia(values.body, values)
     for name in wanted:
-        found = _STEPS[name](work)
+        found = getattr(work, name)()
         if found is not None:
             yield name, found
 
@@ -141,9 +141,14 @@ class _Inertia:
     @property
     def _about_point(self) -> sp.Matrix:
         """∫ (|x − p|² 1 − (x − p)(x − p)ᵀ) dm, from the moments."""
-        m, p = self.moments, self.point
-        second = m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
+        second = self._second_about_point
         return second.trace() * _ONE - second
+
+    @property
+    def _second_about_point(self) -> sp.Matrix:
+        """∫ (x − p)(x − p)ᵀ dm."""
+        m, p = self.moments, self.point
+        return m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
 
     def moment_of_inertia(self) -> Found:
         moment = self._line
@@ -173,8 +178,7 @@ class _Inertia:
     @property
     def _from_moments(self) -> sp.Expr:
         """∫ |n × (x − p)|² dm, where |n × y|² = n·n y·y − (n·y)²."""
-        m, p, n = self.moments, self.point, self.direction
-        second = m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
+        n, second = self.direction, self._second_about_point
         return n.dot(n) * second.trace() - (n.T * second * n)[0]
 
     def radii_of_gyration(self) -> Found:
@@ -272,8 +276,3 @@ def _volume(columns: sp.MatrixBase) -> sp.Expr:
 
 def _scalar(value: sp.Expr) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix([[value]])
-
-
-_STEPS: Mapping[str, Callable[[_Inertia], Found | None]] = MappingProxyType(
-    {name: getattr(_Inertia, name) for name in claims.INERTIA_QUANTITIES}
-)
