@@ -227,7 +227,7 @@ def _chain(turns: int, repeats: int, size: int) -> tuple[Cell, ...]:
     shared, left = sp.cse(entries)
     theirs = sum(sp.count_ops(e) for e in [*(value for _, value in shared), *left])
     times_in_order = (found.get(name) for name in ("numpy", "c", *GROWN))
-    return (turns, kernel.operations.total, int(theirs), *times_in_order)
+    return (turns, kernel.operations.total(), int(theirs), *times_in_order)
 
 
 def errors(present: Sequence[str], samples: int) -> Part:

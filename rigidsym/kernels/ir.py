@@ -8,11 +8,11 @@ and a guarded divisor.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import prod
+from math import isnan, prod
 
 from rigidsym.errors import KernelError
 
@@ -134,6 +134,22 @@ def parts(expression: Expression) -> tuple[Expression, ...]:
     return ()
 
 
+def rebuilt(change: Callable[[Expression], Expression], expression: Expression) -> Expression:
+    """The node over other parts; a call and a guard stay as they are."""
+    match expression:
+        case Negative(operand):
+            return Negative(change(operand))
+        case Sum(terms):
+            return Sum(tuple(map(change, terms)))
+        case Product(factors, divisors):
+            return Product(tuple(map(change, factors)), tuple(map(change, divisors)))
+        case Compare(relation, left, right):
+            return Compare(relation, change(left), change(right))
+        case Choice():
+            return Choice(*map(change, parts(expression)))
+    return expression
+
+
 def walk(expression: Expression) -> Iterator[Expression]:
     """The expression and all that it is made of, the whole before its parts."""
     yield expression
@@ -145,52 +161,38 @@ def names_in(expression: Expression) -> Iterator[str]:
     return (node.text for node in walk(expression) if isinstance(node, Name))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Operations:
-    """What one value of a kernel costs; subtractions count as additions."""
-
-    trigonometric: int = 0
-    inverse: int = 0
-    entire: int = 0
-    roots: int = 0
-    sizes: int = 0
-    multiplications: int = 0
-    divisions: int = 0
-    additions: int = 0
-    negations: int = 0
-    choices: int = 0
-
-    @property
-    def total(self) -> int:
-        return sum(count for count, _, _ in self._table())
-
-    def _table(self) -> tuple[tuple[int, str, str], ...]:
-        return (
-            (self.trigonometric, "sine or cosine", "sines and cosines"),
-            (self.inverse, "arctangent", "arctangents"),
-            (self.entire, "function c_k", "functions c_k"),
-            (self.roots, "square root", "square roots"),
-            (self.sizes, "absolute value", "absolute values"),
-            (self.multiplications, "multiplication", "multiplications"),
-            (self.divisions, "division", "divisions"),
-            (self.additions, "addition", "additions"),
-            (self.negations, "change of sign", "changes of sign"),
-            (self.choices, "choice", "choices"),
-        )
-
-    def __str__(self) -> str:
-        counts = [f"{n} {one if n == 1 else many}" for n, one, many in self._table() if n]
-        total = f"{self.total} operation{'' if self.total == 1 else 's'}"
-        return f"{total}: {', '.join(counts)}" if counts else "no operations"
-
-
+_OPERATIONS = {  # in words, one and several
+    "trigonometric": ("sine or cosine", "sines and cosines"),
+    "inverse": ("arctangent", "arctangents"),
+    "entire": ("function c_k", "functions c_k"),
+    "roots": ("square root", "square roots"),
+    "sizes": ("absolute value", "absolute values"),
+    "multiplications": ("multiplication", "multiplications"),
+    "divisions": ("division", "divisions"),
+    "additions": ("addition", "additions"),
+    "negations": ("change of sign", "changes of sign"),
+    "choices": ("choice", "choices"),
+}
 _KINDS = {"sin": "trigonometric", "cos": "trigonometric", "sqrt": "roots", "abs": "sizes"}
 _KINDS["atan2"] = "inverse"
 
 
+class Operations(Counter[str]):
+    """What one value of a kernel costs, by kinds; subtractions count as additions."""
+
+    def __str__(self) -> str:
+        counts = [
+            f"{self[kind]} {one if self[kind] == 1 else many}"
+            for kind, (one, many) in _OPERATIONS.items()
+            if self[kind]
+        ]
+        total = f"{self.total()} operation{'' if self.total() == 1 else 's'}"
+        return f"{total}: {', '.join(counts)}" if counts else "no operations"
+
+
 def count(expressions: Iterable[Expression]) -> Operations:
     """The operations in expressions as they are written."""
-    counts: Counter[str] = Counter()
+    counts = Operations()
     for node in (node for expression in expressions for node in walk(expression)):
         match node:
             case Choice():
@@ -207,7 +209,7 @@ def count(expressions: Iterable[Expression]) -> Operations:
                 counts["negations"] -= sum(isinstance(term, Negative) for term in terms[1:])
             case Negative():
                 counts["negations"] += 1
-    return Operations(**counts)
+    return counts
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -292,14 +294,62 @@ class Kernel:
         return tuple(name for argument in self.arguments for name in argument.components)
 
     @cached_property
+    def values(self) -> tuple[Expression, ...]:
+        """Of all assignments, then the outputs."""
+        return (*(assignment.value for assignment in self.assignments), *self.outputs)
+
+    @cached_property
+    def used(self) -> frozenset[str]:
+        """The names that occur in the values."""
+        return frozenset(name for value in self.values for name in names_in(value))
+
+    @cached_property
     def operations(self) -> Operations:
-        return count([*(assignment.value for assignment in self.assignments), *self.outputs])
+        return count(self.values)
+
+    @cached_property
+    def calls(self) -> dict[str, Call]:
+        """name: call, of the assignments that are calls."""
+        return {a.name: a.value for a in self.assignments if isinstance(a.value, Call)}
+
+    @cached_property
+    def guards(self) -> dict[str, Guarded]:
+        """name: guarded value, of the assignments that are one."""
+        return {a.name: a.value for a in self.assignments if isinstance(a.value, Guarded)}
+
+    @cached_property
+    def sines(self) -> dict[Name, dict[str, str]]:
+        """angle: {"sin": name, "cos": name}, of all that is taken of it."""
+        found: dict[Name, dict[str, str]] = {}
+        for name, call in self.calls.items():
+            if call.function in ("sin", "cos"):
+                found.setdefault(call.argument, {})[call.function] = name
+        return found
+
+    @property
+    def gives_nan(self) -> bool:
+        """Whether NaN is among its numbers."""
+        nodes = (node for value in self.values for node in walk(value))
+        return any(isinstance(node, Number) and isnan(node.value) for node in nodes)
+
+    @property
+    def statements(self) -> Iterator[tuple[str, Expression | dict[str, Call]]]:
+        """The assignments, with all functions c_k of one square in the place of the first."""
+        groups: dict[Name, dict[str, Call]] = {}
+        for name, call in self.calls.items():
+            if call.order is not None:
+                groups.setdefault(call.argument, {})[name] = call
+        for assignment in self.assignments:
+            name, value = assignment.name, assignment.value
+            if not isinstance(value, Call) or value.order is None:
+                yield name, value
+            elif name == next(iter(groups[value.argument])):
+                yield name, groups[value.argument]
 
     @cached_property
     def divisors(self) -> tuple[Expression, ...]:
         """What the kernel divides by, each once: where one of them vanishes, it has a pole."""
-        wholes = [*(assignment.value for assignment in self.assignments), *self.outputs]
-        nodes = (node for whole in wholes for node in walk(whole))
+        nodes = (node for value in self.values for node in walk(value))
         found = (d for node in nodes if isinstance(node, Product) for d in node.divisors)
         return tuple(dict.fromkeys(found))
 
@@ -312,6 +362,17 @@ class Kernel:
             if is_size or assignment.name in reached:
                 reached.update(_factors_in(assignment.value))
         return frozenset(reached)
+
+
+def functions_of(kernels: Iterable[Kernel]) -> set[str]:
+    """The names of all functions that kernels call."""
+    return {call.function for kernel in kernels for call in kernel.calls.values()}
+
+
+def last_order(kernels: Iterable[Kernel]) -> int:
+    """The highest k of the functions c_k that are called; -1 if there are none."""
+    orders = (call.order for kernel in kernels for call in kernel.calls.values())
+    return max((order for order in orders if order is not None), default=-1)
 
 
 def _factors_in(expression: Expression) -> Iterator[str]:

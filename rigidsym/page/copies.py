@@ -4,17 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from textwrap import fill
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.formula.display import display
-from rigidsym.kernels.ir import FUNCTIONS, Call, Expression, Guarded, Kernel, Name, Number, names_in
+from rigidsym.kernels.ir import (
+    FUNCTIONS,
+    Call,
+    Expression,
+    Guarded,
+    Kernel,
+    Number,
+    functions_of,
+    last_order,
+)
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.c import printer as c
 from rigidsym.kernels.targets.numpy import printer as numpy
-from rigidsym.kernels.targets.text import statements
 from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.python_layout import (
     WIDTH,
@@ -32,7 +39,6 @@ LANGUAGES: Mapping[str, str] = {"latex": "LaTeX", "python": "Python", "c": "C"} 
 
 _PAPER = 30.0  # ems of a display on paper
 _EPS, _TINY = 2.0**-52, 2.0**-970  # less than this is left of a divisor by rounding
-_show = partial(infix, functions={name: name for name in FUNCTIONS})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -63,10 +69,10 @@ def copies_of(derivation: Derivation, document: Document) -> Mapping[str, Mappin
     """label: language: text, for each numbered equation that a kernel evaluates."""
     program = lower(derivation, numpy.RESERVED | c.RESERVED)
     kernels = {
-        kernel.name: narrowed(kernel, _show, line=WIDTH - len("    const double ;"), output=66)
+        kernel.name: narrowed(kernel, infix, line=WIDTH - len("    const double ;"), output=66)
         for kernel in program.kernels
     }
-    last = statements.last_order(program.kernels)
+    last = last_order(program.kernels)
     return {
         label: {
             "latex": text,
@@ -87,11 +93,11 @@ def _latex(document: Document) -> Iterator[tuple[str, str]]:
 
 def _python(kernel: Kernel, last: int) -> str:
     """A function of plain floats, with its imports and the functions c_k that it calls."""
-    called = {call.function for call in statements.calls_of(kernel).values()}
+    called = functions_of([kernel])
     names = called.intersection(FUNCTIONS) - {"abs"}
-    names |= {"nan"} if statements.guards_of(kernel) else set()
+    names |= {"nan"} if kernel.guards else set()
     names |= {"sqrt", "tan"} if called.difference(FUNCTIONS) else set()
-    outputs = [_show(output) for output in kernel.outputs]
+    outputs = [infix(output) for output in kernel.outputs]
     width = kernel.shape[1] if len(kernel.shape) == 2 else 1
     rows = [outputs[start : start + width] for start in range(0, len(outputs), width)]
     entries = [exploded(8, "(", row, ")").lstrip() for row in rows] if width > 1 else outputs
@@ -110,16 +116,15 @@ def _c(kernel: Kernel, last: int) -> str:
     """A function in C99 on the functions of math.h, with the functions c_k that it calls."""
     given = [f"const double {a.name}[{len(a.components)}]" for a in kernel.arguments]
     head = bracketed(0, f"void {kernel.name}(", [*given, f"double out[{len(kernel.outputs)}]"], ")")
-    used = _used(kernel)
     lines = [
         "#include <math.h>\n",
         *_series(kernel, last, _C),
         "/* " + "\n   ".join(filled(_about(kernel), WIDTH - 6)) + " */",
         head.replace(",\n)", "\n)"),  # C takes no comma after the last
         "{",
-        *(f"    (void){a.name};" for a in kernel.arguments if used.isdisjoint(a.components)),
+        *(f"    (void){a.name};" for a in kernel.arguments if kernel.used.isdisjoint(a.components)),
         *_statements(kernel, _C),
-        *(f"    out[{place}] = {_show(output)};" for place, output in enumerate(kernel.outputs)),
+        *(f"    out[{place}] = {infix(output)};" for place, output in enumerate(kernel.outputs)),
         "}",
     ]
     return "\n".join([*lines, ""])
@@ -131,17 +136,11 @@ def _about(kernel: Kernel) -> str:
     return f"{kernel.symbol}: {kernel.about}{unit}{rows}."
 
 
-def _used(kernel: Kernel) -> set[str]:
-    wholes = (*(assignment.value for assignment in kernel.assignments), *kernel.outputs)
-    return {name for whole in wholes for name in names_in(whole)}
-
-
 def _statements(kernel: Kernel, language: _Language) -> Iterator[str]:
     """The components that are used, by name, and what is computed from them."""
-    used = _used(kernel)
     for argument in kernel.arguments:
         for place, name in enumerate(argument.components):
-            if name in used:
+            if name in kernel.used:
                 yield language.assigned.format(name=name, value=f"{argument.name}[{place}]")
     for assignment in kernel.assignments:
         value = _value(assignment.value, language)
@@ -158,23 +157,21 @@ def _value(value: Expression, language: _Language) -> str:
             if value.order is not None:
                 return f"entire({value.order}, {argument.text})"
             return f"{language.absolute if function == 'abs' else function}({argument.text})"
-    return _show(value)
+    return infix(value)
 
 
 def _least(guard: Guarded, language: _Language) -> str:
     """What is larger divides; in the rest rounding leaves no digit."""
-    eps = repr(_EPS**guard.power)
-    match guard.scale:
-        case Name(scale):
-            return f"{eps} * {language.absolute}({scale})"
-        case Number(number):
-            return f"{eps} * {float(number)!r}"
-    return repr(_TINY)
+    if guard.scale is None:
+        return repr(_TINY)
+    scale = infix(guard.scale)
+    size = scale if isinstance(guard.scale, Number) else f"{language.absolute}({scale})"
+    return f"{_EPS**guard.power!r} * {size}"
 
 
 def _series(kernel: Kernel, last: int, language: _Language) -> Iterator[str]:
     """The functions c_k of n², if the kernel calls any; their table has all that the page needs."""
-    if all(call.order is None for call in statements.calls_of(kernel).values()):
+    if last_order([kernel]) < 0:
         return
     rows = [_row(order) for order in range(FIRST_SERIES, max(last, FIRST_SERIES) + 1)]
     template = resources.environment().get_template(language.template)

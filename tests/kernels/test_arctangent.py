@@ -12,7 +12,7 @@ import pytest
 import rigidsym as rs
 from helpers.target_modules import STRICT
 from helpers.witness import mp
-from rigidsym.kernels.lowering.arctangent import arctangent
+from rigidsym.kernels.lowering.trigonometry import arctangent
 
 DIGITS = {"double": 53, "float": 24}
 WRAPPER = """

@@ -33,13 +33,17 @@ class Graph:
         self.sums: dict[int, Terms] = {}
         self.calls: dict[int, tuple[str, tuple[Weighted, ...]]] = {}
         self.held: dict[int, str] = {}  # nodes that are assigned in this order, and their names
+        self.inputs: dict[str, int] = {}
         self.irrationals: dict[int, float] = {}
         self._numbers: dict[Hashable, int] = {}
         self.one = self.atom(())  # the empty product
 
     def atom(self, key: Hashable) -> int:
-        """What has no parts here, an input, by its name."""
+        """The number of what has this key."""
         return self._numbers.setdefault(key, len(self._numbers))
+
+    def input(self, name: str) -> int:
+        return self.inputs.setdefault(name, self.atom(name))
 
     def irrational(self, value: float) -> int:
         """A number that no fraction is: a fixed root, a fixed sine."""

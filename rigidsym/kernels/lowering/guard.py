@@ -23,11 +23,11 @@ from rigidsym.kernels.ir import (
     Number,
     Product,
     Sum,
+    rebuilt,
 )
 from rigidsym.kernels.lowering.naming import Names
 
 _ROUNDINGS = Number(Fraction(4))
-_TURNED = ("sin", "cos")
 _DOUBLE_ZERO = Number(Fraction(8))  # c₂ near a zero is half the square of the error of n over n
 
 
@@ -58,16 +58,10 @@ class _Guard:
 
     def expression(self, whole: Expression) -> Expression:
         """The expression with its divisors guarded; what that takes is assigned before it."""
-        match whole:
-            case Negative(operand):
-                return Negative(self.expression(operand))
-            case Sum(terms):
-                return Sum(tuple(map(self.expression, terms)))
-            case Product(factors, divisors):
-                return Product(
-                    tuple(map(self.expression, factors)), tuple(map(self._divisor, divisors))
-                )
-        return whole
+        if isinstance(whole, Product):
+            factors = tuple(map(self.expression, whole.factors))
+            return Product(factors, tuple(map(self._divisor, whole.divisors)))
+        return rebuilt(self.expression, whole) if isinstance(whole, Negative | Sum) else whole
 
     def _divisor(self, divisor: Expression) -> Expression:
         if divisor not in self._known:
@@ -75,24 +69,26 @@ class _Guard:
         return self._known[divisor]
 
     def _guarded(self, divisor: Expression) -> Expression:
-        value = self._values.get(divisor.text) if isinstance(divisor, Name) else divisor
-        if isinstance(value, Call) and isinstance(divisor, Name):
-            return self._of_call(divisor, value)
-        if isinstance(value, Sum):
-            return self._of_sum(divisor, value)
+        value = self._value(divisor)
+        match value:
+            case Sum():
+                return self._of_sum(divisor, value)
+            case Call("sin" | "cos", angle):
+                return self._or_nan(divisor, angle)
+            case Call("c0", square):
+                root = self._new(Call("sqrt", square))
+                return self._or_nan(divisor, self._new(Product((_ROUNDINGS, root))))
+            case Call("c1"):
+                return self._or_nan(divisor, _ROUNDINGS)
+            case Call("c2"):
+                return self._or_nan(divisor, _DOUBLE_ZERO, power=2)
         return divisor
 
-    def _of_call(self, divisor: Name, call: Call) -> Name:
-        order = call.order
-        if call.function in _TURNED:
-            return self._or_nan(divisor, call.argument)
-        if order == 0:
-            root = self.assign(self._names.numbered("x"), Call("sqrt", call.argument))
-            scale = self.assign(self._names.numbered("x"), Product((_ROUNDINGS, root)))
-            return self._or_nan(divisor, scale)
-        if order == 1:
-            return self._or_nan(divisor, _ROUNDINGS)
-        return self._or_nan(divisor, _DOUBLE_ZERO, power=2) if order == 2 else divisor
+    def _value(self, expression: Expression) -> Expression:
+        """What is behind a name, if it is not an input."""
+        if not isinstance(expression, Name):
+            return expression
+        return self._values.get(expression.text, expression)
 
     def _of_sum(self, divisor: Expression, total: Sum) -> Expression:
         """A sum of squares and a number never vanishes; one of squares alone may underflow."""
@@ -113,17 +109,17 @@ class _Guard:
     def _reach(self) -> Name:
         """The square of how far rounding reaches where sines and cosines are squared, over eps²."""
         values = self._values.values()
-        called = {v.argument: None for v in values if isinstance(v, Call) and v.function in _TURNED}
-        sizes = [self.assign(self._names.numbered("x"), Call("abs", angle)) for angle in called]
-        reach = self.assign(
-            self._names.numbered("x"), Product((_ROUNDINGS, Sum((Number(Fraction(1)), *sizes))))
-        )
-        return self.assign(self._names.numbered("x"), Product((reach, reach)))
+        called = {
+            v.argument: None for v in values if isinstance(v, Call) and v.function in ("sin", "cos")
+        }
+        sizes = [self._new(Call("abs", angle)) for angle in called]
+        reach = self._new(Product((_ROUNDINGS, Sum((Number(Fraction(1)), *sizes)))))
+        return self._new(Product((reach, reach)))
 
     def _parts(self, total: Sum) -> Iterator[Expression]:
         """The terms of a sum and of the sums among them."""
         for term in total.terms:
-            value = self._values.get(term.text, term) if isinstance(term, Name) else term
+            value = self._value(term)
             if isinstance(value, Sum):
                 yield from self._parts(value)
             else:
@@ -131,16 +127,15 @@ class _Guard:
 
     def _is_positive(self, part: Expression) -> bool:
         """Whether it is a positive number, or a number times squares."""
-        if isinstance(part, Number):
-            return part.value > 0
-        factors = [factor for factor in self._factors(part) if not isinstance(factor, Number)]
-        numbers = [factor for factor in self._factors(part) if isinstance(factor, Number)]
-        is_even = all(factors.count(factor) % 2 == 0 for factor in factors)
-        return is_even and all(number.value > 0 for number in numbers)
+        factors = list(self._factors(part))
+        return all(
+            factor.value > 0 if isinstance(factor, Number) else factors.count(factor) % 2 == 0
+            for factor in factors
+        )
 
     def _factors(self, part: Expression) -> Iterator[Expression]:
         """What is multiplied in a part, and in the products among its factors."""
-        value = self._values.get(part.text, part) if isinstance(part, Name) else part
+        value = self._value(part)
         if isinstance(value, Product) and not value.divisors:
             for factor in value.factors:
                 yield from self._factors(factor)
@@ -149,21 +144,19 @@ class _Guard:
 
     def _sizes(self, total: Sum) -> Name:
         """The sum of the sizes of the terms, times the roundings that each may bring."""
-        terms = [term.operand if isinstance(term, Negative) else term for term in total.terms]
-        sizes = Product((_ROUNDINGS, Sum(tuple(map(self._size, terms)))))
-        return self.assign(self._names.numbered("x"), sizes)
-
-    def _size(self, term: Expression) -> Expression:
-        if self._is_positive(term):
-            return term
-        name = self._named(term)
-        return self.assign(self._names.numbered("x"), Call("abs", name))
+        sizes = []
+        for term in total.terms:
+            part = term.operand if isinstance(term, Negative) else term
+            is_size = self._is_positive(part)
+            sizes.append(part if is_size else self._new(Call("abs", self._named(part))))
+        return self._new(Product((_ROUNDINGS, Sum(tuple(sizes)))))
 
     def _named(self, expression: Expression) -> Name:
-        if isinstance(expression, Name):
-            return expression
-        return self.assign(self._names.numbered("x"), expression)
+        return expression if isinstance(expression, Name) else self._new(expression)
 
-    def _or_nan(self, value: Name, scale: Name | Number | None, power: int = 1) -> Name:
-        name = self._names.fresh(f"{value.text}_or_nan")
-        return self.assign(name, Guarded(value, scale, power))
+    def _new(self, value: Expression) -> Name:
+        return self.assign(self._names.numbered("x"), value)
+
+    def _or_nan(self, divisor: Expression, scale: Name | Number | None, power: int = 1) -> Name:
+        value = self._named(divisor)
+        return self.assign(self._names.fresh(f"{value.text}_or_nan"), Guarded(value, scale, power))

@@ -9,7 +9,7 @@ the assignments are the derivation's own expression.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -30,7 +30,6 @@ from rigidsym.mechanics.conversions.function import ConversionFunction, Conversi
 from rigidsym.mechanics.derivation import (
     Argument as Vector,
     Derivation,
-    Measure,
     Singularities,
     Step,
 )
@@ -38,6 +37,12 @@ from rigidsym.mechanics.quantities.energy import body_in_words
 from rigidsym.models.rotation import RotationModel
 
 MARGIN = "singularity_margin"
+_SYMBOLS: Mapping[str, str] = {  # by the measure of singularity
+    "det W": "|det W|",
+    "det W Wᵀ": "√det(W Wᵀ)",
+    "det Wᵀ W": "√det(Wᵀ W)",
+    "det [W, J]": "|det [W; J]|",
+}
 
 
 def lower(
@@ -73,16 +78,6 @@ def lower(
         remarks=added.remarks,
         unwrapping=kernels.unwrapping(added.continuity) if added.continuity else None,
     )
-
-
-def rewritten(derivation: Derivation, entries: Iterable[sp.Expr]) -> list[sp.Expr]:
-    """Expressions in the form that kernels evaluate them in."""
-    return _Lowering(derivation, Names()).rewritten(entries)
-
-
-def margins_of(derivation: Derivation) -> tuple[sp.Expr, sp.Expr] | None:
-    """What `singularity_margin` is, exactly and as evaluated; None where there is none."""
-    return _Lowering(derivation, Names()).margins()
 
 
 def _convention(model: RotationModel) -> tuple[str, ...]:
@@ -171,19 +166,13 @@ class _Lowering:
     def of_function(self, function: ConversionFunction) -> ir.Kernel:
         """The kernel of a conversion: its values one by one, as they are written."""
         arguments = tuple(map(self._taken, function.inputs))
-        known = {
-            symbol: component
-            for taken, argument in zip(function.inputs, arguments, strict=True)
-            for symbol, component in zip(taken.argument.symbols, argument.components, strict=True)
-        }
-        reader = Reader(function.name, known, self._definitions)
+        vectors = [taken.argument for taken in function.inputs]
+        reader = self._reader(function.name, vectors, arguments)
         reader.graph.share([reader.define(symbol, value) for symbol, value in function.shared])
         for symbol, value in function.values:
             reader.hold(symbol, value)
         weighted = list(map(reader.weighted, function.outputs))
-        assignments, outputs = write(
-            reader.graph, weighted, list(known.values()), self._names.copy()
-        )
+        assignments, outputs = write(reader.graph, weighted, self._names.copy())
         return ir.Kernel(
             name=function.name,
             arguments=arguments,
@@ -195,6 +184,16 @@ class _Lowering:
             remarks=function.remarks,
             unit=function.unit,
         )
+
+    def _reader(
+        self, name: str, vectors: Iterable[Vector], arguments: Iterable[ir.KernelArgument]
+    ) -> Reader:
+        known = {
+            symbol: component
+            for vector, argument in zip(vectors, arguments, strict=True)
+            for symbol, component in zip(vector.symbols, argument.components, strict=True)
+        }
+        return Reader(name, known, self._definitions)
 
     def _taken(self, given: ConversionInput) -> ir.KernelArgument:
         """An argument of a conversion; the coordinates that are kept are called as in q."""
@@ -217,31 +216,20 @@ class _Lowering:
         )
 
     def margin(self) -> Iterator[ir.Kernel]:
-        """How far the rate matrix is from failing, where it is among the quantities and may."""
-        found = self._failing
-        if found is None:
+        """How far the rate matrix is from failing, if it is among the quantities and may fail."""
+        found = self.derivation.singularities
+        if found is None or (found.is_solved and not any(p.places for p in found.points)):
             return
         minors = self.rewritten(found.minors)
         scale, about = _scaled(minors, found)
-        value = _size(minors, scale)
+        if len(minors) == 1:
+            value = sp.Abs(minors[0] / scale, evaluate=False)
+        else:
+            value = sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
         is_free = value.free_symbols.isdisjoint(self.derivation.model.constants)
         inputs = ("q",) if is_free else ("q", "parameters")
-        kernel = self._kernel(MARGIN, inputs, [value], ())
-        yield replace(kernel, symbol=_symbol(found.measure) + _over(scale), about=about)
-
-    def margins(self) -> tuple[sp.Expr, sp.Expr] | None:
-        """The same in the derivation's own minors, and as the kernel evaluates it."""
-        found = self._failing
-        if found is None:
-            return None
-        minors = self.rewritten(found.minors)
-        scale, _ = _scaled(minors, found)
-        return _size(found.minors, scale), _size(minors, scale)
-
-    @property
-    def _failing(self) -> Singularities | None:
-        found = self.derivation.singularities
-        return found if found is not None and _can_fail(found) else None
+        symbol = _SYMBOLS.get(found.measure, "√Σ minors²") + ("" if scale == 1 else f"/({scale})")
+        yield replace(self._kernel(MARGIN, inputs, [value], ()), symbol=symbol, about=about)
 
     def _over_squares(self, entry: sp.Expr) -> sp.Expr:
         """The entry with the minors squared in place of the determinant that divides.
@@ -276,38 +264,15 @@ class _Lowering:
         self, name: str, inputs: Sequence[str], entries: Iterable[sp.Expr], shape: tuple[int, ...]
     ) -> ir.Kernel:
         arguments = tuple(self.arguments[vector] for vector in inputs)
-        known = {
-            symbol: component
-            for argument in arguments
-            for symbol, component in zip(
-                self._vectors[argument.name].symbols, argument.components, strict=True
-            )
-        }
-        reader = Reader(name, known, self._definitions)
+        reader = self._reader(name, [self._vectors[vector] for vector in inputs], arguments)
         weighted = [reader.weighted(entry) for entry in entries]
         reader.graph.share(node for _, node in weighted)
         names = self._names.copy()
-        assignments, outputs = write(reader.graph, weighted, list(known.values()), names)
+        assignments, outputs = write(reader.graph, weighted, names)
         kernel = ir.Kernel(
             name=name, arguments=arguments, assignments=assignments, outputs=outputs, shape=shape
         )
         return guarded(kernel, names)
-
-
-def _can_fail(found: Singularities) -> bool:
-    return any(point.places for point in found.points) or not found.is_solved
-
-
-def _size(minors: Sequence[sp.Expr], scale: sp.Rational) -> sp.Expr:
-    """The size of the only minor over a scale; of several, the root of the sum of their squares."""
-    if len(minors) == 1:
-        return sp.Abs(minors[0] / scale, evaluate=False)
-    return sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
-
-
-def _symbol(measure: Measure) -> str:
-    roots = {"det W Wᵀ": "√det(W Wᵀ)", "det Wᵀ W": "√det(Wᵀ W)", "det [W, J]": "|det [W; J]|"}
-    return roots.get(measure, "|det W|" if measure == "det W" else "√Σ minors²")
 
 
 def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rational, str]:
@@ -326,7 +291,3 @@ def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rationa
     value = at_zero(rest) if rest.has(Stumpff) else sp.S.One
     scale = abs(number) * (value if value.is_Rational and value else 1)
     return scale, f"{about}; 1 at most, 0 where they do"
-
-
-def _over(scale: sp.Rational) -> str:
-    return "" if scale == 1 else f"/({scale})"

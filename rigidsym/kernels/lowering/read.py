@@ -40,7 +40,7 @@ class Reader:
         self._inputs = inputs
         self._definitions = definitions
         self._known: dict[sp.Expr, Monomial] = {
-            symbol: (Fraction(1), (self.graph.atom(name),)) for symbol, name in inputs.items()
+            symbol: (Fraction(1), (self.graph.input(name),)) for symbol, name in inputs.items()
         }
 
     def weighted(self, expression: sp.Expr) -> Weighted:

@@ -36,10 +36,10 @@ _CALL_ORDER = {function: place for place, function in enumerate(FUNCTIONS)}
 
 
 def write(
-    graph: Graph, outputs: Sequence[Weighted], inputs: Sequence[str], names: Names
+    graph: Graph, outputs: Sequence[Weighted], names: Names
 ) -> tuple[tuple[Assignment, ...], tuple[Expression, ...]]:
     """Assignments for what is used twice, and the outputs in terms of them."""
-    writer = _Writer(graph, outputs, inputs, names)
+    writer = _Writer(graph, outputs, names)
     writer.calls_on_inputs()
     writer.held()
     written = tuple(writer.weighted(*output) for output in outputs)
@@ -47,17 +47,15 @@ def write(
 
 
 class _Writer:
-    def __init__(
-        self, graph: Graph, outputs: Sequence[Weighted], inputs: Sequence[str], names: Names
-    ) -> None:
+    def __init__(self, graph: Graph, outputs: Sequence[Weighted], names: Names) -> None:
         self.graph = graph
         self.names = names
         self.assignments: list[Assignment] = []
         self._named: dict[int, Expression] = {graph.one: _ONE}
         self._ranks: dict[str, tuple[int, int]] = {}
         self._arguments: dict[Weighted, Name] = {}
-        for place, name in enumerate(inputs):
-            self._named[graph.atom(name)] = Name(name)
+        for place, (name, node) in enumerate(graph.inputs.items()):
+            self._named[node] = Name(name)
             self._ranks[name] = (_INPUT, place)
         roots = [node for _, node in outputs]
         self._reachable = graph.reachable(roots)

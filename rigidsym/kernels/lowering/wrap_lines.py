@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from rigidsym.kernels.ir import (
     Assignment,
-    Choice,
     Compare,
     Expression,
     Kernel,
@@ -16,6 +15,7 @@ from rigidsym.kernels.ir import (
     Product,
     Sum,
     parts,
+    rebuilt,
 )
 from rigidsym.kernels.lowering.naming import Names
 
@@ -80,24 +80,12 @@ def _operands(expression: Expression) -> tuple[Expression, ...]:
 
 def _replaced(expression: Expression, old: Expression, new: Expression) -> Expression:
     """The expression with one of its operands exchanged."""
-    if expression == old:
-        return new
-    match expression:
-        case Negative(operand):
-            return Negative(_replaced(operand, old, new))
-        case Sum(terms):
-            return Sum(tuple(_replaced(t, old, new) if _is(t, old) else t for t in terms))
-        case Compare(relation, left, right):
-            return Compare(relation, _replaced(left, old, new), _replaced(right, old, new))
-        case Choice(condition, then, otherwise):
-            return Choice(*(_replaced(p, old, new) for p in (condition, then, otherwise)))
-        case Product(factors, divisors):
-            return Product(
-                tuple(new if factor == old else factor for factor in factors),
-                tuple(new if divisor == old else divisor for divisor in divisors),
-            )
-    return expression
 
+    def exchanged(part: Expression) -> Expression:
+        if part == old:
+            return new
+        return rebuilt(exchanged, part) if isinstance(part, Negative | Compare) else part
 
-def _is(term: Expression, old: Expression) -> bool:
-    return old in (term, term.operand if isinstance(term, Negative) else term)
+    if isinstance(expression, Negative):
+        return Negative(_replaced(expression.operand, old, new))
+    return new if expression == old else rebuilt(exchanged, expression)

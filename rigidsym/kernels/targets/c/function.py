@@ -4,205 +4,134 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from typing import Any
 
-from rigidsym.kernels.ir import (
-    FUNCTIONS,
-    Call,
-    Compare,
-    Expression,
-    Guarded,
-    Kernel,
-    Name,
-    Number,
-    names_in,
-)
-from rigidsym.kernels.targets.c.precision import PRECISIONS, Precision
-from rigidsym.kernels.targets.text import statements
-from rigidsym.kernels.targets.text.infix import infix, literal
+from rigidsym.kernels.ir import Call, Compare, Expression, Guarded, Kernel
+from rigidsym.kernels.targets.text.infix import infix
+from rigidsym.kernels.targets.text.precision import Precision
 from rigidsym.kernels.targets.text.python_layout import bracketed
 
-_FUNCTIONS = {name: name for name in FUNCTIONS} | {"choice": "{0} ? {1} : {2}", "nan": "NAN"}
-show = partial(infix, functions=_FUNCTIONS)
-
+_CHOICE = {"choice": "{0} ? {1} : {2}", "nan": "NAN"}
 _PLAIN = frozenset({"sqrt", "abs", "atan2", "eps"})  # functions without far angles
 
-Texts = dict[str, str]  # by the suffix of the precision
+
+def show(expression: Expression) -> str:
+    """An expression in double precision."""
+    return infix(expression, _CHOICE)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Taken:
-    """An argument in an array function: its size, and where it stands in the tile."""
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A kernel in one precision, in the pieces of text that the templates place."""
 
-    name: str
-    count: int
-    offset: str  # " + 3"
+    name: str  # with the prefix of the module
+    kernel: Kernel
+    precision: Precision
 
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class CFunction:
-    """The pieces of text that stand for one kernel in the templates."""
-
-    inputs: int
-    outputs: int
-    arguments: tuple[Taken, ...]
-    signature: Texts
-    array_signature: Texts
-    body: Texts
-    scalar_call: Texts
-    tile_call: Texts
-    far_call: Texts
+    def pieces(self) -> dict[str, Any]:
+        kernel = self.kernel
+        places = [f"{a.name}[{k}]" for a in kernel.arguments for k in range(len(a.components))]
+        columns = [f"tile[{k}][j]" for k in range(len(places))]
+        return {
+            "inputs": len(places),
+            "outputs": len(kernel.outputs),
+            "arguments": list(self._arguments()),
+            "signature": self.signature,
+            "array_signature": self.array_signature,
+            "body": self._body(),
+            "scalar_call": self._call("1", places, "out", 4) + ";",
+            "tile_call": self._call("0", columns, "at", 12),
+            "far_call": self._call("1", columns, "at", 12),
+        }
 
     @property
-    def entries(self) -> range:
-        return range(self.outputs)
+    def signature(self) -> str:
+        real, outputs = self.precision.real, len(self.kernel.outputs)
+        given = [f"const {real} {a.name}[{len(a.components)}]" for a in self.kernel.arguments]
+        head = f"void {self.name}{self.precision.suffix}("
+        return _listed(0, head, [*given, f"{real} out[{outputs}]"])
 
-    def declared(self) -> dict[str, Texts]:
-        return {"signature": self.signature, "array_signature": self.array_signature}
+    @property
+    def array_signature(self) -> str:
+        real = self.precision.real
+        items = ["size_t count"]
+        for kind, name in (*(("const ", a.name) for a in self.kernel.arguments), ("", "out")):
+            items += [f"{kind}{real} *{name}", f"ptrdiff_t {name}_step", f"ptrdiff_t {name}_stride"]
+        return _listed(0, f"void {self.name}_array{self.precision.suffix}(", items)
+
+    def _arguments(self) -> Iterator[dict[str, Any]]:
+        """Name, size, and place in the tile."""
+        offset = 0
+        for argument in self.kernel.arguments:
+            count = len(argument.components)
+            place = f" + {offset}" if offset else ""
+            yield {"name": argument.name, "count": count, "offset": place}
+            offset += count
+
+    def _call(self, far: str, places: list[str], result: str, indent: int) -> str:
+        head = f"evaluate_{self.kernel.name}{self.precision.suffix}("
+        return _listed(indent, head, [far, *places, result]).lstrip()
+
+    def _body(self) -> str:
+        kernel, real, word = self.kernel, self.precision.real, self.precision.word
+        given = [f"const {real} {name}" for name in kernel.components]
+        head = f"INLINED {word} evaluate_{kernel.name}{self.precision.suffix}("
+        has_far = any(call.function not in _PLAIN for call in kernel.calls.values())
+        unused = [name for name in kernel.components if name not in kernel.used]
+        return "\n".join(
+            [
+                _listed(0, head, ["const int far", *given, f"{real} *out"]),
+                "{",
+                f"    {word} beyond = 0;",
+                *(f"    (void){name};" for name in (*([] if has_far else ["far"]), *unused)),
+                *self._lines(),
+                *(f"    out[{k}] = {self._text(e)};" for k, e in enumerate(kernel.outputs)),
+                "    return beyond;",
+                "}",
+            ]
+        )
+
+    def _lines(self) -> Iterator[str]:
+        precision = self.precision
+        real, suffix = precision.real, precision.suffix
+        for name, value in self.kernel.statements:
+            match value:
+                case dict():  # all functions c_k of one square
+                    (square,) = {call.argument.text for call in value.values()}
+                    yield f"    {real} _entire_{square}[ORDERS];"
+                    yield f"    beyond |= entire{suffix}(far, {square}, _entire_{square});"
+                    for called, call in value.items():
+                        yield f"    const {real} {called} = _entire_{square}[{call.order}];"
+                case Guarded(divisor):
+                    limit = self._limit(value)
+                    yield f"    const {real} {name} = or_nan{suffix}({divisor.text}, {limit});"
+                case Call("sin" | "cos", argument):
+                    both, angle = self.kernel.sines[argument], argument.text
+                    if name == next(iter(both.values())):
+                        sine, cosine = (both.get(f, f"_{f}_{angle}") for f in ("sin", "cos"))
+                        yield f"    {real} {sine}, {cosine};"
+                        yield f"    beyond |= sin_cos{suffix}(far, {angle}, &{sine}, &{cosine});"
+                case Call("eps"):
+                    yield f"    const {real} {name} = {precision.literal(precision.eps)};"
+                case Call(called):
+                    used = {"abs": "fabs", "atan2": "angle_of"}.get(called, called)
+                    given = ", ".join(argument.text for argument in value.arguments)
+                    yield f"    const {real} {name} = {used}{suffix}({given});"
+                case _:
+                    kind = "int" if isinstance(value, Compare) else real
+                    yield f"    const {kind} {name} = {self._text(value)};"
+
+    def _limit(self, guard: Guarded) -> str:
+        literal, eps = self.precision.literal, self.precision.eps
+        if guard.scale is None:
+            return literal(self.precision.tiny / eps)
+        return f"{literal(eps**guard.power)} * {self._text(guard.scale)}"
+
+    def _text(self, expression: Expression) -> str:
+        return infix(expression, _CHOICE, self.precision.literal)
 
 
-def function(prefix: str, kernel: Kernel) -> CFunction:
-    """The text of a kernel for both precisions; names begin with the prefix."""
-    name = f"{prefix}_{kernel.name}"
-    places = [f"{a.name}[{k}]" for a in kernel.arguments for k in range(len(a.components))]
-    columns = [f"tile[{k}][j]" for k in range(len(places))]
-    each = {p.suffix: p for p in PRECISIONS}
-    return CFunction(
-        inputs=len(places),
-        outputs=len(kernel.outputs),
-        arguments=tuple(_taken(kernel)),
-        signature={f: _signature(name, kernel, p) for f, p in each.items()},
-        array_signature={f: _array_signature(name, kernel, p) for f, p in each.items()},
-        body={f: _body(kernel, p) for f, p in each.items()},
-        scalar_call={f: _call(kernel, f, "1", places, "out", 4) + ";" for f in each},
-        tile_call={f: _call(kernel, f, "0", columns, "at", 12) for f in each},
-        far_call={f: _call(kernel, f, "1", columns, "at", 12) for f in each},
-    )
-
-
-def _taken(kernel: Kernel) -> Iterator[Taken]:
-    offset = 0
-    for argument in kernel.arguments:
-        count = len(argument.components)
-        yield Taken(name=argument.name, count=count, offset=f" + {offset}" if offset else "")
-        offset += count
-
-
-def _signature(name: str, kernel: Kernel, precision: Precision) -> str:
-    given = [f"const {precision.real} {a.name}[{len(a.components)}]" for a in kernel.arguments]
-    filled = f"{precision.real} out[{len(kernel.outputs)}]"
-    return listed(0, f"void {name}{precision.suffix}(", [*given, filled])
-
-
-def _array_signature(name: str, kernel: Kernel, precision: Precision) -> str:
-    items = ["size_t count"]
-    for argument in (*(f"const {precision.real} *{a.name}" for a in kernel.arguments), ""):
-        vector = argument.split("*")[-1] or "out"
-        items += [
-            argument or f"{precision.real} *out",
-            f"ptrdiff_t {vector}_step",
-            f"ptrdiff_t {vector}_stride",
-        ]
-    return listed(0, f"void {name}_array{precision.suffix}(", items)
-
-
-def _call(
-    kernel: Kernel, suffix: str, far: str, places: list[str], result: str, indent: int
-) -> str:
-    return listed(indent, f"evaluate_{kernel.name}{suffix}(", [far, *places, result]).lstrip()
-
-
-def listed(indent: int, head: str, items: Sequence[str]) -> str:
+def _listed(indent: int, head: str, items: Sequence[str]) -> str:
     """Parameters or what is given for them; C takes no comma after the last."""
     text = bracketed(indent, head, items, ")")
     return text.replace(f",\n{' ' * indent})", ")")
-
-
-def _body(kernel: Kernel, precision: Precision) -> str:
-    real, suffix = precision.real, precision.suffix
-    given = [f"const {real} {name}" for name in kernel.components]
-    head = f"INLINED {precision.word} evaluate_{kernel.name}{suffix}("
-    items = ["const int far", *given, f"{real} *out"]
-    return "\n".join(
-        [
-            listed(0, head, items),
-            "{",
-            f"    {precision.word} beyond = 0;",
-            *_unused(kernel),
-            *_lines(kernel, precision),
-            *_outputs(kernel, precision),
-            "    return beyond;",
-            "}",
-        ]
-    )
-
-
-def _unused(kernel: Kernel) -> Iterator[str]:
-    """What C is told of the parameters that this kernel has no use for."""
-    wholes = [*(assignment.value for assignment in kernel.assignments), *kernel.outputs]
-    used = {name for whole in wholes for name in names_in(whole)}
-    if all(call.function in _PLAIN for call in statements.calls_of(kernel).values()):
-        yield "    (void)far;"
-    yield from (f"    (void){name};" for name in kernel.components if name not in used)
-
-
-def _lines(kernel: Kernel, precision: Precision) -> Iterator[str]:
-    real, suffix = precision.real, precision.suffix
-    written: set[Call] = set()
-    calls = {call: name for name, call in statements.calls_of(kernel).items()}
-    for name, value in statements.grouped(kernel):
-        match value:
-            case dict():
-                yield from _entire(value, precision)
-            case Guarded():
-                yield f"    const {real} {name} = {_guarded(value, precision)};"
-            case Call("sin" | "cos", argument):
-                if value in written:
-                    continue
-                pair = [Call("sin", argument), Call("cos", argument)]
-                written.update(pair)
-                names = [calls.get(call, f"_{call.function}_{argument.text}") for call in pair]
-                yield f"    {real} {names[0]}, {names[1]};"
-                angle = argument.text
-                yield (f"    beyond |= sin_cos{suffix}(far, {angle}, &{names[0]}, &{names[1]});")
-            case Call("eps"):
-                yield f"    const {real} {name} = {precision.literal(precision.eps)};"
-            case Call(called):
-                used = {"abs": "fabs", "atan2": "angle_of"}.get(called, called)
-                given = ", ".join(argument.text for argument in value.arguments)
-                yield f"    const {real} {name} = {used}{suffix}({given});"
-            case Compare():
-                yield f"    const int {name} = {_text(value, precision)};"
-            case _:
-                yield f"    const {real} {name} = {_text(value, precision)};"
-
-
-def _entire(group: dict[str, Call], precision: Precision) -> Iterator[str]:
-    """All functions c_k of one square."""
-    (square,) = {call.argument.text for call in group.values()}
-    held = f"_entire_{square}"
-    yield f"    {precision.real} {held}[ORDERS];"
-    yield f"    beyond |= entire{precision.suffix}(far, {square}, {held});"
-    for name, call in group.items():
-        yield f"    const {precision.real} {name} = {held}[{call.order}];"
-
-
-def _guarded(guard: Guarded, precision: Precision) -> str:
-    eps = precision.literal(precision.eps**guard.power)
-    match guard.scale:
-        case Name(scale):
-            limit = f"{eps} * {scale}"
-        case Number(number):
-            limit = f"{eps} * {literal(number, precision.literal)}"
-        case _:
-            limit = precision.literal(precision.tiny / precision.eps)
-    return f"or_nan{precision.suffix}({guard.value.text}, {limit})"
-
-
-def _outputs(kernel: Kernel, precision: Precision) -> Iterator[str]:
-    for place, output in enumerate(kernel.outputs):
-        yield f"    out[{place}] = {_text(output, precision)};"
-
-
-def _text(expression: Expression, precision: Precision) -> str:
-    return show(expression, number=precision.literal)

@@ -7,7 +7,6 @@ orientation and one of many call it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 from math import prod
 from types import ModuleType
 
@@ -15,27 +14,17 @@ from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import (
     FUNCTIONS,
     Call,
+    Expression,
     Guarded,
     Kernel,
-    KernelArgument,
-    Name,
-    Number,
     Program,
-    names_in,
+    functions_of,
+    last_order,
 )
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.targets.javascript.function import (
-    WIDTH,
-    JavaScriptFunction,
-    Paragraph,
-    Vector,
-    comment,
-    placed,
-    taken_from,
-)
-from rigidsym.kernels.targets.text import remarks, statements
-from rigidsym.kernels.targets.text.infix import infix
+from rigidsym.kernels.targets.text import remarks
+from rigidsym.kernels.targets.text.infix import guard_arguments, infix
 from rigidsym.system import resources
 
 TEMPLATE = "javascript/module.mjs.jinja"
@@ -44,19 +33,13 @@ _WORDS = (
     "out at"
 )
 RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
-
-_FUNCTIONS = {name: name for name in FUNCTIONS} | {
-    "choice": "{0} ? {1} : {2}",
-    "nan": "NaN",
-    "==": "===",
-}
-_show = partial(infix, functions=_FUNCTIONS)
+_WIDTH = 88
+_FORMS = {"choice": "{0} ? {1} : {2}", "nan": "NaN", "==": "==="}
 
 
 def render(program: Program) -> dict[str, str]:
     """The module."""
-    kernels = list(map(_fitted, program.kernels))
-    return {f"{program.name}.mjs": _module(_about(program, kernels), kernels)}
+    return {f"{program.name}.mjs": _module(_about(program), program.kernels)}
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
@@ -69,111 +52,88 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
 
 def bare(kernels: Sequence[Kernel]) -> str:
     """The functions alone, without a word on them, to be set into other programs."""
-    return _module([], [_fitted(kernel) for kernel in kernels])
+    return _module([], kernels)
 
 
-def _module(about: Sequence[Paragraph], kernels: Sequence[Kernel]) -> str:
-    last = max((c.order for c in _calls(kernels) if c.order is not None), default=-1)
-    template = resources.environment().get_template(TEMPLATE)
-    return template.render(
-        about=comment(about),
-        functions=list(map(_function, kernels)),
-        imports=", ".join(sorted(_of_math(kernels))),
-        series=[_entry(order) for order in range(FIRST_SERIES, last + 1)],
-        has_series=last >= 0,
-        has_divisors=any(map(statements.guards_of, kernels)),
-        has_batches=bool(about),
-        has_matrices=any(len(shape) > 1 for k in kernels for shape in k.parts or (k.shape,)),
-        takes_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
+def _module(about: Sequence[remarks.Paragraph], kernels: Sequence[Kernel]) -> str:
+    line, output = _WIDTH - len("  const ;"), _WIDTH - len("  out[at + 10] = ;")
+    fitted = [narrowed(kernel, _show, line=line, output=output) for kernel in kernels]
+    called, last = functions_of(kernels), last_order(kernels)
+    has_guards = any(kernel.guards for kernel in kernels)
+    of_math = called.intersection(FUNCTIONS) - {"eps"}
+    of_math |= ({"abs"} if has_guards else set()) | ({"sqrt", "tan"} if last >= 0 else set())
+    return (
+        resources.environment()
+        .get_template(TEMPLATE)
+        .render(
+            about=_comment(about),
+            functions=list(map(_function, fitted)),
+            imports=", ".join(sorted(of_math)),
+            series=[_entry(order) for order in range(FIRST_SERIES, last + 1)],
+            has_series=last >= 0,
+            has_divisors=has_guards,
+            has_batches=bool(about),
+            has_matrices=any(len(shape) > 1 for k in kernels for shape in k.parts or (k.shape,)),
+            takes_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
+        )
     )
 
 
-def _calls(kernels: Sequence[Kernel]) -> Iterator[Call]:
-    return (call for kernel in kernels for call in statements.calls_of(kernel).values())
+def _show(expression: Expression) -> str:
+    return infix(expression, _FORMS)
 
 
-def _of_math(kernels: Sequence[Kernel]) -> set[str]:
-    """What the functions and their helpers need of `Math`."""
-    called = {call.function for call in _calls(kernels)}
-    guards = {"abs"} if any(map(statements.guards_of, kernels)) else set()
-    entire = {"sqrt", "tan"} if called.difference(FUNCTIONS) else set()
-    return (called.intersection(FUNCTIONS) - {"eps"}) | guards | entire
-
-
-def _fitted(kernel: Kernel) -> Kernel:
-    """The kernel in lines that fit."""
-    room = WIDTH - len("  out[at + 10] = ;")
-    return narrowed(kernel, _show, line=WIDTH - len("  const ;"), output=room)
-
-
-def _function(kernel: Kernel) -> JavaScriptFunction:
+def _function(kernel: Kernel) -> dict[str, object]:
+    """The pieces of text that the template places."""
     names = Names([*kernel.components, *(a.name for a in kernel.assignments), "out", "at"])
-    vectors = tuple(_vector(names.fresh(a.name), a) for a in kernel.arguments)
-    places = tuple(names.fresh(f"{vector.name}_at") for vector in vectors)
-    wholes = [*(assignment.value for assignment in kernel.assignments), *kernel.outputs]
-    used = {name for whole in wholes for name in names_in(whole)}
+    arguments = kernel.arguments
+    vectors = [names.fresh(argument.name) for argument in arguments]
+    places = [names.fresh(f"{vector}_at") for vector in vectors]
+    sizes = [len(argument.components) for argument in arguments]
+    forms = ["_flat({})" if a.is_matrix else "[{}]" if a.is_scalar else "{}" for a in arguments]
+    of_one = [form.format(vector) for form, vector in zip(forms, vectors, strict=True)]
+    each = list(zip(vectors, places, sizes, arguments, of_one, strict=True))
     taken = [
-        line
-        for vector, place in zip(vectors, places, strict=True)
-        for name, line in taken_from(vector, place)
-        if name in used
+        f"  const {name} = {vector}[{_placed(place, k)}];"
+        for vector, place, _, argument, _ in each
+        for k, name in enumerate(argument.components)
+        if name in kernel.used
     ]
-    given = [f"  out[{placed('at', k)}] = {_show(e)};" for k, e in enumerate(kernel.outputs)]
-    return JavaScriptFunction(
-        name=kernel.name,
-        about=comment(_about_kernel(kernel, vectors)),
-        vectors=vectors,
-        places=places,
-        body="\n".join([*taken, *_lines(kernel), *given]),
-        returned=_returned(kernel),
-        count=len(kernel.outputs),
-    )
+    given = [f"  out[{_placed('at', k)}] = {_show(e)};" for k, e in enumerate(kernel.outputs)]
+    return {
+        "name": kernel.name,
+        "about": _comment(_about_kernel(kernel, vectors)),
+        "parameters": ", ".join(
+            f"{v} = new Array({size}).fill(0)" if a.is_optional else v for v, _, size, a, _ in each
+        ),
+        "given": ", ".join(f"{vector}, {place}" for vector, place, *_ in each),
+        "taken": ", ".join(f'_taken("{a.name}", {flat}, {n}), 0' for _, _, n, a, flat in each),
+        "checked": ", ".join(f'["{a.name}", {vector}, {n}]' for vector, _, n, a, _ in each),
+        "stepped": ", ".join(f"{vector}, i * steps[{k}]" for k, vector in enumerate(vectors)),
+        "body": "\n".join([*taken, *_lines(kernel), *given]),
+        "returned": _returned(kernel),
+        "count": len(kernel.outputs),
+    }
 
 
-def _vector(name: str, argument: KernelArgument) -> Vector:
-    distinct = list(dict.fromkeys(unit or "1" for unit in argument.units))
-    units = distinct[0] if len(distinct) == 1 else ", ".join(u or "1" for u in argument.units)
-    unit = f" in {units}" if any(argument.units) else ""
-    return Vector(
-        name=name,
-        given=argument.name,
-        components=argument.components,
-        about=f"{', '.join(argument.components)}{unit}"
-        + ("; rows, or the entries row by row" if argument.is_matrix else ""),
-        entries=f"_flat({name})" if argument.is_matrix else f"[{name}]" * argument.is_scalar,
-        default=f"new Array({len(argument.components)}).fill(0)" if argument.is_optional else "",
-    )
+def _placed(place: str, count: int) -> str:
+    return f"{place} + {count}" if count else place
 
 
 def _lines(kernel: Kernel) -> Iterator[str]:
-    for name, value in statements.grouped(kernel):
+    for name, value in kernel.statements:
         match value:
             case Guarded():
-                yield f"  const {name} = _or_nan({', '.join(_guard(value))});"
+                yield f"  const {name} = _or_nan({', '.join(guard_arguments(value, 'null'))});"
             case Call("eps"):
                 yield f"  const {name} = Number.EPSILON;"
-            case dict():
+            case dict():  # all functions c_k of one square
                 calls = sorted(value.items(), key=lambda named: named[1].order or 0)
-                orders = ", ".join(str(call.order) for _, call in calls)
-                (argument,) = {call.argument.text for _, call in calls}
                 names = ", ".join(name for name, _ in calls)
-                yield f"  const [{names}] = _entire({argument}, {orders});"
+                orders = ", ".join(str(call.order) for _, call in calls)
+                yield f"  const [{names}] = _entire({calls[0][1].argument.text}, {orders});"
             case _:
                 yield f"  const {name} = {_show(value)};"
-
-
-def _guard(guard: Guarded) -> Iterator[str]:
-    """What _or_nan is given: the value, its scale, and the power where it is not one."""
-    yield guard.value.text
-    match guard.scale:
-        case Name(scale):
-            yield scale
-        case Number(number):
-            yield repr(float(number))
-        case _:
-            yield "null"
-    if guard.power != 1:
-        yield str(guard.power)
 
 
 def _returned(kernel: Kernel) -> str:
@@ -192,30 +152,22 @@ def _shaped(values: str, shape: Sequence[int]) -> str:
     return values if len(shape) == 1 else f"_rows({values}, {shape[1]})"
 
 
-def _listed(indent: int, head: str, items: Sequence[str], tail: str) -> str:
-    """Items between brackets: in one line where it fits, else each in one."""
-    margin = " " * indent
-    line = f"{margin}{head}{', '.join(items)}{tail}"
-    if len(line) <= WIDTH:
-        return line
-    inside = "".join(f"{margin}  {item},\n" for item in items)
-    return f"{margin}{head}\n{inside}{margin}{tail}"
-
-
 def _entry(order: int) -> str:
-    """A line of the table: k, the switch, c_{k-2}(0), and the coefficients."""
+    """The table's entry for c_k, in a line if it fits: k, the switch, c_{k-2}(0), coefficients."""
     series = series_of(order)
     numbers = [series.switch, taylor(order - 2)[0], *series.coefficients]
-    return _listed(2, f"{order}: [", [repr(float(number)) for number in numbers], "],")
+    items = [repr(float(number)) for number in numbers]
+    line = f"  {order}: [{', '.join(items)}],"
+    inside = "".join(f"    {item},\n" for item in items)
+    return line if len(line) <= _WIDTH else f"  {order}: [\n{inside}  ],"
 
 
-def _about(program: Program, kernels: Sequence[Kernel]) -> list[Paragraph]:
+def _about(program: Program) -> list[remarks.Paragraph]:
     """The paragraphs of the module's comment."""
     rows = [(a.name, f"({', '.join(map(str, a.shape))})", a.about) for a in program.arguments]
-    return [
-        f"{program.title}: functions of plain arrays.",
-        " ".join(program.convention),
-        f"Source: {program.source}.",
+    return remarks.about_module(
+        program,
+        "functions of plain arrays",
         "Arguments, arrays of numbers in radians and SI units:",
         remarks.table(rows),
         "Vectors are arrays, and matrices are arrays of rows.",
@@ -224,29 +176,23 @@ def _about(program: Program, kernels: Sequence[Kernel]) -> list[Paragraph]:
         "used for all orientations. It fills and returns `out`, by default a new Float64Array; "
         "`out` must not share memory with an argument. There are no threads (use workers), and no "
         "float32, since JavaScript computes in double precision only.",
-        *remarks.errors(program.kernels),
-        *remarks.remarks(kernels),
-        *program.remarks,
-        *([remarks.WITHOUT_UNWRAP] if program.unwrapping else []),
-        remarks.GENERATED,
-    ]
+    )
 
 
-def _about_kernel(kernel: Kernel, vectors: Sequence[Vector]) -> list[Paragraph]:
+def _about_kernel(kernel: Kernel, vectors: Sequence[str]) -> list[remarks.Paragraph]:
     """The paragraphs of a function's comment."""
-    return [
-        remarks.headline(kernel),
-        *kernel.remarks,
-        remarks.cost(kernel),
-        *remarks.bound(kernel),
-        *remarks.poles(kernel),
-        [*(f"@param {{number[]}} {v.name} {v.about}" for v in vectors), _returns(kernel)],
-    ]
-
-
-def _returns(kernel: Kernel) -> str:
-    unit = f" in {kernel.unit}" if kernel.unit else ""
+    lines = []
+    for vector, a in zip(vectors, kernel.arguments, strict=True):
+        rows = "; rows, or the entries row by row" if a.is_matrix else ""
+        about = f"{', '.join(a.components)}{remarks.in_units(a.units)}{rows}"
+        lines.append(f"@param {{number[]}} {vector} {about}")
     kinds = ["number" + "[]" * len(shape) for shape in kernel.parts or (kernel.shape,)]
     shapes = [f"({', '.join(map(str, s))})" for s in kernel.parts or (kernel.shape,) if s]
     kind = f"[{', '.join(kinds)}]" if kernel.parts else kinds[0]
-    return " ".join([f"@returns {{{kind}}}", *filter(None, [" and ".join(shapes)])]) + unit
+    unit = f" in {kernel.unit}" if kernel.unit else ""
+    returned = " ".join([f"@returns {{{kind}}}", *filter(None, [" and ".join(shapes)])])
+    return [*remarks.about_kernel(kernel), [*lines, returned + unit]]
+
+
+def _comment(paragraphs: Sequence[remarks.Paragraph]) -> str:
+    return remarks.comment(paragraphs, _WIDTH, lambda text: text.replace("*/", "*\u200b/"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from math import isnan
+from types import MappingProxyType
 
 from rigidsym.kernels.ir import (
     Call,
@@ -25,7 +26,11 @@ _CHOICE, _SUM, _PRODUCT, _ATOM = range(4)  # how tightly a piece of text holds t
 Literal = Callable[[float], str]
 
 
-def infix(expression: Expression, functions: Mapping[str, str], number: Literal = repr) -> str:
+def infix(
+    expression: Expression,
+    functions: Mapping[str, str] = MappingProxyType({}),
+    number: Literal = repr,
+) -> str:
     """The expression in one line; `functions` are the target's names for functions.
 
     A function without a name there keeps its own, a guard is or_nan(value, scale), and `number`
@@ -33,14 +38,6 @@ def infix(expression: Expression, functions: Mapping[str, str], number: Literal 
     first, "nan" a word, and "==" the sign of equality.
     """
     return _text(expression, functions, number)[0]
-
-
-def literal(value: Fraction | float, number: Literal = repr) -> str:
-    """A number as a literal of a floating-point type; a fraction that is none, as a quotient."""
-    if Fraction(float(value)) == value:
-        return number(float(value))
-    fraction = Fraction(value)
-    return f"{number(float(fraction.numerator))} / {number(float(fraction.denominator))}"
 
 
 def _text(expression: Expression, functions: Mapping[str, str], number: Literal) -> tuple[str, int]:
@@ -55,9 +52,11 @@ def _text(expression: Expression, functions: Mapping[str, str], number: Literal)
             return text, _ATOM
         case Number(value) if isnan(value):
             return functions.get("nan", "nan"), _ATOM
+        case Number(value) if Fraction(float(value)) == value:
+            return number(float(value)), _ATOM
         case Number(value):
-            text = literal(value, number)
-            return text, _PRODUCT if "/" in text else _ATOM
+            above, below = Fraction(value).as_integer_ratio()
+            return f"{number(float(above))} / {number(float(below))}", _PRODUCT
         case Call(function):
             given = ", ".join(argument.text for argument in expression.arguments)
             return f"{functions.get(function, function)}({given})", _ATOM
@@ -77,10 +76,19 @@ def _text(expression: Expression, functions: Mapping[str, str], number: Literal)
             signed = (f"- {t[1:]}" if t.startswith("-") else f"+ {t}" for t in others)
             return " ".join([first, *signed]), _SUM
         case Product(factors, divisors):
-            above = " * ".join(within(factor, _PRODUCT) for factor in factors)
+            above, below = (
+                " * ".join(within(part, tightness) for part in side)
+                for side, tightness in (
+                    (factors, _PRODUCT),
+                    (divisors, _PRODUCT if len(divisors) > 1 else _ATOM),
+                )
+            )
             if not divisors:
                 return above, _PRODUCT
-            if len(divisors) == 1:
-                return f"{above} / {within(divisors[0], _ATOM)}", _PRODUCT
-            below = " * ".join(within(divisor, _PRODUCT) for divisor in divisors)
-            return f"{above} / ({below})", _PRODUCT
+            return f"{above} / {f'({below})' if len(divisors) > 1 else below}", _PRODUCT
+
+
+def guard_arguments(guard: Guarded, nothing: str) -> list[str]:
+    """The value, its scale or `nothing`, and the power if it is not one."""
+    scale = nothing if guard.scale is None else infix(guard.scale)
+    return [guard.value.text, scale, *([str(guard.power)] if guard.power != 1 else [])]

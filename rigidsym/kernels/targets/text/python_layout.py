@@ -29,6 +29,10 @@ def exploded(indent: int, head: str, items: Sequence[str], tail: str) -> str:
     return f"{margin}{head}\n{lines}{margin}{tail}"
 
 
+def tuple_of(items: Sequence[str]) -> str:
+    return f"({', '.join(items)}{',' if len(items) == 1 else ''})"
+
+
 def assignment_lines(indent: int, name: str, value: str) -> str:
     """One assignment; a value without brackets that is too wide stands in brackets of its own."""
     margin, inner = " " * indent, " " * (indent + 4)
@@ -52,6 +56,7 @@ def docstring(paragraphs: Sequence[str | Sequence[str]], indent: int = 0) -> str
 
 
 def filled(paragraph: str | Sequence[str], width: int) -> list[str]:
+    """The lines of a paragraph."""
     if not isinstance(paragraph, str):
         return list(paragraph)
     return wrap(paragraph, width, break_long_words=False, break_on_hyphens=False)

@@ -1,4 +1,4 @@
-"""What differs between double and float in the C target."""
+"""What differs between double and float, for targets that print their own sines."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ from math import pi
 from typing import Any
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
-from rigidsym.kernels.lowering.arctangent import arctangent
-from rigidsym.kernels.lowering.sincos import reduction
+from rigidsym.kernels.lowering.trigonometry import arctangent, reduction
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -31,53 +30,41 @@ class Precision:
     def eps(self) -> float:
         return float(2.0 ** (1 - self.digits))
 
-    @property
-    def reach(self) -> str:
-        """The largest angle of the fast reduction, cut to two digits."""
-        text = f"{reduction(self.digits).reach:.0f}"
-        return text[:2] + "0" * (len(text) - 2)
-
     def literal(self, value: float) -> str:
         return f"{value!r}{self.suffix}"
 
     def filled(self, last: int) -> dict[str, Any]:
-        """What the template needs; `last` is the highest order of the functions c_k."""
+        """What the templates need; `last` is the highest order of the functions c_k."""
         found = reduction(self.digits)
         sine, cosine = self.falling(found.sine), self.falling(found.cosine)
         magic = 1.5 * 2.0 ** (self.digits - 1)  # a float of this size has no fraction
         letters, words = self.packed
         (word,) = struct.unpack(words, struct.pack(letters, magic))
+        angles = arctangent(self.digits)
         return {
             "real": self.real,
             "word": self.word,
             "suffix": self.suffix,
             "point": f".0{self.suffix}",
             "sign_shift": self.bits - 2,
-            "reach": self.reach,
+            "reach": f"{found.reach:.0f}",
             "shift": found.turns + 1,
             "magic": self.literal(magic),
             "least_word": f"{word - 2**found.turns:#x}u",
-            "pi": self.literal(pi),
             "two_over_pi": self.literal(2 / pi),
-            "parts": [float(part).hex() + self.suffix for part in found.parts],
+            "parts": list(map(float, found.parts)),
             "first": (sine[0], cosine[0]),
             "rest": list(zip(sine[1:], cosine[1:], strict=True)),
             "nan": self.nan,
-            "arctangent": self._arctangent(),
+            "edge": self.literal(angles.edge),
+            "arctangent": self.falling(angles.coefficients),
+            "eighth": list(map(self.literal, angles.eighth)),
             "series": [self._series(order) for order in range(FIRST_SERIES, last + 1)],
         }
 
     def falling(self, coefficients: Sequence[Fraction]) -> list[str]:
         """The literals of a polynomial from the highest power down, as Horner's rule takes them."""
         return [self.literal(float(coefficient)) for coefficient in reversed(coefficients)]
-
-    def _arctangent(self) -> dict[str, Any]:
-        """The numbers of the angle of a point."""
-        found = arctangent(self.digits)
-        first, *rest = self.falling(found.coefficients)
-        high, low = (self.literal(part) for part in found.eighth)
-        edge = self.literal(found.edge)
-        return {"edge": edge, "first": first, "rest": rest, "high": high, "low": low}
 
     def _series(self, order: int) -> dict[str, Any]:
         """c_k below its switch and above it."""
@@ -91,7 +78,7 @@ class Precision:
         }
 
 
-PRECISIONS = (
+DOUBLE, SINGLE = PRECISIONS = (
     Precision(
         real="double",
         word="uint64_t",
