@@ -21,6 +21,7 @@ from benchmarks.measure import Spread, interleaved, peak_memory, progress, ratio
 from benchmarks.peers import PEERS, Array, Task
 from benchmarks.report import Cell, Column, Figure, Table, spread_columns
 from rigidsym.kernels.lowering.lower import lower
+from rigidsym.kernels.operations import count
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.motion import Motion, derive
 from rigidsym.system.resources import folder
@@ -227,7 +228,7 @@ def _chain(turns: int, repeats: int, size: int) -> tuple[Cell, ...]:
     shared, left = sp.cse(entries)
     theirs = sum(sp.count_ops(e) for e in [*(value for _, value in shared), *left])
     times_in_order = (found.get(name) for name in ("numpy", "c", *GROWN))
-    return (turns, kernel.operations.total(), int(theirs), *times_in_order)
+    return (turns, count(kernel.values).total(), int(theirs), *times_in_order)
 
 
 def errors(present: Sequence[str], samples: int) -> Part:

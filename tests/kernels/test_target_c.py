@@ -13,7 +13,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rigidsym.kernels.targets.c.precision import PRECISIONS
 
 import rigidsym as rs
 from helpers.command import call
@@ -22,6 +21,7 @@ from helpers.witness import mp
 from rigidsym.errors import CheckError, MissingTool
 from rigidsym.kernels.lowering.trigonometry import reduction, two_over_pi
 from rigidsym.kernels.targets.c import compiling as c_build
+from rigidsym.kernels.targets.text.precision import PRECISIONS
 
 REQUIRED = os.environ.get("RIGIDSYM_REQUIRE_COMPILERS") == "1"  # then they fail, not skip
 COMPILERS = [

@@ -8,6 +8,7 @@ from math import ceil
 from rigidsym.algebra.series import FIRST_SERIES, Series, series_of
 from rigidsym.kernels.ir import Kernel, Name, Program, functions_of, last_order
 from rigidsym.kernels.lowering.rounding import SINE, adds_angles, rounding
+from rigidsym.kernels.operations import count
 from rigidsym.kernels.targets.text.python_layout import filled
 from rigidsym.version import __version__
 
@@ -69,7 +70,7 @@ def about_kernel(kernel: Kernel, *arguments: Sequence[str]) -> list[Paragraph]:
         f"{kernel.symbol}{definition}: {kernel.about}.",
         *arguments,
         *kernel.remarks,
-        f"{place}{kernel.operations}.",
+        f"{place}{count(kernel.values)}.",
         *([str(bound)] if bound is not None and bound.error else []),
         *_poles(kernel),
     ]
