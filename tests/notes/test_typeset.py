@@ -45,9 +45,9 @@ def _page(body: str) -> str:
     ("angles", "passive", "sequences"),
     [
         (GREEK, False, EULER_SEQUENCES),
-        (WORDS, True, EULER_SEQUENCES),  # the widest
-        (OTHER_GREEK, True, EULER_SEQUENCES[::5]),
-        (INDEXED, False, EULER_SEQUENCES[::5]),
+        (WORDS, True, EULER_SEQUENCES[::2]),  # the widest
+        (OTHER_GREEK, True, EULER_SEQUENCES[1::9]),
+        (INDEXED, False, EULER_SEQUENCES[3::9]),
     ],
 )
 def test_all_24_notes_compile_without_a_warning(angles, passive, sequences):
