@@ -180,6 +180,10 @@ class KernelError(RigidsymError):
     exit_code: ClassVar[int] = 2
 
 
+class EditedFiles(RigidsymError):
+    """Generated files that were edited since, and that a command would overwrite."""
+
+
 class CheckError(RigidsymError):
     """A path that `rigidsym check` cannot check: no record of a derivation there."""
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -46,7 +47,7 @@ class Output:
     spec: DerivationSpec
     motion: Motion
     conversions: Conversions | None  # if they were asked for
-    files: Mapping[str, str]  # file name -> content, for the folder that is named motion.name
+    files: Mapping[str, str]  # name -> content, for the folder motion.name; the record comes last
 
     @property
     def name(self) -> str:
@@ -66,7 +67,10 @@ def output_of(spec: DerivationSpec) -> Output:
     """Stages 2 and 3 for the specification of one rotation."""
     motion = motion_of(spec)
     conversions = motion.conversions if spec.conversions else None
-    files = dict(_printed(motion, conversions, spec))
+    files = dict(_printed(motion, spec))
+    data = record(motion, spec.to_data(), conversions)
+    data["files"] = {name: digest(text.encode()) for name, text in files.items()}
+    files[f"{spec.name}.json"] = json.dumps(data, indent=1, ensure_ascii=False) + "\n"
     return Output(spec=spec, motion=motion, conversions=conversions, files=files)
 
 
@@ -163,17 +167,13 @@ def integrated(spec: DerivationSpec) -> DerivationSpec:
 # 3. print
 
 
-def _printed(
-    motion: Motion, conversions: Conversions | None, spec: DerivationSpec
-) -> Iterator[tuple[str, str]]:
-    """(name, content) of each text file; the record, which describes the others, comes last."""
+def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
+    """(name, content) of each text file but the record."""
     for target in spec.kernels:
         module = motion.kernels(target, conversions=spec.conversions, derivatives=spec.derivatives)
         yield from module.files.items()
     if spec.note:
         yield from _notes(motion, spec)
-    data = record(motion, spec.to_data(), conversions)
-    yield f"{spec.name}.json", json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
 
 def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
@@ -187,6 +187,11 @@ def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
         from rigidsym.page.print_page import print_page
 
         yield page_name(spec.name), print_page(motion, note.document)
+
+
+def digest(content: bytes) -> str:
+    """By which a record knows a file."""
+    return sha256(content).hexdigest()
 
 
 def note_formats() -> tuple[str, ...]:

@@ -16,9 +16,9 @@ from rigidsym.commands.options import (
     option,
     with_options,
 )
-from rigidsym.commands.page import write_files
+from rigidsym.commands.output_folder import with_existing_files, write
 from rigidsym.kernels.targets.c.compiling import build
-from rigidsym.pipeline import integrated, read
+from rigidsym.pipeline import integrated, output_of, read
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,5 +53,7 @@ def _built(source: str, options: BuildOptions) -> Iterator[Path]:
         return
     spec = options.selected(integrated(read(source, **options.of_rotation())))
     for single in spec.singles():
-        folder = write_files(replace(single, kernels=("c",)), options.out)
-        yield build(folder / f"{single.name}.c", portable=options.portable)
+        output = output_of(with_existing_files(replace(single, kernels=("c",)), options.out))
+        write(output, options.out, force=options.force)
+        source_file = options.out / single.name / f"{single.name}.c"
+        yield build(source_file, portable=options.portable)

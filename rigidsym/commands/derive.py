@@ -19,7 +19,7 @@ from rigidsym.commands.options import (
     option,
     with_options,
 )
-from rigidsym.commands.output_folder import report_other_files, with_existing_files
+from rigidsym.commands.output_folder import with_existing_files, write
 from rigidsym.errors import RigidsymError
 from rigidsym.motion import Motion
 from rigidsym.notes.formats.pdf import typeset
@@ -27,7 +27,7 @@ from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import PDF, Output, integrated, motion_of, output_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
-from rigidsym.system.files import write_bytes, write_text
+from rigidsym.system.files import write_bytes
 from rigidsym.system.progress import counter
 
 
@@ -52,11 +52,24 @@ def command(rotation: str, options: DeriveOptions) -> None:
     fixed axes), turns such as "z(phi) x(theta) [1,1,0](psi)", or a name such as quaternion;
     `rigidsym list` shows all of them.
     """
-    spec = spec_for(rotation, **options.of_rotation())
+    spec = options.applied_to(spec_for(rotation, **options.of_rotation()))
     if options.equations is None:
         produce([spec], options)
     else:
-        click.echo(_equations(motion_of(options.applied_to(spec)), options.equations))
+        click.echo(_equations(motion_of(spec), options.equations))
+
+
+def produce(specs: Iterable[DerivationSpec], options: PrintingOptions) -> None:
+    """Derive, print, write and show each rotation of some specifications."""
+    singles = [single for spec in specs for single in integrated(spec).singles()]
+    _check_folders(singles)
+    missing: list[RigidsymError] = []
+    for output in _outputs([with_existing_files(single, options.out) for single in singles]):
+        written = write(output, options.out, force=options.force)
+        written += _typeset(output, written[0].parent, missing)
+        _show(output, written, options, is_only=len(singles) == 1)
+    if missing:
+        raise missing[0]
 
 
 def _equations(motion: Motion, form: str) -> str:
@@ -64,27 +77,6 @@ def _equations(motion: Motion, form: str) -> str:
     if form == "json":
         return json.dumps(record(motion, {})["quantities"], indent=1, ensure_ascii=False)
     return "\n\n".join(step.latex() if form == "latex" else step.text() for step in motion.steps)
-
-
-def produce(specs: Sequence[DerivationSpec], options: PrintingOptions) -> None:
-    """Derive, print, write and show each rotation of some specifications."""
-    asked = [options.applied_to(integrated(spec)) for spec in specs]
-    singles = [single for spec in asked for single in spec.singles()]
-    _check_folders(singles)
-    missing: RigidsymError | None = None
-    for output in _outputs([with_existing_files(single, options.out) for single in singles]):
-        written, problem = _write(output, options.out)
-        missing = missing or problem
-        if options.quiet:
-            click.echo("\n".join(map(str, written)))
-        elif options.as_json:
-            click.echo(output.record_text, nl=False)
-        elif len(singles) == 1:
-            _show(output, written, full=options.full)
-        else:
-            click.echo(_summary(output, written))
-    if missing:
-        raise missing
 
 
 def _check_folders(singles: Iterable[DerivationSpec]) -> None:
@@ -109,34 +101,42 @@ def _outputs(singles: Sequence[DerivationSpec]) -> Iterator[Output]:
             yield output_of(single)
 
 
-def _write(output: Output, out: Path) -> tuple[list[Path], RigidsymError | None]:
-    """Write the files; a missing TeX is reported after all other files are written."""
-    folder = out / output.name
-    report_other_files(output, out)
-    written = [write_text(folder / name, text) for name, text in output.files.items()]
+def _typeset(output: Output, folder: Path, missing: list[RigidsymError]) -> list[Path]:
+    """The PDF; a missing TeX is reported after all other files are written."""
     if PDF not in output.spec.note:
-        return written, None
+        return []
     try:
         paper = typeset(output.files[f"{output.name}.tex"])
     except RigidsymError as error:
-        return written, error
-    return [*written, write_bytes(folder / f"{output.name}.pdf", paper.pdf)], None
+        missing.append(error)
+        return []
+    return [write_bytes(folder / f"{output.name}.pdf", paper.pdf)]
 
 
-def _show(output: Output, written: list[Path], *, full: bool) -> None:
+def _show(
+    output: Output, written: Sequence[Path], options: PrintingOptions, *, is_only: bool
+) -> None:
+    if options.quiet:
+        click.echo("\n".join(map(str, written)))
+    elif options.as_json:
+        click.echo(output.record_text, nl=False)
+    elif is_only:
+        click.echo(_shown(output, full=options.full))
+        click.echo("\nWritten: " + "\n         ".join(map(str, written)))
+    else:
+        click.echo(f"{output.name:<28} {_proved(output)}  {written[0].parent}")
+
+
+def _shown(output: Output, *, full: bool) -> str:
+    """The derivation for a terminal; its first lines unless all are asked for."""
     width = min(shutil.get_terminal_size((88, 24)).columns, 120)
     motion = output.motion
     text = show(motion, width=width, notation=motion.notation, conversions=output.conversions)
     lines = text.split("\n")
-    left = 0 if full else max(0, len(lines) - MOST_LINES)
-    click.echo("\n".join(lines[: len(lines) - left]))
-    if left:
-        click.echo(f"\n... and {left} more lines: use --full, or read the note; {_proved(output)}")
-    click.echo("\nWritten: " + "\n         ".join(str(path) for path in written))
-
-
-def _summary(output: Output, written: list[Path]) -> str:
-    return f"{output.name:<28} {_proved(output)}  {written[0].parent}"
+    if full or len(lines) <= MOST_LINES:
+        return text
+    left = f"... and {len(lines) - MOST_LINES} more lines: use --full, or read the note"
+    return "\n".join([*lines[:MOST_LINES], "", f"{left}; {_proved(output)}"])
 
 
 def _proved(output: Output) -> str:

@@ -107,6 +107,7 @@ class FolderOptions(TemplateOptions):
         metavar="DIR",
         help="Write to DIR/NAME/.",
     )
+    force: bool = option("--force", is_flag=True, help="Overwrite files that were edited since.")
 
 
 @dataclass(frozen=True, kw_only=True)

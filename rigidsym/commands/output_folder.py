@@ -6,12 +6,14 @@ import json
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from rigidsym.commands.command import message
-from rigidsym.errors import SpecError
+from rigidsym.errors import EditedFiles, SpecError
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.pipeline import PAGE, PDF, Output, note_formats, page_name, read_record
+from rigidsym.pipeline import PAGE, PDF, Output, digest, note_formats, page_name, read_record
 from rigidsym.spec.derivation_spec import DerivationSpec
+from rigidsym.system.files import locked, write_text
 
 
 def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
@@ -31,12 +33,39 @@ def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
     )
 
 
-def report_other_files(output: Output, out: Path) -> None:
-    """A message on standard error if out/NAME/ holds another derivation.
+def write(output: Output, out: Path, *, force: bool) -> list[Path]:
+    """Write the files of a derivation to out/NAME/, the record last.
 
-    Called when everything is derived and nothing is written yet.
+    Each file is whole or as it was before; another process that writes there is waited for.
+    Raises EditedFiles, before anything is written, for files that were edited since, unless
+    `force` is set.
     """
     folder = out / output.name
+    with locked(folder):
+        if not force and (edited := _edited(output, folder)):
+            raise EditedFiles(
+                f"{', '.join(map(str, edited))} changed since it was generated; use --force to "
+                "overwrite it, or --out for another folder"
+            )
+        _report_other_files(output, folder)
+        return [write_text(folder / name, text) for name, text in output.files.items()]
+
+
+def _edited(output: Output, folder: Path) -> list[Path]:
+    """The files that are neither as the record there describes them nor as they will be."""
+    known = _record_in(folder).get("files")
+    found = []
+    for name, text in output.files.items():
+        path = folder / name
+        if isinstance(known, dict) and name in known and path.is_file():
+            content = path.read_bytes()
+            if digest(content) != known[name] and content != text.encode():
+                found.append(path)
+    return found
+
+
+def _report_other_files(output: Output, folder: Path) -> None:
+    """A message on standard error if the folder holds another derivation."""
     before, now = _spec_there(folder), output.spec
     if before is None or _is_same(before, now):
         return
@@ -55,10 +84,18 @@ def _is_same(before: DerivationSpec, now: DerivationSpec) -> bool:
 def _spec_there(folder: Path) -> DerivationSpec | None:
     """The specification in the record of a folder; None without a record that can be read."""
     try:
-        content = json.loads((folder / f"{folder.name}.json").read_text(encoding="utf-8"))
-        return read_record(content["request"])
-    except (OSError, ValueError, KeyError, TypeError, SpecError, RecursionError):
+        return read_record(_record_in(folder).get("request"))
+    except SpecError:
         return None
+
+
+def _record_in(folder: Path) -> dict[str, Any]:
+    """The record of a folder; empty without one that can be read."""
+    try:
+        content = json.loads((folder / f"{folder.name}.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return content if isinstance(content, dict) else {}
 
 
 def _kept(before: tuple[str, ...], now: tuple[str, ...], folder: Path) -> Iterator[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import click
 
@@ -15,10 +14,8 @@ from rigidsym.commands.options import (
     SelectionOptions,
     with_options,
 )
-from rigidsym.commands.output_folder import report_other_files, with_existing_files
+from rigidsym.commands.output_folder import with_existing_files, write
 from rigidsym.pipeline import PAGE, integrated, output_of, page_name, read
-from rigidsym.spec.derivation_spec import DerivationSpec
-from rigidsym.system.files import write_text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,16 +32,9 @@ def command(source: str, options: PageOptions) -> None:
     ROTATION is as for `derive`, FILE as for `run`. The page DIR/NAME/NAME_page.html is one file
     that needs no network; NAME.json beside it is the record that `check` reads.
     """
-    spec = options.selected(integrated(read(source, **options.of_rotation())))
-    for single in options.in_notation(spec).singles():
-        folder = write_files(replace(single, kernels=(), note=(PAGE,)), options.out)
-        click.echo(folder / page_name(single.name))
-
-
-def write_files(spec: DerivationSpec, out: Path) -> Path:
-    """Derive and print a rotation, write its files, and return their folder."""
-    output = output_of(with_existing_files(spec, out))
-    report_other_files(output, out)
-    for name, text in output.files.items():
-        write_text(out / output.name / name, text)
-    return out / output.name
+    spec = integrated(read(source, **options.of_rotation()))
+    for single in options.in_notation(options.selected(spec)).singles():
+        asked = replace(single, kernels=(), note=(PAGE,))
+        output = output_of(with_existing_files(asked, options.out))
+        write(output, options.out, force=options.force)
+        click.echo(options.out / single.name / page_name(single.name))

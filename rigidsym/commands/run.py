@@ -22,7 +22,7 @@ def command(files: tuple[str, ...], options: PrintingOptions) -> None:
 
     All files are checked before the first is run; if one has a fault, nothing is written.
     """
-    produce(_read_all(files), options)
+    produce(map(options.applied_to, _read_all(files)), options)
 
 
 def _read_all(files: Iterable[str]) -> list[DerivationSpec]:

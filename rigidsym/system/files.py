@@ -42,6 +42,23 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
 
 
 @contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Wait until no other process is in such a block with this folder, which is made."""
+    folder.mkdir(parents=True, exist_ok=True)
+    if os.name == "nt":
+        yield
+        return
+    import fcntl
+
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+@contextmanager
 def naming(path: Path) -> Iterator[None]:
     """Errors of the system that name no file, or its draft, name the file that is to be."""
     try:

@@ -9,6 +9,7 @@ from click.testing import CliRunner
 
 import rigidsym as rs
 from rigidsym.commands.cli import commands
+from rigidsym.errors import EditedFiles
 from rigidsym.kernels.targets import TARGETS
 
 NAME = "euler_zxz_intrinsic"
@@ -80,3 +81,22 @@ def test_what_is_refused_writes_over_nothing_and_does_not_say_so(tmp_path):
     assert isinstance(done.exception, rs.RigidsymError), done.output
     assert "overwriting" not in done.stderr
     assert (tmp_path / NAME / f"{NAME}.json").read_bytes() == before
+
+
+def test_an_edited_file_is_named_and_kept_unless_forced(tmp_path):
+    out = "--out", str(tmp_path)
+    _run("derive", "ZXZ", *out)
+    module = tmp_path / NAME / f"{NAME}.py"
+    before = {path: path.read_bytes() for path in (tmp_path / NAME).iterdir()} | {
+        module: module.read_bytes() + b"# mine\n"
+    }
+    module.write_bytes(before[module])
+    for words in (("derive", "ZXZ"), ("derive", "ZXZ", "--angles", "a,b,c"), ("page", "ZXZ")):
+        done = CliRunner().invoke(commands, [*words, *out])
+        assert isinstance(done.exception, EditedFiles)
+        assert str(module) in str(done.exception)
+        assert {path: path.read_bytes() for path in (tmp_path / NAME).iterdir()} == before
+    _run("derive", "ZXZ", *out, "--force")
+    assert b"# mine" not in module.read_bytes()
+    _run("derive", "ZXZ", "--angles", "a,b,c", *out)  # nothing is edited now
+    assert _checked(tmp_path) == _files(tmp_path)
