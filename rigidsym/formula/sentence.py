@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TypeVar
 
 from rigidsym.formula.reader import formula
@@ -29,3 +30,8 @@ def sentence(typed: str, *spans: _Span) -> tuple[str | Formula | _Span, ...]:
 def text_of(words: Sentence) -> str:
     """The sentence on one line of Unicode."""
     return "".join(span if isinstance(span, str) else span.text for span in words)
+
+
+def by_text(formulas: Iterable[Formula]) -> dict[str, Formula]:
+    """Formulas by their plain text, as it may stand in a sentence."""
+    return {found.text: found for found in formulas}

@@ -28,6 +28,11 @@ class Formula:
         """On one line of Unicode, in the notation it was composed in."""
         return str(WRITERS["text"]().write(self).text)
 
+    @property
+    def markup(self) -> dict[str, str]:
+        """Both, for programs."""
+        return {"latex": self.latex, "text": self.text}
+
     def __bool__(self) -> bool:
         return self != NOTHING
 

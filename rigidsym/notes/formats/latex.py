@@ -139,7 +139,28 @@ class _LatexPrinter(NotePrinter):
         return rf"$\displaystyle {text}$" if is_tall else f"${text}$"
 
     def notetable(self, table: NoteTable) -> str:
-        return "\n".join(map(self._table, paged(table)))
+        return "\n".join(map(self._table, self._paged(table)))
+
+    def _paged(self, table: NoteTable) -> Iterator[NoteTable]:
+        """The table, or its parts; those after the first say in the caption that they go on."""
+        heights = [max(map(self._height, row)) for row in table.rows]
+        room = sum(heights) / max(1, ceil(sum(heights) / _ROWS))  # parts of about one height
+        part: list[tuple[Text, ...]] = []
+        used, caption = 0, table.caption
+        for row, height in zip(table.rows, heights, strict=True):
+            if part and used >= room:
+                yield replace(table, caption=caption, rows=tuple(part))
+                part, used, caption = [], 0, f"{table.caption}, continued"
+            part.append(row)
+            used += height
+        yield replace(table, caption=caption, rows=tuple(part))
+
+    def _height(self, cell: Text) -> int:
+        """In lines: a fraction is as high as two."""
+        if any(isinstance(span, Formula) and self.inline(span).is_tall for span in cell):
+            return 2
+        words = any(isinstance(span, str) and " " in span for span in cell)
+        return ceil(len(plain(cell)) / _WORDS) or 1 if words else 1
 
     def _table(self, table: NoteTable) -> str:
         head, *rows = (
@@ -192,28 +213,3 @@ class _LatexPrinter(NotePrinter):
 
 _ROWS = 40  # on a page, beside a heading
 _WORDS = 44  # letters of a column of words
-
-Row = tuple[Text, ...]
-
-
-def paged(table: NoteTable) -> Iterator[NoteTable]:
-    """The table, or its parts; those after the first say in the caption that they go on."""
-    heights = [max(map(_lines, row)) for row in table.rows]
-    room = sum(heights) / max(1, ceil(sum(heights) / _ROWS))  # parts of about one height
-    part: list[Row] = []
-    used, caption = 0, table.caption
-    for row, height in zip(table.rows, heights, strict=True):
-        if part and used >= room:
-            yield replace(table, caption=caption, rows=tuple(part))
-            part, used, caption = [], 0, f"{table.caption}, continued"
-        part.append(row)
-        used += height
-    yield replace(table, caption=caption, rows=tuple(part))
-
-
-def _lines(cell: Text) -> int:
-    """How high a cell stands: a fraction is as high as two lines."""
-    if any(isinstance(span, Formula) and LatexPen().write(span).height for span in cell):
-        return 2
-    words = any(isinstance(span, str) and " " in span for span in cell)
-    return ceil(len(plain(cell)) / _WORDS) or 1 if words else 1

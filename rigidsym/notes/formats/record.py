@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from rigidsym.formula.sentence import text_of
-from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import (
     Argument,
     Derivation,
@@ -119,7 +118,7 @@ def _theory(derivation: Derivation) -> list[dict[str, Any]]:
             "name": statement.name,
             "section": statement.section,
             "because": text_of(statement.because),
-            "sides": [_markup(side) for side in statement.sides],
+            "sides": [side.markup for side in statement.sides],
             "summands": None
             if statement.summands is None
             else _entries(statement.summands, {}, is_vector=False),
@@ -145,7 +144,7 @@ def _argument(argument: Argument) -> dict[str, Any]:
         "name": argument.name,
         "about": argument.about,
         "components": [
-            {"name": name, "unit": unit, **_markup(letters)} for name, unit, letters in components
+            {"name": name, "unit": unit, **letters.markup} for name, unit, letters in components
         ],
     }
 
@@ -157,7 +156,7 @@ def _step(step: Step, names: Names) -> dict[str, Any]:
         "name": quantity.name,
         "about": quantity.about,
         "unit": quantity.unit,
-        "symbol": _markup(quantity.symbol),
+        "symbol": quantity.symbol.markup,
         "inputs": list(quantity.inputs),
         "shape": list(step.shape),
         "expression": _expression(step, names),
@@ -176,7 +175,7 @@ def _vector_form(form: VectorForm | None, names: Names) -> dict[str, Any] | None
         "vector": [_plain(part, names) for part in form.components],
         "length": str(form.length),
         "terms": [
-            {"coefficient": _plain(term.coefficient, names), "vector": _markup(term.vector)}
+            {"coefficient": _plain(term.coefficient, names), "vector": term.vector.markup}
             for term in form.terms
         ],
     }
@@ -185,7 +184,7 @@ def _vector_form(form: VectorForm | None, names: Names) -> dict[str, Any] | None
 def _proof(proof: Proof, names: Names) -> dict[str, Any]:
     left = proof.residual
     return {
-        "claim": _markup(proof.claim),
+        "claim": proof.claim.markup,
         "status": proof.status,
         "residual": None if left is None else _entries(left, names, is_vector=False),
     }
@@ -228,10 +227,6 @@ def _place(place: Place, names: Names) -> dict[str, Any]:
 
 def _columns(matrix: sp.ImmutableMatrix) -> list[sp.ImmutableMatrix]:
     return [matrix[:, place] for place in range(matrix.shape[1])]
-
-
-def _markup(markup: Formula) -> dict[str, str]:
-    return {"latex": markup.latex, "text": markup.text}
 
 
 def _vector(column: sp.ImmutableMatrix | None, names: Names) -> list[str] | None:

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Literal
 
-import sympy as sp
-
+from rigidsym.formula.console import INDENT, Console
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.formula.pen import break_lines
-from rigidsym.formula.scalars import formula_of, matrix_of
 from rigidsym.formula.tree import Formula, equal, indexed, row
-from rigidsym.formula.unicode_pen import UnicodePen, columns, grid
+from rigidsym.formula.unicode_pen import columns
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import Span, Text, plain
+from rigidsym.notes.document.document import Text, plain
 from rigidsym.notes.formula.derivation_letters import RESIDUAL, entry_names, letters_of
 from rigidsym.notes.prose.prose import turn
 from rigidsym.notes.prose.singular_words import failures, geometry, measured, singular_title
@@ -30,9 +26,6 @@ if TYPE_CHECKING:
 
 Style = Callable[[str, Literal["heading", "dim"]], str]
 
-_INDENT = "  "
-_DEEPER = "    "
-_NO_BREAK = "\u00a0"
 _OMEGA = {frame.omega.text: frame.omega for frame in (SPACE, BODY)}
 
 
@@ -78,111 +71,49 @@ class _Steps:
         self, arguments: Sequence[Argument], width: int, style: Style, letters: Letters
     ) -> None:
         self.arguments = arguments
-        self.width = width
         self.style = style
         self.letters = letters
-        self.pen = UnicodePen(letters.notation)
+        self.console = Console(letters, width)
 
     def step(self, step: Step) -> Iterator[str]:
+        quantity = step.quantity
         yield from self._headline(step)
-        yield from self._value(step)
-        yield from self._as_vectors(step)
+        sides = (quantity.symbol, quantity.definition)
+        if step.recursion is not None:
+            yield from self.console.scalar(sides[:1], step.recursion)
+        elif quantity.is_scalar:
+            yield from self.console.scalar(sides, step.expression[0])
+        else:
+            names = entry_names(step, self.arguments)
+            yield from self.console.matrix(sides, step.expression, names)
+        for proof in step.proofs:
+            if not proof.is_exact:
+                yield f"{INDENT}✗ unproved: {self.console.text(proof.claim)}"
+        if step.vector_form is not None:  # Ω = v̇ + ...
+            yield from self._said(
+                (equal(quantity.symbol, sum_of_vectors(step.vector_form, self.letters)),)
+            )
 
-    def _as_vectors(self, step: Step) -> Iterator[str]:
-        """Ω = v̇ + ..., where the coordinates hold a vector."""
-        form = step.vector_form
-        if form is not None:
-            total = equal(step.quantity.symbol, sum_of_vectors(form, self.letters))
-            yield from self._wrapped((total,))
-
-    def _wrapped(self, sentence: Text) -> list[str]:
-        lines = textwrap.wrap(
-            self._words(sentence),
-            self.width,
-            initial_indent=_INDENT,
-            subsequent_indent=_DEEPER,
-            break_long_words=False,
-            break_on_hyphens=False,
-        )
-        return [line.replace(_NO_BREAK, " ") for line in lines]
-
-    def _words(self, sentence: Text) -> str:
-        return "".join(map(self._span, sentence))
-
-    def _span(self, span: Span) -> str:
-        """A span of a sentence; formulas are not broken at their blanks."""
-        if isinstance(span, Formula):
-            return self.pen.write(span).text.replace(" ", _NO_BREAK)
-        return self.pen.notation.words(plain((span,)))
+    def _said(self, sentence: Text) -> list[str]:
+        return self.console.sentence(_spoken(sentence))
 
     def _headline(self, step: Step) -> Iterator[str]:
         """(5) angular velocity, body components           angular_velocity_body, rad/s"""
-        quantity = step.quantity
-        left = f"({step.number}) {self._words(with_symbols(quantity.about, _OMEGA))}"
+        quantity, width = step.quantity, self.console.width
+        about = self.console.words(_spoken(with_symbols(quantity.about, _OMEGA)))
+        left = f"({step.number}) {about}"
         unit = f", {unit_in_words(quantity.unit)}" if quantity.unit else ""
         right = quantity.name + unit
-        room = self.width - columns(left)
-        if room - columns(right) < len(_INDENT):
+        room = width - columns(left)
+        if room - columns(right) < len(INDENT):
             yield self.style(left, "heading")
-            yield self.style(right.rjust(self.width), "dim")
+            yield self.style(right.rjust(width), "dim")
         else:
             yield self.style(left, "heading") + self.style(right.rjust(room), "dim")
 
-    def _value(self, step: Step) -> Iterator[str]:
-        names = entry_names(step, self.arguments)
-        prefixes = self._prefixes(step)
-        if step.recursion is not None:
-            yield from self._scalar(prefixes[-1:], step.recursion)
-        elif step.quantity.is_scalar:
-            yield from self._scalar(prefixes, formula_of(step.expression[0], self.letters))
-        else:
-            yield from self._matrix(prefixes, step.expression, names)
-        for proof in step.proofs:
-            if not proof.is_exact:
-                yield f"{_INDENT}✗ unproved: {self.pen.write(proof.claim).text}"
 
-    def _scalar(self, prefixes: Sequence[str], value: Formula) -> Iterator[str]:
-        """The value behind its sides, or below them, where a long one is broken."""
-        whole = f"{_INDENT}{prefixes[0]}{self.pen.write(value).text}"
-        if columns(whole) <= self.width:
-            yield whole
-            return
-        head = f"{_INDENT}{prefixes[-1]}".removesuffix("= ")
-        if len(prefixes) > 1:
-            yield f"{_INDENT}{prefixes[0].removesuffix(' = ')}"
-            head = " " * columns(head)
-        yield from self._hung(f"{head}= ", value)
-
-    def _hung(self, head: str, value: Formula) -> Iterator[str]:
-        """A value behind a head; where it is long, its other lines hang below its start."""
-        room = self.width - columns(head)
-        first, *others = break_lines(self.pen.write(value), room, len(_INDENT), self.pen.blank)
-        yield head + first.text
-        for line in others:
-            yield " " * columns(head) + _INDENT * line.depth + line.text
-
-    def _matrix(
-        self, prefixes: Sequence[str], matrix: sp.ImmutableMatrix, names: Sequence[Formula]
-    ) -> list[str]:
-        """The matrix in brackets, in the first form that fits, or else entry by entry."""
-        rows = matrix_of(matrix, self.letters)
-        for lines in _forms(prefixes, [[self.pen.write(e).text for e in line] for line in rows]):
-            if max(map(columns, lines)) <= self.width:
-                return lines
-        return list(self._listing(names, [entry for line in rows for entry in line]))
-
-    def _listing(self, names: Iterable[Formula], entries: Iterable[Formula]) -> Iterator[str]:
-        """A line an entry; long ones are broken."""
-        for name, entry in zip(names, entries, strict=True):
-            yield from self._hung(f"{_INDENT}{self.pen.write(name).text} = ", entry)
-
-    def _prefixes(self, step: Step) -> list[str]:
-        """ "Ω′ = Rᵀ Ω = " and, where that is too long, "Ω′ = "."""
-        quantity = step.quantity
-        sides = (self.pen.write(side).text for side in (quantity.symbol, quantity.definition))
-        symbol, *definition = filter(None, dict.fromkeys(sides))
-        short = f"{symbol} = "
-        return [f"{short}{definition[0]} = ", short] if definition else [short]
+def _spoken(text: Text) -> list[str | Formula]:
+    return [span if isinstance(span, Formula) else plain((span,)) for span in text]
 
 
 class _Screen(_Steps):
@@ -230,23 +161,19 @@ class _Screen(_Steps):
             if statement.section != section:
                 section = statement.section
                 yield self.style(section, "heading")
-            yield from self._wrapped(statement.because)
+            yield from self._said(statement.because)
             number = f"({statement.number})" if statement.number else ""
-            head = f"{_DEEPER}{number:<6}{self.pen.write(equal(*statement.sides)).text}"
             matrix = sums(statement, self.letters)
-            rows = (
-                [[self.pen.write(e).text for e in line] for line in matrix.rows] if matrix else []
-            )
-            yield from grid(f"{head} = ", rows) if rows else [head]
+            yield from self.console.numbered(number, statement.sides, matrix)
             yield ""
 
     def _convention(self) -> Iterator[str]:
         for sentence in convention(self.derivation, self.letters.notation):
-            yield from self._wrapped(sentence)
+            yield from self._said(sentence)
         turns = self.derivation.model.turns
         if turns:
             factors = [turn(t, self.letters) for t in turns]
-            yield _INDENT + self.pen.write(equal(ROTATION, row(*factors))).text
+            yield INDENT + self.console.text(ROTATION, row(*factors))
 
     def _numbers(self) -> Iterator[str]:
         """The parameters of the body that have values, and its principal axes."""
@@ -258,7 +185,7 @@ class _Screen(_Steps):
         if lines:
             yield ""
             yield self.style("In numbers", "heading")
-        yield from (_INDENT + line for line in lines)
+        yield from (INDENT + line for line in lines)
 
     def _first_integrals(self) -> Iterator[str]:
         """What is constant along every motion, if equations of motion were asked for."""
@@ -267,8 +194,7 @@ class _Screen(_Steps):
             yield ""
             yield self.style("Constant along every motion (first integrals)", "heading")
         for integral in found:
-            prefix = f"{self.pen.write(integral.symbol).text} = "
-            yield from self._scalar([prefix], formula_of(integral.expression, self.letters))
+            yield from self.console.scalar([integral.symbol], integral.expression)
 
     def _singularities(self) -> Iterator[str]:
         found = self.derivation.singularities
@@ -277,12 +203,10 @@ class _Screen(_Steps):
         yield ""
         yield self.style(singular_title(self.derivation), "heading")
         if found.determinant is not None:
-            yield from self._listing(
-                [equal(*measured(found))], [formula_of(found.determinant, self.letters)]
-            )
+            yield from self.console.listing([equal(*measured(found))], [found.determinant])
         zeros, *points = failures(self.derivation, found)
         for sentence in (zeros, *geometry(self.derivation), *points):
-            yield from self._wrapped(sentence)
+            yield from self._said(sentence)
 
     def _conversions(self) -> Iterator[str]:
         """To the unit quaternion and back, or why there is no way back."""
@@ -295,7 +219,7 @@ class _Screen(_Steps):
             yield from self.step(step)
         back = found.inverse
         for sentence in (back.because, back.branch) if back else ((found.without,),):
-            yield from self._wrapped(sentence)
+            yield from self._said(sentence)
 
     def _proofs(self) -> Iterator[str]:
         yield ""
@@ -313,18 +237,8 @@ class _Screen(_Steps):
 
     def _proof(self, label: str, proof: Proof) -> Iterator[str]:
         mark, status = ("✓", "exact") if proof.is_exact else ("✗", "unproved")
-        yield f"{_INDENT}{mark} {label:<5}{status:<10}{self.pen.write(proof.claim).text}"
+        yield f"{INDENT}{mark} {label:<5}{status:<10}{self.console.text(proof.claim)}"
         if proof.residual is not None:
-            yield f"{_DEEPER}left over:"
+            yield f"{2 * INDENT}left over:"
             names = indexed(RESIDUAL, proof.residual.shape)
-            yield from self._matrix([f"{RESIDUAL.text} = "], proof.residual, names)
-
-
-def _forms(prefixes: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[list[str]]:
-    """The matrix beside each prefix, or below the first one; with wide gaps or with narrow ones."""
-    for prefix in prefixes:
-        yield grid(_INDENT + prefix, rows)
-        yield grid(_INDENT + prefix, rows, tight=True)
-    below = [_INDENT + prefixes[0].rstrip()]
-    yield [*below, *grid(_DEEPER, rows)]
-    yield [*below, *grid(_DEEPER, rows, tight=True)]
+            yield from self.console.matrix([RESIDUAL], proof.residual, names)

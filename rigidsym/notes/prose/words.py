@@ -12,6 +12,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
+from rigidsym.formula.sentence import by_text
 from rigidsym.formula.tree import Formula, Symbol, equal
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.mechanics.quantities.claims import transpose_of
@@ -58,7 +59,7 @@ def symbols_of(derivation: Derivation) -> dict[str, Formula]:
     if derivation.model.vector:
         length = length_of(derivation.model)
         named = chain(named, (VECTOR,), (length.names[length.symbol],) if length else ())
-    return {symbol.text: symbol for symbol in named if symbol.text not in _ALSO_WORDS}
+    return {text: found for text, found in by_text(tuple(named)).items() if text not in _ALSO_WORDS}
 
 
 def with_symbols(sentence: str, symbols: Mapping[str, Formula]) -> Text:

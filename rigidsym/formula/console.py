@@ -1,0 +1,148 @@
+"""How sentences, formulas and matrices are set on the lines of a terminal."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Iterator, Sequence
+
+import sympy as sp
+
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.pen import break_lines
+from rigidsym.formula.scalars import formula_of, matrix_of
+from rigidsym.formula.tree import Formula, Matrix, equal
+from rigidsym.formula.unicode_pen import UnicodePen, columns
+
+INDENT = "  "
+_DEEPER = "    "
+_NO_BREAK = "\u00a0"
+
+
+class Console:
+    """Lines of Unicode, at most `width` columns wide where formulas allow."""
+
+    def __init__(self, letters: Letters, width: int) -> None:
+        self.letters = letters
+        self.width = width
+        self.pen = UnicodePen(letters.notation)
+
+    def text(self, *sides: Formula) -> str:
+        """Equal sides on one line."""
+        return self.pen.write(equal(*sides)).text
+
+    def words(self, spans: Iterable[str | Formula]) -> str:
+        """A sentence on one line; its formulas have blanks at which no line may end."""
+        named = self.letters.notation.words
+        return "".join(
+            named(span) if isinstance(span, str) else self.text(span).replace(" ", _NO_BREAK)
+            for span in spans
+        )
+
+    def sentence(self, spans: Iterable[str | Formula]) -> list[str]:
+        """A sentence on as many lines as it needs."""
+        lines = textwrap.wrap(
+            self.words(spans),
+            self.width,
+            initial_indent=INDENT,
+            subsequent_indent=_DEEPER,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        return [line.replace(_NO_BREAK, " ") for line in lines]
+
+    def scalar(self, sides: Sequence[Formula], value: Formula | sp.Expr) -> Iterator[str]:
+        """The value behind its sides, or below them, where a long one is broken."""
+        shown = value if isinstance(value, Formula) else formula_of(value, self.letters)
+        heads = self._heads(sides)
+        whole = f"{INDENT}{heads[0]}{self.text(shown)}"
+        if columns(whole) <= self.width:
+            yield whole
+            return
+        head = f"{INDENT}{heads[-1]}".removesuffix("= ")
+        if len(heads) > 1:
+            yield f"{INDENT}{heads[0].removesuffix(' = ')}"
+            head = " " * columns(head)
+        yield from self._hung(f"{head}= ", shown)
+
+    def matrix(
+        self, sides: Sequence[Formula], matrix: sp.ImmutableMatrix, names: Sequence[Formula]
+    ) -> list[str]:
+        """The matrix in brackets, in the first form that fits, or else entry by entry."""
+        rows = matrix_of(matrix, self.letters)
+        for lines in _forms(self._heads(sides), self._texts(rows)):
+            if max(map(columns, lines)) <= self.width:
+                return lines
+        return list(self.listing(names, [entry for line in rows for entry in line]))
+
+    def listing(
+        self, names: Iterable[Formula], entries: Iterable[Formula | sp.Expr]
+    ) -> Iterator[str]:
+        """A line an entry; long ones are broken."""
+        for name, entry in zip(names, entries, strict=True):
+            shown = entry if isinstance(entry, Formula) else formula_of(entry, self.letters)
+            yield from self._hung(f"{INDENT}{self.text(name)} = ", shown)
+
+    def numbered(self, number: str, sides: Sequence[Formula], matrix: Matrix | None) -> list[str]:
+        """An equation behind its number, with the matrix that its sides are equal to, if any."""
+        head = f"{_DEEPER}{number:<6}{self.text(*sides)}"
+        return grid(f"{head} = ", self._texts(matrix.rows)) if matrix else [head]
+
+    def _texts(self, rows: Iterable[Iterable[Formula]]) -> list[list[str]]:
+        return [[self.text(entry) for entry in line] for line in rows]
+
+    def _heads(self, sides: Sequence[Formula]) -> list[str]:
+        """ "Ω′ = Rᵀ Ω = " and, where that is too long, "Ω′ = "."""
+        symbol, *definition = filter(None, dict.fromkeys(map(self.text, sides)))
+        short = f"{symbol} = "
+        return [f"{short}{definition[0]} = ", short] if definition else [short]
+
+    def _hung(self, head: str, value: Formula) -> Iterator[str]:
+        """A value behind a head; where it is long, its other lines hang below its start."""
+        room = self.width - columns(head)
+        first, *others = break_lines(self.pen.write(value), room, len(INDENT), self.pen.blank)
+        yield head + first.text
+        for line in others:
+            yield " " * columns(head) + INDENT * line.depth + line.text
+
+
+def _forms(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[list[str]]:
+    """The matrix beside each head, or below the first one; with wide gaps or with narrow ones."""
+    for head in heads:
+        yield grid(INDENT + head, rows)
+        yield grid(INDENT + head, rows, tight=True)
+    below = [INDENT + heads[0].rstrip()]
+    yield [*below, *grid(_DEEPER, rows)]
+    yield [*below, *grid(_DEEPER, rows, tight=True)]
+
+
+def grid(prefix: str, rows: Sequence[Sequence[str]], *, tight: bool = False) -> list[str]:
+    """The lines of `prefix` followed by a matrix in brackets; the prefix stands half-way down.
+
+    A single column is set flush left, several columns are centred.
+    """
+    gap, margin = ("  ", "") if tight else ("   ", " ")
+    widths = [max(map(columns, column)) for column in zip(*rows, strict=True)]
+    place = _left if len(widths) == 1 else _centred
+    inside = [margin + gap.join(map(place, row, widths)) + margin for row in rows]
+    brackets = _brackets(len(rows))
+    middle = (len(rows) - 1) // 2
+    blank = " " * columns(prefix)
+    return [
+        f"{prefix if place == middle else blank}{left}{line}{right}"
+        for place, (line, (left, right)) in enumerate(zip(inside, brackets, strict=True))
+    ]
+
+
+def _brackets(height: int) -> list[tuple[str, str]]:
+    if height == 1:
+        return [("[", "]")]
+    return [("⎡", "⎤"), *[("⎢", "⎥")] * (height - 2), ("⎣", "⎦")]
+
+
+def _left(text: str, width: int) -> str:
+    return text + " " * (width - columns(text))
+
+
+def _centred(text: str, width: int) -> str:
+    before = (width - columns(text)) // 2
+    return _left(" " * before + text, width)
