@@ -22,8 +22,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.adjoin import TIME
 from rigidsym.algebra.angles import is_identically_zero
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.linear_numbers import inverse, pivots, solved
-from rigidsym.algebra.real_values import NotReal, RealValues, Unknown
+from rigidsym.algebra.real_values import NotReal, RealValues, Unknown, arithmetic
 from rigidsym.errors import AlgebraError, ModelError
 
 DIGITS = 50
@@ -33,6 +32,7 @@ _SCALES = ("1", "1", "1", "-1", "-1", "1/10", "10", "-10", "1/100", "100")  # of
 _STEPS = 90  # of Newton's method, which is slow at double roots
 _LONGEST_STEP = 10  # times the size of the point
 _FASTEST = 10**6  # a rate that is larger comes from constraints that touch
+_DAMPING = 1e-40  # of the normal equations: dependent rows then do no harm
 _NEARLY = 1e-20  # of equations at a double root, which is approached slowly
 _LARGEST_DENOMINATOR = 1000  # of exact points that are tried
 _ATOMS = (sp.Symbol, sp.Derivative, AppliedUndef)
@@ -50,16 +50,11 @@ class Configuration:
 
     def numbers(self, expressions: Sequence[sp.Expr]) -> RealValues:
         """The values of expressions to so many digits."""
-        return RealValues(self._point(expressions), digits=self.digits + _GUARD)
+        return RealValues(self._point(expressions), self.digits + _GUARD)
 
     def intervals(self, expressions: Sequence[sp.Expr]) -> RealValues:
         """Proved bounds on the values of expressions."""
-        point = self._point(expressions)
-        work = RealValues({}, digits=self.digits + _GUARD, intervals=True)
-        for atom, value in point.items():
-            middle, radius = work.number(value), self.radii.get(atom)
-            work.set(atom, middle if radius is None else work.around(middle, radius))
-        return work
+        return RealValues(self._point(expressions), self.digits + _GUARD, self.radii)
 
     def _point(self, expressions: Sequence[sp.Expr]) -> Numbers:
         return {**_random_point(atoms_of(expressions), self.seed), **self.values}
@@ -204,42 +199,38 @@ class _Search:
         return None
 
     def _enclosed(self, reached: Numbers) -> tuple[Numbers, Numbers] | None:
-        """The values with radii within which Krawczyk's test proves a solution."""
-        bound = atoms_of(self.constraints)
-        work = RealValues(reached, digits=self.digits + _GUARD)
-        slopes = [[sp.diff(c, atom) for atom in bound] for c in self.constraints]
-        rows, columns = pivots([[work(entry) for entry in row] for row in slopes], work)
-        rest = [c for k, c in enumerate(self.constraints) if k not in rows]
-        kept = [self.constraints[k] for k in rows]
-        if not rows or not _follow(rest, kept):
+        """The values with radii within which Krawczyk's test proves a solution.
+
+        With the Jacobian J at the point the test is about c(point + Jᵀ λ) = 0, in as many
+        unknowns λ as there are independent constraints c.
+        """
+        bound, digits = atoms_of(self.constraints), self.digits + _GUARD
+        thin = RealValues(reached, digits)
+        kept = _independent(self.constraints, bound, thin)
+        slopes = [[sp.diff(c, atom) for atom in bound] for c in kept]
+        rows = thin.numbers.matrix([[thin.middle(entry) for entry in row] for row in slopes])
+        try:
+            back = thin.context.matrix((rows * rows.T) ** -1)
+        except ZeroDivisionError:  # the constraints touch
             return None
-        radius = work.number(10) ** (-(self.digits // 2))
-        unknowns = [bound[k] for k in columns]
-        thin = RealValues(reached, digits=self.digits + _GUARD, intervals=True)
-        wide = RealValues(reached, digits=self.digits + _GUARD, intervals=True)
-        for atom in unknowns:
-            wide.set(atom, wide.around(wide.number(reached[atom]), radius))
-        back = inverse([[work(slopes[r][c]) for c in columns] for r in rows], work)
-        back = [[thin.number(entry) for entry in row] for row in back]
-        values = [thin(c) for c in kept]
-        jacobian = [[wide(slopes[r][c]) for c in columns] for r in rows]
-        size = range(len(unknowns))
-        around_zero = thin.around(thin.number(0), radius)
-        for i in size:
-            moved = -sum(back[i][k] * values[k] for k in size)
-            for j in size:
-                entry = int(i == j) - sum(back[i][k] * jacobian[k][j] for k in size)
-                moved += entry * around_zero
-            if not (moved.a > -radius and moved.b < radius):
-                return None
-        return dict(reached), dict.fromkeys(unknowns, radius)
+        radius = thin.numbers.mpf(10) ** (-(self.digits // 2))
+        radii = {atom: radius * sum(map(abs, rows.column(k))) for k, atom in enumerate(bound)}
+        wide = RealValues(reached, digits, radii)
+        slope = thin.context.matrix([[wide(entry) for entry in row] for row in slopes])
+        one = thin.context.eye(len(kept))
+        box = thin.context.matrix([thin.around(thin.context.mpf(0), radius)] * len(kept))
+        values = thin.context.matrix([thin(c) for c in kept])
+        moved = (one - back * slope * thin.context.matrix(rows.T)) * box - back * values
+        if not all(entry.a > -radius and entry.b < radius for entry in moved):
+            return None
+        return dict(reached), radii
 
     def _with_rates(self, values: Numbers, radii: Numbers, seed: int) -> tuple[Numbers, Numbers]:
         """The same with rates and accelerations that keep to the constraints.
 
         At rest all of them do; so it is where constraints touch, as (u − 1)² = 0 does.
         """
-        radius = sp.Rational(1, 10 ** (self.digits // 2))
+        radius = arithmetic(self.digits).mpf(10) ** (-(self.digits // 2))
         equations = self.constraints
         found, unknown = dict(values), dict(radii)
         for _ in range(2):
@@ -270,7 +261,7 @@ def values_of_parts(work: RealValues, parts: Sequence[sp.Expr]) -> list[Any]:
                 values.append(work(part))
                 break
             except Unknown as error:
-                work.set(error.part, work.number(_random_point([error.part], 0)[error.part]))
+                work.set(error.part, work(_random_point([error.part], 0)[error.part]))
     return values
 
 
@@ -285,48 +276,57 @@ def newton(
     point = dict(start)
     best = size = None
     for _ in range(_STEPS):
-        work = RealValues(point, digits=digits + _GUARD)
-        values = [work(e) for e in equations]
+        work = RealValues(point, digits + _GUARD)
+        values = [work.middle(e) for e in equations]
         size = max(map(abs, values))
-        if size < work.number(10) ** (-digits):
-            return {atom: work(atom) for atom in point}
+        if size < work.numbers.mpf(10) ** (-digits):
+            return {atom: work.middle(atom) for atom in point}
         best = size if best is None else min(best, size)
         if not size < 1000 * (1 + best):
             return None
-        jacobian = [[work(entry) for entry in row] for row in slopes]
-        weights = solved(jacobian, values, work)
-        if weights is None:
+        jacobian = work.numbers.matrix([[work.middle(e) for e in row] for row in slopes])
+        gram = jacobian * jacobian.T
+        most = max(gram[k, k] for k in range(gram.rows))
+        if not most > 0:
             return None
-        steps = [
-            sum(w * row[k] for w, row in zip(weights, jacobian, strict=True))
-            for k in range(len(unknowns))
-        ]
-        most = _LONGEST_STEP * (1 + max(abs(work(unknown)) for unknown in unknowns))
+        gram += most * _DAMPING * work.numbers.eye(gram.rows)
+        steps = jacobian.T * work.numbers.lu_solve(gram, work.numbers.matrix(values))
+        most = _LONGEST_STEP * (1 + max(abs(work.middle(unknown)) for unknown in unknowns))
         shorter = min(1, most / max(most, *map(abs, steps)))
-        point |= {u: work(u) - shorter * step for u, step in zip(unknowns, steps, strict=True)}
+        point |= {
+            u: work.middle(u) - shorter * step for u, step in zip(unknowns, steps, strict=True)
+        }
     return point if size is not None and size < _NEARLY else None
 
 
 def _simplest(value: Any) -> sp.Expr | None:
     """The rational number, or the fraction of π, that a value seems to be."""
-    for unit, most in ((sp.S.One, _LARGEST_DENOMINATOR), (sp.pi, 12)):
-        exact = sp.Rational(str(value / _float(unit, value))).limit_denominator(most)
-        if abs(value - _float(exact * unit, value)) < 1e-12:
+    for unit, ratio, most in (
+        (sp.S.One, value, _LARGEST_DENOMINATOR),
+        (sp.pi, value / value.context.pi, 12),
+    ):
+        exact = sp.Rational(str(ratio)).limit_denominator(most)
+        if abs(ratio - value.context.mpf(int(exact.p)) / int(exact.q)) < 1e-12:
             return exact * unit
     return None
 
 
-def _float(number: sp.Expr, like: Any) -> Any:
-    return like.context.mpf(str(sp.N(number, 60)))
+def _independent(
+    constraints: Sequence[sp.Expr], bound: Sequence[sp.Expr], work: RealValues
+) -> list[sp.Expr]:
+    """The constraints without those that vanish wherever others do; the steepest come first."""
+    kept: list[sp.Expr] = []
+    steep = {c: max(abs(work.middle(sp.diff(c, atom))) for atom in bound) for c in constraints}
+    for constraint in sorted(constraints, key=lambda c: -steep[c]):
+        if not kept or not _follows(constraint, kept):
+            kept.append(constraint)
+    return kept
 
 
-def _follow(rest: Sequence[sp.Expr], kept: Sequence[sp.Expr]) -> bool:
-    """Whether constraints vanish wherever others do: decided in the ring of these."""
-    if not rest:
-        return True
+def _follows(constraint: sp.Expr, kept: Sequence[sp.Expr]) -> bool:
+    """Whether a constraint vanishes wherever others do: decided in the ring of these."""
     try:
-        codec = codec_for(rest, constraints=kept, order=0)
-        return not any(codec.encode(c) for c in rest)
+        return not codec_for([constraint], constraints=kept, order=0).encode(constraint)
     except AlgebraError:
         return False
 

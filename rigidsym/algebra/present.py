@@ -96,7 +96,8 @@ class Presenter:
             number = sp.Rational(*(over / under).as_integer_ratio())
             return sp.Mul(number, self._terms(above, over), 1 / self._terms(below, under))
         if below == self.ring.one:
-            return min((self._terms(above), *self._over_one(above)), key=_length)
+            plain, *others = (self._terms(above), *self._over_one(above))
+            return min(plain, *others, key=_length) if others else plain
         ((divisor, scale),) = below.items()
         return self._terms({_divide(m, divisor): c for m, c in above.items()}, _fraction(scale))
 

@@ -1,8 +1,8 @@
-"""Real values of expressions, in numbers of many digits or in intervals that enclose them.
+"""Real values of expressions, as intervals that are proved to enclose them.
 
 Roots of negative numbers, quotients by zero and logarithms of what is not positive have no real
-value. In intervals a value exists only if it does for every point of the interval, so that what is
-said of an interval is proved.
+value. A value exists only if it does for every point of the intervals, so that what is said of it
+is proved.
 """
 
 from __future__ import annotations
@@ -18,8 +18,7 @@ from sympy.core.function import AppliedUndef
 Point = Mapping[sp.Expr, Any]  # of functions of time, their derivatives and symbols
 _MONOTONE = {"atan", "asin", "acos", "sinh", "tanh", "asinh", "acosh", "atanh", "erf"}
 _LARGEST_EXPONENT = 10**5
-_ENTIRE = {"sin", "cos"}
-_IN_SINES: dict[type, Callable[[sp.Expr], sp.Expr]] = {
+_REWRITTEN: dict[type, Callable[..., sp.Expr]] = {
     sp.tan: lambda x: sp.sin(x) / sp.cos(x),
     sp.cot: lambda x: sp.cos(x) / sp.sin(x),
     sp.sec: lambda x: 1 / sp.cos(x),
@@ -54,49 +53,45 @@ class Unknown(ValueError):
 
 
 @cache
-def _context(digits: int, intervals: bool) -> Any:
-    """An arithmetic of mpmath by itself: making one takes milliseconds."""
-    context = mpmath.iv.__class__() if intervals else mpmath.mp.__class__()
+def arithmetic(digits: int, *, of_intervals: bool = False) -> Any:
+    """Numbers or intervals of mpmath with so many digits; making an arithmetic takes milliseconds."""
+    context = mpmath.iv.__class__() if of_intervals else mpmath.mp.__class__()
     context.dps = digits
     return context
 
 
 class RealValues:
-    """The values of expressions at one point, each worked out once.
+    """Bounds on the values of expressions at one point, each worked out once.
 
-    With `intervals` the values enclose the true ones, and a part that may be zero below a fraction
-    bar, or negative below a root, raises NotReal.
+    `radii` bound the distances of the true values from those of the point.
     """
 
-    def __init__(self, point: Point, *, digits: int, intervals: bool = False) -> None:
-        self.context = _context(digits, intervals)
-        self.is_interval = intervals
+    def __init__(self, point: Point, digits: int, radii: Point | None = None) -> None:
+        self.numbers = arithmetic(digits)
+        self.context = arithmetic(digits, of_intervals=True)
         self._known: dict[sp.Expr, Any] = {}
         for atom, value in point.items():
-            self._known[atom] = self.number(value)
-
-    def number(self, value: Any) -> Any:
-        """A number of SymPy, Python or mpmath in this arithmetic."""
-        if isinstance(value, sp.Expr):
-            return self(value)
-        return self.context.mpf(value)
+            middle = self(value) if isinstance(value, sp.Expr) else self.context.mpf(value)
+            radius = (radii or {}).get(atom, 0)
+            self._known[atom] = self.around(middle, radius) if radius else middle
 
     def around(self, middle: Any, radius: Any) -> Any:
         """The interval of a radius about a number."""
-        return middle + self.number(radius) * self.context.mpf([-1, 1])
+        return middle + self.context.mpf(radius) * self.context.mpf([-1, 1])
 
     def set(self, atom: sp.Expr, value: Any) -> None:
         """Give an atom its value, before anything that holds it is asked for."""
         self._known[atom] = value
 
+    def middle(self, expression: sp.Expr) -> Any:
+        """The number in the middle of the bounds."""
+        return self.numbers.mpf(self(expression).mid)
+
     def __call__(self, expression: sp.Expr) -> Any:
-        """The value; raises NotReal if there is none, Unknown if none is known."""
+        """The bounds; raises NotReal if there is no value, Unknown if none is known."""
         if expression not in self._known:
             self._known[expression] = self._value(expression)
         return self._known[expression]
-
-    def is_zero_possible(self, value: Any) -> bool:
-        return bool(0 in value) if self.is_interval else value == 0
 
     def _value(self, e: sp.Expr) -> Any:
         context = self.context
@@ -115,34 +110,27 @@ class RealValues:
             return context.exp(context.mpf(1))
         if e.is_Pow:
             return self._power(e.base, e.exp)
-        if isinstance(e, sp.exp):
-            return self._exponential(e.args[0])
+        if isinstance(e, sp.exp | sp.sin | sp.cos):
+            return getattr(context, e.func.__name__)(self._moderate(self(e.args[0]), e))
         if isinstance(e, sp.log):
             return context.log(self._positive(e.args[0], "the logarithm of"))
         if isinstance(e, sp.Abs):
             return abs(self(e.args[0]))
-        if type(e) in _IN_SINES:
-            return self(_IN_SINES[type(e)](e.args[0]))
+        if type(e) in _REWRITTEN:
+            return self(_REWRITTEN[type(e)](*e.args))
         if isinstance(e, sp.atan2):
             return self(self._quarter(*e.args))
         return self._function(e)
 
     def _quarter(self, y: sp.Expr, x: sp.Expr) -> sp.Expr:
         """atan2 by the arc tangent of a quotient that stays finite."""
-        if self._is_positive(x):
+        if self(x).a > 0:
             return sp.atan(y / x)
-        if self._is_positive(y):
+        if self(y).a > 0:
             return sp.pi / 2 - sp.atan(x / y)
-        if self._is_positive(-y):
+        if self(y).b < 0:
             return -sp.pi / 2 - sp.atan(x / y)
         raise NotReal("no direction is known of", sp.Tuple(x, y))
-
-    def _is_positive(self, e: sp.Expr) -> bool:
-        value = self(e)
-        return bool((value.a if self.is_interval else value) > 0)
-
-    def _exponential(self, exponent: sp.Expr) -> Any:
-        return self.context.exp(self._moderate(self(exponent), sp.exp(exponent)))
 
     def _moderate(self, exponent: Any, whole: sp.Expr) -> Any:
         if not abs(exponent) < _LARGEST_EXPONENT:
@@ -150,54 +138,39 @@ class RealValues:
         return exponent
 
     def _power(self, base: sp.Expr, exponent: sp.Expr) -> Any:
-        if exponent.is_Integer:
-            value = self(base)
-            if exponent < 0 and self.is_zero_possible(value):
-                raise NotReal("division by", base)
-            return value ** int(exponent)
         if not exponent.is_Rational:
             return self.context.exp(
                 self(exponent) * self.context.log(self._positive(base, "a power of"))
             )
         value = self(base)
-        if (value.a if self.is_interval else value) < 0:
+        if exponent.q != 1 and value.a < 0:
             raise NotReal("a root of a negative number,", base)
-        if exponent < 0 and self.is_zero_possible(value):
+        if exponent < 0 and 0 in value:
             raise NotReal("division by", base)
-        root = self.context.sqrt(value) if exponent.q == 2 else self._root(value, int(exponent.q))
-        return root ** int(exponent.p)
+        return self._root(value, int(exponent.q)) ** int(exponent.p)
 
     def _root(self, value: Any, degree: int) -> Any:
-        if self.is_zero_possible(value):
-            if not self.is_interval or value.b == 0:
-                return self.context.mpf(0)
-            return self.context.mpf(
-                [0, (self.context.mpf(value.b) ** (self.context.mpf(1) / degree)).b]
-            )
+        if degree < 3:
+            return value if degree == 1 else self.context.sqrt(value)
+        if 0 in value:
+            above = self.context.mpf(value.b) ** (self.context.mpf(1) / degree)
+            return self.context.mpf([0, above.b]) if value.b > 0 else self.context.mpf(0)
         return self.context.exp(self.context.log(value) / degree)
 
     def _positive(self, part: sp.Expr, reason: str) -> Any:
-        value = self(part)
-        if not self._is_positive(part):
+        if not self(part).a > 0:
             raise NotReal(f"{reason} a number that is not positive,", part)
-        return value
+        return self(part)
 
     def _function(self, e: sp.Expr) -> Any:
+        """A monotone function, by its values at both ends."""
         name = e.func.__name__
-        if isinstance(e, AppliedUndef) or not isinstance(e, sp.Function) or len(e.args) != 1:
+        if isinstance(e, AppliedUndef) or name not in _MONOTONE:
             raise Unknown(e)
-        value = self(e.args[0])
-        if name in _ENTIRE:
-            return getattr(self.context, name)(self._moderate(value, e))
-        own = _context(self.context.dps + 10, False)
-        function = getattr(own, name, None)
-        if function is None or (self.is_interval and name not in _MONOTONE):
-            raise Unknown(e)
-        ends = (value.a.a, value.b.b) if self.is_interval else (value, value)
-        found = [function(own.mpf(end)) for end in ends]
+        value, digits = self(e.args[0]), self.context.dps
+        own = arithmetic(digits + 10)
+        found = [getattr(own, name)(own.mpf(end)) for end in (value.a, value.b)]
         if any(isinstance(f, own.mpc) or not own.isfinite(f) for f in found):
             raise NotReal("a value that is not real,", e)
-        if not self.is_interval:
-            return self.context.mpf(found[0])
-        slack = own.mpf(10) ** (-self.context.dps) * (1 + max(map(abs, found)))
+        slack = own.mpf(10) ** -digits * (1 + max(map(abs, found)))
         return self.context.mpf([min(found) - slack, max(found) + slack])

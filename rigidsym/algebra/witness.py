@@ -9,7 +9,7 @@ element with such a value is not zero.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from operator import add, mul, sub
 from typing import Any
 
@@ -25,36 +25,51 @@ from rigidsym.algebra.configuration import (
     values_of_parts,
 )
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.real_values import NotReal, RealValues
+from rigidsym.algebra.real_values import NotReal, arithmetic
 from rigidsym.algebra.ring import Monomial
 
 _BITS = 240  # behind the point of the numbers of a check
-_SMALL_BITS = 166  # a number below 2^−166, some 10^−50, is zero
+_SMALL = 1 << (_BITS - 166)  # a number below 2^−166, some 10^−50, is zero
 _POINTS = 3  # at which a claim may be refuted
 Rows = Sequence[Sequence[Any]]
 Example = tuple[tuple[sp.Expr, sp.Expr], ...]
 
 
-@lru_cache(maxsize=64)
 def witness_for(
-    codec: Codec, name: str, constraints: tuple[sp.Expr, ...], example: Example = ()
+    codec: Codec, name: str, constraints: tuple[sp.Expr, ...] = (), example: Example = ()
 ) -> Witness:
     """The witness of a ring whose coordinates keep to constraints.
 
     Raises ModelError if no real configuration is found at which all generators are real.
     """
+    if codec.ring.complete and not constraints:
+        return _shared(codec, "", (), ())
+    return _shared(codec, name, constraints, example)
+
+
+@lru_cache(maxsize=64)
+def _shared(
+    codec: Codec, name: str, constraints: tuple[sp.Expr, ...], example: Example
+) -> Witness:
     return Witness(codec, name, constraints, example)
 
 
 class Witness:
-    """A ring at real configurations of its coordinates."""
+    """A ring at real configurations of its coordinates.
+
+    A ring that knows every relation decides by itself what is zero, and is real everywhere.
+    """
 
     def __init__(
         self, codec: Codec, name: str, constraints: tuple[sp.Expr, ...], example: Example
     ) -> None:
         self._generators = tuple(gen.expression for gen in codec.ring.generators)
         self._search = name, constraints, example
-        self._first = self._configurations(DIGITS, 1)
+        self._decides = codec.ring.complete and not constraints
+        self._monomials: dict[Monomial, int] = {}
+        self._first = Configuration({}, {}, DIGITS, 0)
+        if not self._decides:
+            (self._first,) = self._configurations(DIGITS, 1)
 
     def _configurations(self, digits: int, count: int) -> tuple[Configuration, ...]:
         """Points at which the generators are real; those of the constraints, if they are."""
@@ -62,66 +77,50 @@ class Witness:
         if constraints and count == 1:
             (found,) = configurations(name, constraints, (), example, digits)
             try:
-                values_of_parts(found.intervals(self._generators), self._generators)
+                self._bounds(found)
             except NotReal:
                 pass
             else:
                 return (found,)
         return configurations(name, constraints, self._generators, example, digits, count)
 
+    def _bounds(self, at: Configuration) -> list[Any]:
+        """Bounds on the values of the generators."""
+        return values_of_parts(at.intervals(self._generators), self._generators)
+
     def is_nonzero(self, element: PolyElement) -> bool:
-        """Whether an element is proved not to vanish at a configuration."""
-        if element.is_ground:
+        """Whether an element is certainly not zero: by the ring, or by a value at a point."""
+        if self._decides or element.is_ground:
             return bool(element)
-        for digits, count in ((DIGITS, 1), (DIGITS, _POINTS), (MORE_DIGITS, 1)):
-            for configuration in self._configurations(digits, count):
-                work = configuration.intervals(self._generators)
-                values = values_of_parts(work, self._generators)
-                if 0 not in value_of(element, values, work):
-                    return True
-        return False
-
-    @property
-    def configuration(self) -> Configuration:
-        return self._first[0]
-
-
-@lru_cache(maxsize=64)
-def check_for(codec: Codec, witness: Witness | None) -> Check:
-    """The check of a ring, at the configuration of its witness; anywhere if it has none."""
-    anywhere = Configuration({}, {}, DIGITS, 0)
-    return Check(codec, anywhere if witness is None else witness.configuration)
-
-
-class Check:
-    """Claims evaluated at one configuration, product by product, without the ring's reduction.
-
-    Numbers are whole multiples of 2^−240, which is fast; a disagreement is put to intervals.
-    """
-
-    def __init__(self, codec: Codec, configuration: Configuration) -> None:
-        self._generators = tuple(gen.expression for gen in codec.ring.generators)
-        self._configuration = configuration
-        work = configuration.numbers(self._generators)
-        values = values_of_parts(work, self._generators)
-        self._values = [int(work.context.ldexp(value, _BITS)) for value in values]
-        self._monomials: dict[Monomial, int] = {}
+        return any(
+            0 not in _bounds_of(element, self._bounds(at), digits)
+            for digits, count in ((DIGITS, 1), (DIGITS, _POINTS), (MORE_DIGITS, 1))
+            for at in self._configurations(digits, count)
+        )
 
     def disagrees(self, residual: RingMatrix, known: dict[RingMatrix, Rows]) -> bool:
-        """Whether a matrix that the ring takes for zero is certainly not zero here.
+        """Whether a matrix that the ring takes for zero is certainly not zero at the first point.
 
-        `known` remembers the values of matrices from one claim to the next.
+        It is evaluated product by product, without the ring's reduction; `known` remembers the
+        values of matrices from one claim to the next. Numbers are whole multiples of 2^−240, which
+        is fast; a disagreement is put to intervals.
         """
-        small = 1 << (_BITS - _SMALL_BITS)
-        rows = _values(residual, known, self._element, _shifted)
-        if all(-small < entry < small for row in rows for entry in row):
+        rows = _values(residual, known, self._number, lambda product: product >> _BITS)
+        if all(-_SMALL < entry < _SMALL for row in rows for entry in row):
             return False
-        work = self._configuration.intervals(self._generators)
-        values = values_of_parts(work, self._generators)
-        bounds = _values(residual, {}, lambda e: value_of(e, values, work), lambda entry: entry)
-        return any(0 not in work.number(entry) for row in bounds for entry in row)
+        bounds = self._bounds(self._first)
+        found = _values(residual, {}, lambda e: _bounds_of(e, bounds, DIGITS), lambda entry: entry)
+        return any(0 not in entry for row in found for entry in row)
 
-    def _element(self, element: PolyElement) -> int:
+    @cached_property
+    def _numbers(self) -> list[int]:
+        """The values of the generators at the first point."""
+        work = self._first.numbers(self._generators)
+        values_of_parts(work, self._generators)
+        ldexp = work.numbers.ldexp
+        return [int(ldexp(work.middle(generator), _BITS)) for generator in self._generators]
+
+    def _number(self, element: PolyElement) -> int:
         total = 0
         for monomial, coefficient in element.items():
             value = self._monomials.get(monomial)
@@ -134,12 +133,8 @@ class Check:
         value = 1 << _BITS
         for place, power in enumerate(monomial):
             for _ in range(power):
-                value = (value * self._values[place]) >> _BITS
+                value = (value * self._numbers[place]) >> _BITS
         return value
-
-
-def _shifted(product: int) -> int:
-    return product >> _BITS
 
 
 def _values(
@@ -176,12 +171,13 @@ def _values(
     return found
 
 
-def value_of(element: PolyElement, values: Sequence[Any], work: RealValues) -> Any:
-    """An element with numbers or intervals in the place of its generators."""
-    total = work.number(0)
+def _bounds_of(element: PolyElement, bounds: Sequence[Any], digits: int) -> Any:
+    """Bounds on an element from those on its generators."""
+    number = arithmetic(digits, of_intervals=True).mpf
+    total = number(0)
     for monomial, coefficient in element.items():
-        term = work.number(int(coefficient.numerator)) / work.number(int(coefficient.denominator))
-        for value, power in zip(values, monomial, strict=True):
+        term = number(int(coefficient.numerator)) / number(int(coefficient.denominator))
+        for value, power in zip(bounds, monomial, strict=True):
             if power:
                 term = term * value**power
         total = total + term

@@ -18,14 +18,7 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.quotient import Quotient
 from rigidsym.algebra.rational import Rationals
 from rigidsym.algebra.signs import Bounds, sign_within
-from rigidsym.algebra.witness import (
-    Check,
-    Example,
-    Rows,
-    Witness,
-    check_for,
-    witness_for,
-)
+from rigidsym.algebra.witness import Example, Rows, witness_for
 from rigidsym.errors import Defect, DerivationError, NotARotation
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof
@@ -74,7 +67,7 @@ class Prover:
         """Raises ModelError if there is no real configuration, so that nothing can be claimed."""
         self.subject = subject
         self.codec = codec
-        self.witness = self._witness()
+        self.witness = witness_for(codec, subject.name, subject.constraints, subject.example)
         self._values: dict[RingMatrix, Rows] = {}  # at a real point, of the factors of residuals
 
     def vanishes(
@@ -92,7 +85,7 @@ class Prover:
         left = self._decoded(residual)
         if self.subject.pullback is not None and self._pulled_back(left).is_zero():
             return self._unless_zero(divisors, claim)
-        if any(self._is_refuted(entry) for entry in residual.entries):
+        if any(map(self.witness.is_nonzero, residual.entries)):
             raise DerivationError(
                 f"{self.subject.name}: {claim.text} is false; left over: {self._plain(left)}"
             )
@@ -142,15 +135,11 @@ class Prover:
 
         Raises Defect if the values disagree.
         """
-        if self.subject.pullback is None and self._check.disagrees(residual, self._values):
+        if self.subject.pullback is None and self.witness.disagrees(residual, self._values):
             raise Defect(
                 f"{self.subject.name}: {claim.text} is proved, and yet is false at a point; this "
                 "is a defect of rigidsym, please report it"
             )
-
-    @cached_property
-    def _check(self) -> Check:
-        return check_for(self.codec, self.witness)
 
     def _pulled_back(self, left: sp.ImmutableMatrix) -> RingMatrix:
         """The residual in the ring of the functions that the coordinates are pulled back to."""
@@ -174,7 +163,7 @@ class Prover:
     def _unless_zero(self, divisors: Iterable[PolyElement], claim: Formula) -> Proof:
         """Exact, unless a divisor may be zero everywhere; the divisor is then the residual."""
         for divisor in divisors:
-            if not self._is_refuted(divisor):
+            if not self.witness.is_nonzero(divisor):
                 left = self._decoded(RingMatrix.of(self.codec.ring, [[divisor]]))
                 return Proof(claim=claim, status="unproved", residual=left)
         return Proof(claim=claim, status="exact")
@@ -197,25 +186,3 @@ class Prover:
             if left[i, j] != 0
         ]
         return "; ".join(text + (place if len(left) > 1 else "") for text, place in entries)
-
-    @property
-    def _is_decided(self) -> bool:
-        """Whether an element that does not reduce to zero is not zero."""
-        return self.codec.ring.complete and not self.subject.constraints
-
-    def _is_refuted(self, element: PolyElement) -> bool:
-        """Whether an element is certainly not zero.
-
-        A ring that knows every relation can tell. If it does not, and under constraints, whose
-        ideal need not hold all that vanishes with them, a value at a real point tells.
-        """
-        if not element:
-            return False
-        return self.witness is None or self.witness.is_nonzero(element)
-
-    def _witness(self) -> Witness | None:
-        """The ring at real configurations; None if the ring decides everything by itself."""
-        if self._is_decided:
-            return None
-        subject = self.subject
-        return witness_for(self.codec, subject.name, subject.constraints, subject.example)

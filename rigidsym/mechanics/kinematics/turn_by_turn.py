@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cached_property
-from operator import mul
 from types import MappingProxyType
 from typing import Any
 
@@ -299,19 +298,15 @@ class TurnByTurn:
 
     def _determinant(self, work: RealValues) -> Any:
         """Bounds on det W Wᵀ at one point, from the turns themselves."""
-        columns = {q: [work.number(0)] * 3 for q in self.model.coordinates}
-        before = [[work.number(int(i == j)) for j in range(3)] for i in range(3)]
+        matrix, before = work.context.matrix, work.context.eye(3)
+        rates = {q: matrix([0, 0, 0]) for q in self.model.coordinates}
         for turn in self.model.turns:
-            axis = [sum(map(mul, row, map(work, turn.direction))) for row in before]
+            axis = before * matrix([work(entry) for entry in turn.direction])
             for q in turn.angle.atoms(AppliedUndef):
-                slope = work(sp.diff(turn.angle, q))
-                columns[q] = [a + slope * b for a, b in zip(columns[q], axis, strict=True)]
-            turned = list(
-                zip(*([work(e) for e in row] for row in turn.matrix.tolist()), strict=True)
-            )
-            before = [[sum(map(mul, row, column)) for column in turned] for row in before]
-        rows = list(zip(*columns.values(), strict=True))
-        (a, b, c), (_, d, e), (_, _, f) = ([sum(map(mul, r, s)) for s in rows] for r in rows)
+                rates[q] += axis * work(sp.diff(turn.angle, q))
+            before *= matrix([[work(entry) for entry in row] for row in turn.matrix.tolist()])
+        gram = sum((column * column.T for column in rates.values()), matrix(3, 3))
+        (a, b, c), (_, d, e), (_, _, f) = gram.tolist()
         return a * (d * f - e * e) - b * (b * f - e * c) + c * (b * e - d * c)
 
     def _inverts(self, rows: OrthogonalRows, claim: Formula) -> tuple[Proof, ...]:
