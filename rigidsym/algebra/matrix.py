@@ -155,3 +155,15 @@ def cross(ring: Ring, u: Row, v: Row) -> Row:
     return tuple(
         ring.dot(((u[j], v[k]),), minus=((u[k], v[j]),)) for j, k in ((1, 2), (2, 0), (0, 1))
     )
+
+
+def hat(vector: RingMatrix) -> RingMatrix:
+    """C(u), the matrix of u ×, over the ring (lecture, section 3.2)."""
+    x, y, z = vector.entries
+    zero = vector.ring.zero
+    return RingMatrix.of(vector.ring, [[zero, -z, y], [z, zero, -x], [-y, x, zero]])
+
+
+def unhat(skew: RingMatrix) -> RingMatrix:
+    """C⁻¹: the vector of a skew matrix, from its entries below the diagonal (lecture, 3.2)."""
+    return RingMatrix.column(skew.ring, [skew[2, 1], skew[0, 2], skew[1, 0]])

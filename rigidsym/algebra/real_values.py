@@ -54,7 +54,7 @@ class Unknown(ValueError):
 
 @cache
 def arithmetic(digits: int, *, of_intervals: bool = False) -> Any:
-    """Numbers or intervals of mpmath with so many digits; making an arithmetic takes milliseconds."""
+    """Numbers or intervals of so many digits; mpmath takes milliseconds to make an arithmetic."""
     context = mpmath.iv.__class__() if of_intervals else mpmath.mp.__class__()
     context.dps = digits
     return context

@@ -48,9 +48,7 @@ def witness_for(
 
 
 @lru_cache(maxsize=64)
-def _shared(
-    codec: Codec, name: str, constraints: tuple[sp.Expr, ...], example: Example
-) -> Witness:
+def _shared(codec: Codec, name: str, constraints: tuple[sp.Expr, ...], example: Example) -> Witness:
     return Witness(codec, name, constraints, example)
 
 

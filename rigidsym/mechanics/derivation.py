@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Protocol, Self
 
 import sympy as sp
@@ -127,6 +128,17 @@ class Found:
     vector_form: VectorForm | None = None
     definition: Formula | None = None  # if the step says better what it follows from
     recursion: Formula | None = None  # over the turns, if the entries are names of its parts
+
+
+@dataclass(frozen=True, slots=True)
+class OfBody:
+    """What a body and the forces on it add to the derivation of a rotation."""
+
+    arguments: Mapping[str, Argument]  # all of them, by name
+    steps: Mapping[str, Found] = MappingProxyType({})
+    body: RigidBody | None = None
+    functions: Mapping[str, Step] = MappingProxyType({})  # of the state, for kernels
+    first_integrals: tuple[FirstIntegral, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,18 +14,16 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import sympy as sp
 
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics.derivation import (
     OF_RATES,
-    Argument,
     Definition,
     Derivation,
-    FirstIntegral,
     Found,
+    OfBody,
     Quantity,
     Singularities,
     Step,
@@ -42,9 +40,6 @@ from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.distribution import Distribution
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel
-
-if TYPE_CHECKING:
-    from rigidsym.mechanics.dynamics.derive import EquationsOfMotion
 
 _STUDIED = 5  # turns up to which the minors of W are few enough to solve for their zeros
 
@@ -75,8 +70,8 @@ def derive(
         wanted = only and {*only, *NEEDED}
         return with_theory(derive(model, wanted, body=body, forces=forces))
     _check_names(only, has_body=body is not None, has_forces=forces is not None)
-    values = Values(model)
     turns = TurnByTurn(model) if is_shorter(model) else None
+    values = Values(model)
     turning = [name for name in only if name in QUANTITY_NAMES]
     found = dict(
         turns.steps(turning or only) if turns else kinematics.steps(values, turning or only)
@@ -87,21 +82,13 @@ def derive(
             f"{model.name} has no quantity {absent}: its rate matrix has no inverse, since its "
             "rates do not give every angular velocity"
         )
-    whole: RigidBody | None = None
-    arguments: Mapping[str, Argument] = values.arguments
-    integrals: tuple[FirstIntegral, ...] = ()
-    functions: dict[str, Step] = {}
+    of_body = OfBody(values.arguments)
     if body is not None:
-        whole, arguments, of_body = _of_body(model, body, only, forces)
-        found |= of_body
-        if forces is not None:
-            equations = _of_forces(model, whole, forces)
-            found |= equations.steps([n for n in DYNAMICS_QUANTITIES if not only or n in only])
-            integrals = equations.first_integrals
-            if not only or not {*only}.isdisjoint(FLOW_QUANTITIES):
-                made = equations.functions()
-                functions = {n: f for n, f in made.items() if not only or n in only}
-            arguments = {**arguments, **{a.name: a for a in equations.added}}
+        from rigidsym.mechanics.body_steps import steps_of_body
+
+        of_body = steps_of_body(model, body, forces, only, turns)
+        found |= of_body.steps
+    arguments = of_body.arguments
     has_rates = not only or not OF_RATES.isdisjoint(only)
     singularities = _singularities(values, turns) if has_rates else None
     named = [*(step.expression for step in found.values())]
@@ -115,11 +102,11 @@ def derive(
         model=model,
         arguments=tuple(arguments.values()),
         steps=tuple(_numbered(found, _table(values), constants)),
-        functions=tuple(_with_parameters(step, constants) for step in functions.values()),
+        functions=tuple(_with_parameters(step, constants) for step in of_body.functions.values()),
         singularities=singularities,
-        body=whole,
+        body=of_body.body,
         definitions=definitions,
-        first_integrals=integrals,
+        first_integrals=of_body.first_integrals,
     )
 
 
@@ -139,35 +126,6 @@ def _resting_on(
         if not definition.expression.free_symbols.isdisjoint({*constants, *found}):
             found.add(definition.symbol)
     return found
-
-
-def _of_body(
-    model: RotationModel, body: Body, only: Collection[str], forces: Forces | None
-) -> tuple[RigidBody, Mapping[str, Argument], dict[str, Found]]:
-    """The body, integrated, the arguments of its quantities, and what was found of them."""
-    from rigidsym.mechanics.energy import derive as energy
-    from rigidsym.mechanics.mass import derive as mass
-    from rigidsym.mechanics.mass.bodies import rigid_body
-
-    whole = rigid_body(body)
-    if forces is not None:
-        whole = forces.with_parameters(whole, model)
-    values = Values(model, whole, also=energy.OF_PARTICLES)
-    found = dict(mass.steps(values, [n for n in INERTIA_QUANTITIES if not only or n in only]))
-    absent = [name for name in INERTIA_QUANTITIES if name in only and name not in found]
-    if absent:
-        reasons = (f"no quantity {name}: {mass.WITHOUT[name]}" for name in absent)
-        raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
-    found |= energy.steps(values, [n for n in ENERGY_QUANTITIES if not only or n in only])
-    return whole, values.arguments, found
-
-
-def _of_forces(model: RotationModel, body: RigidBody, forces: Forces) -> EquationsOfMotion:
-    """The equations of motion."""
-    from rigidsym.mechanics.dynamics.derive import EquationsOfMotion
-    from rigidsym.mechanics.dynamics.lagrange import Lagrange
-
-    return EquationsOfMotion(Lagrange(model, body, forces))
 
 
 def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:

@@ -14,6 +14,7 @@ from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.kinematics.recursion_proofs import residuals
 from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 
 LETTERS = "zxzyxyzxyzxyzxzyxyzx"
 TOLERANCE = mp.mpf(10) ** -40
@@ -187,3 +188,18 @@ def test_a_long_chain_is_shown_in_vector_form():
     assert "Ω = u₁, uₖ = θ̇ₖ nₖ + Tₖ uₖ₊₁" in shown["angular_velocity_space"]
     assert "W = (n₁, P₁ n₂, …, P₁₁ n₁₂)" in shown["rate_matrix_space"]
     assert not motion.singularities.is_solved
+
+
+def test_a_body_on_a_long_chain_has_the_energy_and_momentum_of_the_expanded_rotation():
+    model, body = chain(5), rs.solid("cylinder", radius=sp.Symbol("a"), height=sp.Symbol("h"))
+    motion = rs.derive(model, body=body)
+    assert all(step.proofs for step in motion.steps if step.quantity.name in ENERGY_QUANTITIES)
+    assert motion.is_proved
+    values = Values(model, motion.body)
+    omega, inertia = values.omega_body, values.encoded(motion.body.inertia)
+    encode = values.codec.encode
+    assert encode(2 * motion.rotational_energy) == (omega.T @ inertia @ omega)[0, 0]
+    momentum = (values.R @ (inertia @ omega)).entries
+    assert tuple(map(encode, motion.angular_momentum_rotation)) == momentum
+    turned = values.R @ inertia @ values.R.T
+    assert tuple(map(encode, motion.inertia_tensor_space)) == turned.entries

@@ -19,8 +19,7 @@ import sympy as sp
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.errors import ModelError
-from rigidsym.mechanics.kinematics.rates import Inverse, right_inverse
-from rigidsym.mechanics.kinematics.workspace import Values, encoded
+from rigidsym.mechanics.kinematics.workspace import Inverse, Values, encoded, right_inverse
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel

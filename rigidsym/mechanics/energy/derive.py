@@ -14,13 +14,11 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.matrix import RingMatrix, cross
-from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form, half_of_squares
 from rigidsym.mechanics import particles
 from rigidsym.mechanics.derivation import Found
 from rigidsym.mechanics.energy import momentum_forms
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import energy as claims
 
 OF_PARTICLES = particles.SYMBOLS  # that the ring of energies has to hold
@@ -39,8 +37,7 @@ class _Energy:
         assert values.body is not None
         self.values, self.body, self.codec = values, values.body, values.codec
         self.ring = values.ring
-        self.present = presenter_for(values.codec)
-        self.prove = Prover(values.model, values.codec)
+        self.present, self.prove = values.present, values.prove
         self.inertia = values.encoded(self.body.inertia)
         self.mass = self.codec.encode(self.body.mass)
         self.centre = values.argument("centre")
@@ -62,11 +59,6 @@ class _Energy:
         """Σ m of a summand."""
         return self._sum.of_matrix(summand.scale(self.codec.encode(particles.MASS)))
 
-    @property
-    def _has_particles(self) -> bool:
-        """For many turns R x′ is not multiplied out; the proofs in Ω′ are as exact."""
-        return not self.values.factors
-
     def translational_energy(self) -> Found:
         twice = self.ring.dot([(self.mass, self._square(self.velocity))])
         summed = self._of_particles(self._scalar(self._square(self.velocity)))
@@ -81,39 +73,28 @@ class _Energy:
         values = self.values
         turned = values.R.T @ values.omega_space  # for Ωᵀ (R I′ Rᵀ) Ω, from the outside inwards
         in_space = turned.T @ self.inertia @ turned
-        proofs = [self.prove.vanishes(in_space - self._scalar(self._twice), claims.BOTH_FORMS)]
-        if self._has_particles:
-            _, velocity = self._particle
-            summed = self._of_particles(self._scalar(self._square(velocity)))
-            residual = summed - self._scalar(self._twice)
-            proofs.append(self.prove.vanishes(residual, claims.ROTATION_OF_PARTICLES))
+        _, velocity = self._particle
+        summed = self._of_particles(self._scalar(self._square(velocity)))
+        proofs = (
+            self.prove.vanishes(in_space - self._scalar(self._twice), claims.BOTH_FORMS),
+            self.prove.vanishes(summed - self._scalar(self._twice), claims.ROTATION_OF_PARTICLES),
+        )
         return Found(
             sp.ImmutableMatrix([[self._rotational]]),
             "The energy of the rotation is a quadratic form in the angular velocity.",
-            tuple(proofs),
+            proofs,
         )
 
     def kinetic_energy(self) -> Found:
         twice = self._twice + self.ring.dot([(self.mass, self._square(self.velocity))])
-        proofs = []
-        if self._has_particles:
-            whole = self.velocity + self._particle[1]
-            summed = self._of_particles(self._scalar(self._square(whole)))
-            residual = summed - self._scalar(twice)
-            proofs.append(self.prove.vanishes(residual, claims.ENERGY_SPLITS))
-        else:
-            proofs.append(self.prove.vanishes(self._cross_term(), claims.NO_CROSS_TERM))
+        whole = self.velocity + self._particle[1]
+        summed = self._of_particles(self._scalar(self._square(whole)))
         return Found(
             sp.ImmutableMatrix([[self._translational + self._rotational]]),
             "The energy splits, since the velocities relative to the centre of mass, weighted "
             "with the masses, sum to zero.",
-            tuple(proofs),
+            (self.prove.vanishes(summed - self._scalar(twice), claims.ENERGY_SPLITS),),
         )
-
-    def _cross_term(self) -> RingMatrix:
-        """Σ m Ω′ × x′, which is Σ m ẋ along the axes of the body."""
-        place = particles.vector(self.codec, particles.IN_BODY)
-        return self._of_particles(self._crossed(self.values.argument("omega_body"), place))
 
     def angular_momentum_centre(self) -> Found:
         momentum = self._crossed(self.centre, self.velocity).scale(self.mass)
@@ -139,33 +120,27 @@ class _Energy:
         momentum = self._momentum
         turned = values.R @ (self.inertia @ (values.R.T @ values.omega_space))
         dotted = momentum.T @ values.omega_space - self._scalar(self._twice)
-        proofs = [
-            self.prove.vanishes(turned - momentum, claims.MOMENTUM_TURNS),
-            self.prove.vanishes(dotted, claims.TWICE_ENERGY),
-        ]
-        if self._has_particles:
-            summed = self._of_particles(self._crossed(*self._particle))
-            proofs.append(self.prove.vanishes(summed - momentum, claims.MOMENTUM_OF_PARTICLES))
+        summed = self._of_particles(self._crossed(*self._particle))
         return Found(
             momentum_forms.in_space(self.present, self.inertia, values),
             "Rotating gives the components along the axes of space.",
-            tuple(proofs),
+            (
+                self.prove.vanishes(turned - momentum, claims.MOMENTUM_TURNS),
+                self.prove.vanishes(dotted, claims.TWICE_ENERGY),
+                self.prove.vanishes(summed - momentum, claims.MOMENTUM_OF_PARTICLES),
+            ),
         )
 
     def angular_momentum(self) -> Found:
         of_centre = self._crossed(self.centre, self.velocity).scale(self.mass)
-        if self._has_particles:
-            place, velocity = self._particle
-            whole = self._crossed(self.centre + place, self.velocity + velocity)
-            residual = self._of_particles(whole) - of_centre - self._momentum
-            proof = self.prove.vanishes(residual, claims.MOMENTUM_SPLITS)
-        else:
-            proof = self.prove.vanishes(self._cross_term(), claims.NO_CROSS_TERM)
+        place, velocity = self._particle
+        whole = self._crossed(self.centre + place, self.velocity + velocity)
+        residual = self._of_particles(whole) - of_centre - self._momentum
         rotation = momentum_forms.in_space(self.present, self.inertia, self.values)
         return Found(
             sp.ImmutableMatrix(self.present.matrix(of_centre) + rotation),
             "Like the energy, the angular momentum is the sum of two parts.",
-            (proof,),
+            (self.prove.vanishes(residual, claims.MOMENTUM_SPLITS),),
         )
 
     @cached_property

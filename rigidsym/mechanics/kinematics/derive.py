@@ -10,16 +10,11 @@ from types import MappingProxyType
 
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.present import presenter_for
+from rigidsym.algebra.matrix import RingMatrix, hat
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Found, Proof
-from rigidsym.mechanics.kinematics import composition
-from rigidsym.mechanics.kinematics.composition import hat
-from rigidsym.mechanics.kinematics.rates import Inverse
 from rigidsym.mechanics.kinematics.vector_forms import applied_form, matrix_form, vector_form
-from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.kinematics.workspace import Inverse, Values
 from rigidsym.mechanics.quantities import claims
 from rigidsym.mechanics.quantities.kinematics import (
     ALPHA,
@@ -54,17 +49,12 @@ class _Kinematics:
     def __init__(self, values: Values) -> None:
         self.values = values
         self.model = values.model
-        self.present = presenter_for(values.codec)
-        self.prove = Prover(values.model, values.codec)
+        self.present, self.prove = values.present, values.prove
 
     def rotation_matrix(self) -> Found:
         values, symbol = self.values, self._shown_symbol
-        if values.factors:
-            residual = composition.orthogonality(values.factors)
-            determinant = composition.determinants(values.factors)
-        else:
-            residual = self._shown(values.R).gram() - values.one
-            determinant = values.column([values.R.det() - 1])
+        residual = self._shown(values.R).gram() - values.one
+        determinant = values.column([values.R.det() - 1])
         proofs = (
             self.prove.is_rotation(residual, claims.orthogonal(symbol)),
             self.prove.is_rotation(determinant, claims.proper(symbol)),
@@ -94,15 +84,12 @@ class _Kinematics:
         return Found(
             self.present.matrix(self._shown(self.values.R_dot)),
             "The chain rule gives the time derivative of each entry.",
-            (
-                self.prove.vanishes(spin + spin.T, claims.stays_orthogonal(self._shown_symbol)),
-                *self._composed(),
-            ),
+            (self.prove.vanishes(spin + spin.T, claims.stays_orthogonal(self._shown_symbol)),),
         )
 
     def spin_matrix(self) -> Found:
         spin, symbol = self._shown_spin, claims.spin_of(self._shown_symbol)
-        proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol)), *self._composed()]
+        proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol))]
         because = "Multiplying the derivative by the transpose gives a skew matrix"
         if self.model.passive:
             operator = claims.is_operator(BODY.omega, symbol, "-")
@@ -110,34 +97,16 @@ class _Kinematics:
             because += ", and it is the operator of −Ω′, not of Ω"
         return Found(self.present.matrix(spin), f"{because}.", tuple(proofs))
 
-    def _composed(self) -> tuple[Proof, ...]:
-        """Where Ω was composed turn by turn: that it is the vector of dR/dt Rᵀ."""
-        factors = self.values.factors
-        if not factors:
-            return ()
-        residual = composition.operators(factors, self.values.argument("omega_space"))
-        claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
-        return (self.prove.vanishes(residual, claim),)
-
     def angular_velocity_space(self) -> Found:
         values = self.values
-        if values.factors:
-            (proof,) = self._composed()
+        because = "The components of Ω are the entries (3,2), (1,3) and (2,1) of this skew matrix."
+        if self.model.passive:
             because = (
-                "Each turn contributes its rate times its axis, as the turns before it have moved "
-                "it; for so many turns the product is not multiplied out."
+                "The derivative of the transpose times the matrix is the operator of Ω, as "
+                "the transpose is R. " + because
             )
-        else:
-            because = (
-                "The components of Ω are the entries (3,2), (1,3) and (2,1) of this skew matrix."
-            )
-            if self.model.passive:
-                because = (
-                    "The derivative of the transpose times the matrix is the operator of Ω, as "
-                    "the transpose is R. " + because
-                )
-            claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
-            proof = self.prove.vanishes(values.spin - hat(values.omega_space), claim)
+        claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
+        proof = self.prove.vanishes(values.spin - hat(values.omega_space), claim)
         return self._vector(SPACE, values.omega_space, because, proof)
 
     def angular_velocity_body(self) -> Found:
@@ -234,7 +203,7 @@ class _Kinematics:
         return Found(
             self.present.matrix(space),
             "The angular acceleration is the time derivative of the angular velocity.",
-            (self.prove.vanishes(self.values.spin.dt() - hat(space), claim), *self._composed()),
+            (self.prove.vanishes(self.values.spin.dt() - hat(space), claim),),
         )
 
     def angular_acceleration_body(self) -> Found:

@@ -13,13 +13,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.codec import Codec, codec_for
-from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.mechanics.kinematics.composition import (
-    Factor,
-    determinants,
-    operators,
-    orthogonality,
-)
+from rigidsym.algebra.matrix import RingMatrix, hat
 from rigidsym.mechanics.kinematics.recursion import OrthogonalRows, Recursion
 from rigidsym.models.so3 import TIME
 
@@ -45,13 +39,12 @@ def _of_turn(r: Recursion, k: int) -> Iterator[Encoded]:
     codec = codec_for(parts, constraints=bound)
     encoded = [codec.encode(part) for part in parts]
     turn = RingMatrix(codec.ring, tuple(tuple(encoded[j : j + 3]) for j in (0, 3, 6)))
-    axis = RingMatrix.column(codec.ring, encoded[9:12])
-    factor = [Factor(turn, axis.scale(encoded[12]))]
-    free = RingMatrix.column(codec.ring, encoded[13:])
-    yield codec, orthogonality(factor)
-    yield codec, determinants(factor)
+    axis, free = (RingMatrix.column(codec.ring, part) for part in (encoded[9:12], encoded[13:]))
+    yield codec, turn.gram() - RingMatrix.identity(codec.ring, 3)
+    yield codec, RingMatrix.column(codec.ring, [turn.det() - 1])
     yield codec, turn @ axis - axis
-    yield codec, operators(factor, free)
+    yield codec, turn.dt() @ turn.T - hat(axis.scale(encoded[12]))
+    yield codec, turn @ hat(free) @ turn.T - hat(turn @ free)
 
 
 def rows_residuals(r: Recursion, rows: OrthogonalRows) -> Iterator[Encoded]:

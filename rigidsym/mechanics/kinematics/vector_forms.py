@@ -13,13 +13,12 @@ from operator import add
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.matrix import RingMatrix, cross
+from rigidsym.algebra.matrix import RingMatrix, cross, hat
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.quotient import Quotient
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import VectorForm, VectorTerm
-from rigidsym.mechanics.kinematics.composition import hat
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.so3 import TIME
 

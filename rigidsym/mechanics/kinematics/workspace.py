@@ -11,18 +11,18 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.configuration import configurations
-from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.matrix import RingMatrix, hat, unhat
+from rigidsym.algebra.present import Presenter, presenter_for
+from rigidsym.algebra.ring import Ring
 from rigidsym.mechanics.arguments import arguments_of
-from rigidsym.mechanics.kinematics import composition
-from rigidsym.mechanics.kinematics.composition import Factor, hat, unhat
-from rigidsym.mechanics.kinematics.rates import Inverse, bound_on_rates, right_inverse
-from rigidsym.models.rotation import RotationModel, Turn
-from rigidsym.models.so3 import TIME
+from rigidsym.mechanics.prove import Prover
+from rigidsym.models.parametrisations import DirectionCosines
+from rigidsym.models.rotation import RotationModel
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
 
-_FEW_TURNS = 4  # up to here the product is multiplied out; the proof by turns is as exact
+Inverse = tuple[RingMatrix, PolyElement]  # G and d, for G/d
 
 
 class Values:
@@ -37,9 +37,14 @@ class Values:
         """`also`: expressions for the ring to hold beside those of the model and the body."""
         self.model = model
         self.body = body
+        self.arguments = {argument.name: argument for argument in arguments_of(model, body)}
+        self._also = tuple(also)
+
+    @cached_property
+    def codec(self) -> Codec:
+        model, body = self.model, self.body
         if model.constraints:  # before the ring, which contradictory ones would make endless
             configurations(model.name, model.constraints, (), model.example)
-        self.arguments = {argument.name: argument for argument in arguments_of(model, body)}
         # an energy holds no accelerations, and where constraints relate them to rates none may be
         # taken for an energy
         left_out = ("q", "q_ddot") if body else ("q",)
@@ -48,32 +53,28 @@ class Values:
         held = [e for turn in model.turns for e in turn.matrix.flat()] or [*model.matrix]
         if body is not None:
             held += [body.mass, *body.inertia, sp.Rational(1, 2)]
-        held += also
         order = 1 if body else 2
-        self.codec = codec_for([*inputs, *held], constraints=model.constraints, order=order)
-        self.ring = self.codec.ring
-        self.one = RingMatrix.identity(self.ring, 3)
-
-    @property
-    def _many_turns(self) -> tuple[Turn, ...]:
-        return self.model.turns if len(self.model.turns) > _FEW_TURNS else ()
+        inputs += [*held, *self._also]
+        return codec_for(inputs, constraints=model.constraints, order=order)
 
     @cached_property
-    def factors(self) -> tuple[Factor, ...]:
-        """The turns, if there are too many to multiply R Rᵀ and dR/dt Rᵀ out; else none."""
-        return tuple(
-            Factor(self.encoded(turn.matrix), self._turning(turn)) for turn in self._many_turns
-        )
+    def prove(self) -> Prover:
+        return Prover(self.model, self.codec)
 
-    def _turning(self, turn: Turn) -> RingMatrix:
-        """The angular velocity of one turn: its axis, times the rate of its angle."""
-        rate = sp.diff(turn.angle, TIME)
-        return self.encoded(sp.Matrix([part * rate for part in turn.direction]))
+    @cached_property
+    def present(self) -> Presenter:
+        return presenter_for(self.codec)
+
+    @property
+    def ring(self) -> Ring:
+        return self.codec.ring
+
+    @cached_property
+    def one(self) -> RingMatrix:
+        return RingMatrix.identity(self.ring, 3)
 
     @cached_property
     def R(self) -> RingMatrix:
-        if self.factors:
-            return composition.product(self.factors)
         return self.encoded(self.model.matrix)
 
     @cached_property
@@ -83,15 +84,11 @@ class Values:
     @cached_property
     def spin(self) -> RingMatrix:
         """dR/dt Rᵀ."""
-        if self.factors:
-            return hat(composition.omega_space(self.factors))
         return self.R_dot @ self.R.T
 
     @cached_property
     def spin_of_transpose(self) -> RingMatrix:
         """dA/dt Aᵀ of A = Rᵀ."""
-        if self.factors:
-            return hat(self.omega_body).map(lambda entry: -entry)
         return self.R_dot.T @ self.R
 
     @cached_property
@@ -100,8 +97,6 @@ class Values:
 
     @cached_property
     def omega_body(self) -> RingMatrix:
-        if self.factors:
-            return composition.omega_body(self.factors)
         if self.model.pullback is not None:  # RᵀΩ would not become shorter in this ring
             return unhat(self.R.T @ self.R_dot)
         return self.R.T @ self.omega_space
@@ -134,7 +129,11 @@ class Values:
 
     @cached_property
     def bound(self) -> RingMatrix | None:
-        return bound_on_rates(self.model.constraints, self.model.coordinates, self.codec)
+        """J = ∂(constraints)/∂q, (m, n); None if no constraint binds a coordinate."""
+        coordinates = self.model.coordinates
+        binding = [c for c in self.model.constraints if c.has(*coordinates)]
+        rows = [[sp.diff(c, q) for q in coordinates] for c in binding]
+        return self.encoded(sp.Matrix(rows)) if rows else None
 
     def _jacobian(self, omega: RingMatrix) -> RingMatrix:
         """∂Ω/∂q̇, by the generators of the rates themselves: a constraint may relate them."""
@@ -155,7 +154,72 @@ class Values:
         return encoded(self.codec, matrix)
 
 
+class NamedValues(Values):
+    """R, dR/dt, Ω and Ω′ of a body whose rotation is known by names for R and Ω′.
+
+    Of these only R Rᵀ = 1, det R = 1, Ω = R Ω′ and dR/dt = R C(Ω′) are used, which the derivation
+    of a long product of turns proves.
+    """
+
+    names = DirectionCosines([f"R_{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)])
+    velocity = sp.symbols("omega_body_1:4")
+
+    @cached_property
+    def codec(self) -> Codec:
+        assert self.body is not None
+        moving = [*self.arguments["centre"].symbols, *self.arguments["centre_dot"].symbols]
+        inputs = [*self.names.matrix, *self.velocity, *moving, self.body.mass, *self.body.inertia]
+        return codec_for([*inputs, sp.Rational(1, 2), *self._also], order=1)
+
+    @cached_property
+    def prove(self) -> Prover:
+        return Prover(self.names, self.codec)
+
+    @cached_property
+    def R(self) -> RingMatrix:
+        return self.encoded(self.names.matrix)
+
+    @cached_property
+    def R_dot(self) -> RingMatrix:
+        return self.R @ hat(self.omega_body)
+
+    @cached_property
+    def omega_space(self) -> RingMatrix:
+        return self.R @ self.omega_body
+
+    @cached_property
+    def omega_body(self) -> RingMatrix:
+        return self.encoded(sp.Matrix(self.velocity))
+
+
 def encoded(codec: Codec, matrix: sp.MatrixBase) -> RingMatrix:
     """A matrix over the ring of a codec."""
     rows = [[codec.encode(entry) for entry in row] for row in matrix.tolist()]
     return RingMatrix.of(codec.ring, rows)
+
+
+def right_inverse(matrix: RingMatrix, bound: RingMatrix | None) -> Inverse | None:
+    """G (n, 3) and d with W G = d 1, for a rate matrix W (3, n); None if there is none.
+
+    With as many coordinates as dimensions it is the inverse; with more, the rates of least norm
+    are taken, W⁺ = Wᵀ (W Wᵀ)⁻¹. `bound` is the matrix J of the constraints on the rates, J q̇ = 0;
+    then J G = 0 as well.
+    """
+    count = matrix.shape[1]
+    if count < 3:
+        return None
+    if count == 3 and bound is None:
+        return _if_regular(matrix.adjugate(), matrix.det())
+    gram = matrix.gram()
+    least = _if_regular(matrix.T @ gram.adjugate(), gram.det())
+    if least is None or bound is None or (bound @ least[0]).is_zero():
+        return least
+    square = RingMatrix(matrix.ring, (*matrix.rows, *bound.rows))
+    if square.shape[0] != count:
+        return None
+    columns = square.adjugate().T.rows[:3]
+    return _if_regular(RingMatrix(matrix.ring, columns).T, square.det())
+
+
+def _if_regular(inverse: RingMatrix, determinant: PolyElement) -> Inverse | None:
+    return (inverse, determinant) if determinant else None

@@ -16,12 +16,11 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.matrix import RingMatrix, cross
+from rigidsym.algebra.matrix import RingMatrix, cross, hat, unhat
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation, Proof, Statement, Step
-from rigidsym.mechanics.kinematics.composition import hat, unhat
 from rigidsym.mechanics.lecture.equations import STATEMENTS
 from rigidsym.mechanics.particles import IN_BODY, MASS, ParticleSums
 from rigidsym.mechanics.prove import Conditions, Prover

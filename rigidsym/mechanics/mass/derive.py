@@ -12,14 +12,13 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.rational import Rationals
 from rigidsym.mechanics.arguments import DIRECTION, POINT
 from rigidsym.mechanics.derivation import Found
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass.moments import Moments, moments_of
 from rigidsym.mechanics.mass.principal import Principal, principal_of
-from rigidsym.mechanics.prove import Prover, identity
+from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import mass as claims
 from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Composite, Known, Part
@@ -252,9 +251,9 @@ class _Inertia:
         body = values.encoded(self.body.inertia)
         space = values.R @ (body @ values.R.T)
         trace = values.column([sum((space[k, k] - body[k, k] for k in range(3)), values.ring.zero)])
-        prove = Prover(values.model, values.codec)
+        prove = values.prove
         return Found(
-            presenter_for(values.codec).matrix(space),
+            values.present.matrix(space),
             "A tensor is rotated from both sides.",
             (
                 prove.vanishes(values.R.T @ (space @ values.R) - body, claims.BACK),

@@ -29,9 +29,10 @@ def singularities_of(values: Values) -> Singularities:
     These are the common zeros of the minors of the rate matrix, solved where `Solver` can; else
     the minors are reported and nothing is guessed.
     """
-    inverse = values.inverse_space
-    if values.model.pullback is not None and inverse is not None and inverse[1].is_ground:
-        return _without_divisor()
+    if values.model.pullback is not None:
+        inverse = values.inverse_space
+        if inverse is not None and inverse[1].is_ground:
+            return _without_divisor()
     study = _Study(values)
     found = study.singularities()
     if found.is_solved or not study.solver.missing:

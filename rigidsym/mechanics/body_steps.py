@@ -1,0 +1,75 @@
+"""What a rotation and a body have together: inertia, energy, momentum and equations of motion."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import sympy as sp
+
+from rigidsym.errors import QuantityError
+from rigidsym.mechanics.derivation import Found, OfBody
+from rigidsym.mechanics.dynamics.derive import EquationsOfMotion
+from rigidsym.mechanics.dynamics.lagrange import Lagrange
+from rigidsym.mechanics.energy import derive as energy
+from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn
+from rigidsym.mechanics.kinematics.workspace import NamedValues, Values
+from rigidsym.mechanics.mass import derive as mass
+from rigidsym.mechanics.mass.bodies import rigid_body
+from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, FLOW_QUANTITIES
+from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
+from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.models.body import BodyDescription, RigidBody
+from rigidsym.models.distribution import Distribution
+from rigidsym.models.forces import Forces
+from rigidsym.models.rotation import RotationModel
+
+
+def steps_of_body(
+    model: RotationModel,
+    body: RigidBody | BodyDescription | Distribution,
+    forces: Forces | None,
+    only: Collection[str],
+    turns: TurnByTurn | None,
+) -> OfBody:
+    """The body, integrated, with the steps to its quantities.
+
+    With `turns` R and Ω′ are those that their recursions name.
+    """
+    whole = rigid_body(body)
+    if forces is not None:
+        whole = forces.with_parameters(whole, model)
+    values = (NamedValues if turns else Values)(model, whole, also=energy.OF_PARTICLES)
+    found = dict(mass.steps(values, [n for n in INERTIA_QUANTITIES if not only or n in only]))
+    absent = [name for name in INERTIA_QUANTITIES if name in only and name not in found]
+    if absent:
+        reasons = (f"no quantity {name}: {mass.WITHOUT[name]}" for name in absent)
+        raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
+    found |= energy.steps(values, [n for n in ENERGY_QUANTITIES if not only or n in only])
+    if turns is not None:
+        found = {name: _renamed(step, turns) for name, step in found.items()}
+    if forces is None:
+        return OfBody(values.arguments, found, whole)
+    motion = EquationsOfMotion(Lagrange(model, whole, forces))
+    found |= motion.steps([n for n in DYNAMICS_QUANTITIES if not only or n in only])
+    asks = not only or not {*only}.isdisjoint(FLOW_QUANTITIES)
+    functions = motion.functions() if asks else {}
+    return OfBody(
+        arguments={**values.arguments, **{a.name: a for a in motion.added}},
+        steps=found,
+        body=whole,
+        functions={n: f for n, f in functions.items() if not only or n in only},
+        first_integrals=motion.first_integrals,
+    )
+
+
+def _renamed(step: Found, turns: TurnByTurn) -> Found:
+    """The step with R and Ω′ as the recursions over the turns name them, and are proved to be."""
+    recursion = turns.recursion
+    names = dict(zip(NamedValues.names.matrix, recursion.partial[-1], strict=True))
+    names |= dict(zip(NamedValues.velocity, recursion.omega_body[-1], strict=True))
+    if not step.expression.has(*names):
+        return step
+    proofs = turns.rotation_matrix().proofs + turns.angular_velocity_body().proofs
+    expression = sp.ImmutableMatrix(step.expression.xreplace(names))
+    return replace(step, expression=expression, proofs=step.proofs + proofs)
