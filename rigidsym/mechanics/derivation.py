@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Protocol, Self
 
 import sympy as sp
@@ -135,9 +134,9 @@ class OfBody:
     """What a body and the forces on it add to the derivation of a rotation."""
 
     arguments: Mapping[str, Argument]  # all of them, by name
-    steps: Mapping[str, Found] = MappingProxyType({})
+    steps: Mapping[str, Found] = field(default_factory=dict)
     body: RigidBody | None = None
-    functions: Mapping[str, Step] = MappingProxyType({})  # of the state, for kernels
+    functions: Mapping[str, Step] = field(default_factory=dict)  # of the state, for kernels
     first_integrals: tuple[FirstIntegral, ...] = ()
 
 
