@@ -19,8 +19,7 @@ from rigidsym.algebra.adjoin import (
     roots_of,
 )
 from rigidsym.algebra.angles import Combination, combination, cosine_sine_of_pi
-from rigidsym.algebra.quotient import Quotient
-from rigidsym.algebra.ring import Generator, Ring
+from rigidsym.algebra.ring import Generator, Quotient, Ring
 from rigidsym.errors import AlgebraError
 
 _HIGHEST_MULTIPLE = 100  # cos nθ has n terms in cos θ, and products of such polynomials follow

@@ -7,7 +7,7 @@ difference from the value must reduce to zero.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache, reduce
 from math import gcd, lcm
@@ -17,13 +17,10 @@ from typing import Any
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.codec import Codec
-from rigidsym.algebra.factor import FactoredTerm, collect
-from rigidsym.algebra.fold import Rule, folded, rules
+from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix, Row
-from rigidsym.algebra.quotient import Quotient
-from rigidsym.algebra.ring import Monomial
-from rigidsym.algebra.shorten import shortest
+from rigidsym.algebra.ring import Monomial, Quotient
+from rigidsym.algebra.shorten import FactoredTerm, Rule, collect, folded, rules, shortest
 from rigidsym.errors import AlgebraError
 
 _MORE_TERMS = 2  # that a sum over one denominator may have; with more it is hardly ever shorter
@@ -170,6 +167,71 @@ class Presenter:
                 powers[above] -= times
                 powers[cosine if above == sine else sine] += times
         return found
+
+
+class Rationals:
+    """Quotients over the ring of their numerators and denominators: in (`read`) and out (`write`).
+
+    The ring then needs no generator for the inverse of a sum, so that common factors of numerator
+    and denominator are seen and cancel.
+    """
+
+    def __init__(self, expressions: Iterable[sp.Expr], constraints: Iterable[sp.Expr] = ()) -> None:
+        parts = (part for e in expressions for part in sp.sympify(e, strict=True).as_numer_denom())
+        self._take(codec_for(parts, constraints=constraints))
+
+    @classmethod
+    def over(cls, codec: Codec) -> Rationals:
+        """The quotients over a ring that is there already."""
+        made = cls.__new__(cls)
+        made._take(codec)
+        return made
+
+    def _take(self, codec: Codec) -> None:
+        self.codec, self.ring = codec, codec.ring
+
+    def read(self, expression: sp.Expr) -> Quotient:
+        """Raises AlgebraError for an expression that the ring was not built for."""
+        above, below = sp.sympify(expression, strict=True).as_numer_denom()
+        return self.codec.encode_quotient(above) * self.codec.encode_quotient(below).inverse()
+
+    def read_matrix(self, matrix: sp.MatrixBase) -> list[list[Quotient]]:
+        return [[self.read(entry) for entry in row] for row in matrix.tolist()]
+
+    def write(self, value: Quotient) -> sp.Expr:
+        return presenter_for(self.codec).quotient(value)
+
+    def total(self, parts: Iterable[Quotient]) -> Quotient:
+        return Quotient.sum(self.ring, parts)
+
+    def negative(self, value: Quotient) -> Quotient:
+        return Quotient(self.ring, -value.numerator, value.denominator)
+
+
+def halved(
+    entries: Sequence[sp.Expr], given: Iterable[sp.Expr], constraints: Sequence[sp.Expr] = ()
+) -> list[sp.Expr]:
+    """The entries over half of each angle whose 1 ± cos divides, proved equal.
+
+    1 − cos θ = 2 sin² θ/2 keeps its digits where it vanishes; over the half angle the quotient
+    loses what its two sides have in common, sin θ/(1 − cos θ) = cot θ/2.
+    `given` are the expressions that the entries were derived from.
+    """
+    angles = dict.fromkeys(angle for entry in entries for angle in _vanishing(entry))
+    if not angles:
+        return list(entries)
+    codec = codec_for([*given, *(sp.sin(angle / 2) for angle in angles)], constraints=constraints)
+    present = presenter_for(codec)
+    return [present.quotient(codec.encode_quotient(entry)) for entry in entries]
+
+
+def _vanishing(entry: sp.Expr) -> Iterator[sp.Expr]:
+    """The angles of the divisors a ± a cos θ."""
+    for power in entry.atoms(sp.Pow):
+        number, rest = power.base.as_coeff_Add()
+        size, cosine = rest.as_coeff_Mul()
+        if power.exp.is_negative and isinstance(cosine, sp.cos) and abs(size) == abs(number):
+            yield cosine.args[0]
 
 
 class _Expressions(dict[int, sp.Expr]):

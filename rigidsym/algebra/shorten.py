@@ -1,18 +1,31 @@
-"""The shortest of the polynomials that are equal modulo the relations.
+"""Shorter forms of polynomials: by the relations, by sums of angles, by common factors.
 
-A normal form is for deciding. For reading, 1 − c² is better written s², and w² + x² + y² + z²
-better written 1: from the normal form, a walk over neighbours that differ by a multiple of one
-relation, never to a longer one.
+1. `shortest`: a normal form is for deciding. For reading, 1 − c² is better written s², and
+   w² + x² + y² + z² better written 1: from the normal form, a walk over neighbours that differ by
+   a multiple of one relation, never to a longer one.
+2. `folded`: cos α cos β − sin α sin β is written cos(α + β). Terms come in over the generators of a
+   ring and leave over more places: after the generators stand, for every two angles, the cosine and
+   sine of their sum and of their difference.
+3. `collect`: common factors are taken out, in the order of what they save. Terms are Laurent
+   monomials (a negative power divides); the result is a sum of products, each of which may hold a
+   sum in turn.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import reduce
+from itertools import combinations
+from math import gcd, lcm
 from operator import sub
 
+import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.ring import Ring
+from rigidsym.algebra.angles import is_sum_of
+from rigidsym.algebra.ring import Monomial, Ring
 
 _MOST_STEPS = 60
 
@@ -63,3 +76,156 @@ def _neighbours(ring: Ring, element: PolyElement) -> Iterator[PolyElement]:
             if not left:  # in Z a coefficient may not be divisible
                 rest = tuple(map(sub, monomial, part))
                 yield element - relation.mul_term((rest, times))
+
+
+Angle = tuple[int, int]  # places of sine and cosine
+FoldedTerms = dict[Monomial, Fraction]
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """first + sign · second = function(alpha ± beta), for products of two generators."""
+
+    first: tuple[int, int]
+    second: tuple[int, int]
+    sign: int
+    function: type[sp.sin] | type[sp.cos]
+    angles: tuple[sp.Expr, sp.Expr]  # α and ±β
+
+    @property
+    def folded(self) -> sp.Expr:
+        """The function of the sum; SymPy takes long to make one, and few are ever needed."""
+        return self.function(sp.Add(*self.angles))
+
+
+def rules(angles: Sequence[Angle], expressions: Sequence[sp.Expr]) -> tuple[Rule, ...]:
+    """The addition theorems of every two angles."""
+    return tuple(rule for a, b in combinations(angles, 2) for rule in _of_two(a, b, expressions))
+
+
+def _of_two(a: Angle, b: Angle, expressions: Sequence[sp.Expr]) -> Iterator[Rule]:
+    alpha, beta = expressions[a[0]].args[0], expressions[b[0]].args[0]
+    if not is_sum_of(alpha + beta, alpha, beta):
+        return  # the angles cancel in part, and the ring has other generators for their sum
+    (s, c), (sine, cosine) = a, b
+    plus, minus = (alpha, beta), (alpha, -beta)
+    yield Rule((c, cosine), (s, sine), -1, sp.cos, plus)
+    yield Rule((c, cosine), (s, sine), 1, sp.cos, minus)
+    yield Rule((s, cosine), (c, sine), 1, sp.sin, plus)
+    yield Rule((s, cosine), (c, sine), -1, sp.sin, minus)
+
+
+def folded(terms: Mapping[Monomial, Fraction], found: Iterable[Rule]) -> FoldedTerms:
+    """The terms with each pair of an addition theorem made one.
+
+    Places for all rules are added, unless no rule can apply.
+    """
+    if len(terms) < 2:
+        return dict(terms)
+    found = tuple(found)
+    highest = tuple(map(max, zip(*terms, strict=True)))
+    present = {place for place, power in enumerate(highest) if power > 0}
+    may = [
+        (place, rule)
+        for place, rule in enumerate(found, start=len(highest))
+        if present.issuperset(rule.first) and present.issuperset(rule.second)
+    ]
+    if not may:
+        return dict(terms)
+    result = {(*monomial, *[0] * len(found)): value for monomial, value in terms.items()}
+    for place, rule in may:
+        for monomial in list(result):
+            _fold_at(result, monomial, rule, place)
+    return result
+
+
+def _fold_at(terms: FoldedTerms, monomial: Monomial, rule: Rule, place: int) -> None:
+    """Fold the pair that this monomial begins, if its other half is there."""
+    a, b = rule.first
+    if monomial not in terms or monomial[a] < 1 or monomial[b] < 1:
+        return
+    rest = _times(monomial, rule.first, -1)
+    other = _times(rest, rule.second, 1)
+    if terms.get(other) == rule.sign * terms[monomial]:
+        value = terms.pop(monomial)
+        del terms[other]
+        target = _times(rest, (place,), 1)
+        terms[target] = terms.get(target, Fraction(0)) + value
+
+
+def _times(monomial: Monomial, places: Iterable[int], power: int) -> Monomial:
+    changed = list(monomial)
+    for place in places:
+        changed[place] += power
+    return tuple(changed)
+
+
+Weights = Mapping[int, int]  # place of a generator -> operations that one use of it costs
+
+
+@dataclass(frozen=True, slots=True)
+class FactoredTerm:
+    """coefficient · generators^powers · (sum of the factors in `bracket`, where there is one)."""
+
+    coefficient: Fraction
+    powers: Monomial
+    bracket: tuple[FactoredTerm, ...] = ()
+
+
+def collect(terms: Mapping[Monomial, Fraction], weights: Weights) -> tuple[FactoredTerm, ...]:
+    """The terms as a sum of products with common factors taken out."""
+    factor = _best_factor(terms, weights) if len(terms) > 1 else None
+    if factor is None:
+        return tuple(FactoredTerm(coefficient, powers) for powers, coefficient in terms.items())
+    place, sign = factor
+    inside = {m: c for m, c in terms.items() if m[place] * sign > 0}
+    outside = {m: c for m, c in terms.items() if m[place] * sign <= 0}
+    return (_take_out(inside, weights), *(collect(outside, weights) if outside else ()))
+
+
+def _best_factor(terms: Mapping[Monomial, Fraction], weights: Weights) -> tuple[int, int] | None:
+    """(generator, sign of its power) that saves most, of those that occur in several terms.
+
+    A term saves the factor where its lowest power takes all of it; what is taken out is written
+    once. Ties go to the generator that comes first.
+    """
+    powers: dict[tuple[int, int], list[int]] = {}
+    for monomial in terms:
+        for place, power in enumerate(monomial):
+            if power:
+                powers.setdefault((place, 1 if power > 0 else -1), []).append(abs(power))
+    savings = {
+        key: (found.count(min(found)) - 1) * (weights[key[0]] + 1) for key, found in powers.items()
+    }
+    best = max(savings, key=lambda key: (savings[key], -key[0]), default=None)
+    return best if best and savings[best] else None
+
+
+def _take_out(terms: Mapping[Monomial, Fraction], weights: Weights) -> FactoredTerm:
+    """All that the terms have in common, times what is left of them."""
+    common = reduce(_common_powers, terms)
+    number = _content(terms.values())
+    rest = {
+        tuple(a - b for a, b in zip(monomial, common, strict=True)): coefficient / number
+        for monomial, coefficient in terms.items()
+    }
+    return FactoredTerm(number, common, collect(rest, weights))
+
+
+def _common_powers(first: Monomial, second: Monomial) -> Monomial:
+    """Powers that both hold, of one sign: numerators with numerators."""
+    return tuple(
+        (min(a, b) if a > 0 else max(a, b)) if a * b > 0 else 0
+        for a, b in zip(first, second, strict=True)
+    )
+
+
+def _content(coefficients: Iterable[Fraction]) -> Fraction:
+    """The common factor of the coefficients, negative where that leaves fewer minus signs."""
+    values = list(coefficients)
+    size = Fraction(
+        gcd(*(abs(value.numerator) for value in values)),
+        lcm(*(value.denominator for value in values)),
+    )
+    minuses = sum(value < 0 for value in values)
+    return -size if minuses == len(values) else size

@@ -17,7 +17,7 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.adjoin import is_time_function
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import Presenter
-from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.ring import Quotient
 from rigidsym.algebra.shorten import shortest
 from rigidsym.errors import AlgebraError
 

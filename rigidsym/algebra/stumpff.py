@@ -19,7 +19,7 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.present import presenter_for
-from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.ring import Quotient
 from rigidsym.algebra.series import closed_form, taylor
 from rigidsym.errors import AlgebraError
 

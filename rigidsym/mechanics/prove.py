@@ -15,8 +15,8 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.quotient import Quotient
-from rigidsym.algebra.rational import Rationals
+from rigidsym.algebra.present import Rationals
+from rigidsym.algebra.ring import Quotient
 from rigidsym.algebra.signs import Bounds, sign_within
 from rigidsym.algebra.witness import Example, Rows, witness_for
 from rigidsym.errors import Defect, DerivationError, NotARotation

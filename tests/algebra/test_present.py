@@ -12,7 +12,7 @@ from rigidsym.algebra import present
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import Presenter, presenter_for
-from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import AlgebraError
 from rigidsym.models.so3 import time_function
 

@@ -9,8 +9,7 @@ import sympy as sp
 from hypothesis import given, settings, strategies as st
 
 from rigidsym.algebra.matrix import RingMatrix, cross
-from rigidsym.algebra.quotient import Quotient
-from rigidsym.algebra.ring import Generator, Ring
+from rigidsym.algebra.ring import Generator, Quotient, Ring
 from rigidsym.errors import AlgebraError
 from rigidsym.models.so3 import time_function
 

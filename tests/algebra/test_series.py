@@ -12,7 +12,7 @@ import sympy as sp
 from helpers.samples import ROTATIONS
 from helpers.witness import mp
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.halves import halved
+from rigidsym.algebra.present import halved
 from rigidsym.algebra.series import FIRST_SERIES, closed_form, series_of, taylor
 from rigidsym.algebra.stumpff import Stumpff, at_zero, rewriter_of
 from rigidsym.models.rotation_text import rotation_from

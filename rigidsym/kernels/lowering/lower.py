@@ -16,7 +16,7 @@ from functools import cached_property
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.halves import halved
+from rigidsym.algebra.present import halved
 from rigidsym.algebra.stumpff import Stumpff, at_zero, rewriter_of
 from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.derivatives import Derivative

@@ -15,7 +15,7 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.matrix import RingMatrix, cross, hat
 from rigidsym.algebra.present import presenter_for
-from rigidsym.algebra.quotient import Quotient
+from rigidsym.algebra.ring import Quotient
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import VectorForm, VectorTerm

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import sympy as sp
 
-from rigidsym.algebra.quotient import Quotient
-from rigidsym.algebra.rational import Rationals
+from rigidsym.algebra.present import Rationals
+from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import BodyError
 from rigidsym.mechanics.mass.moments import Moments, moments_of
 from rigidsym.mechanics.mass.numbers import in_parameters, is_measured

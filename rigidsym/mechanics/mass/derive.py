@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from rigidsym.algebra.rational import Rationals
+from rigidsym.algebra.present import Rationals
 from rigidsym.mechanics.arguments import DIRECTION, POINT
 from rigidsym.mechanics.derivation import Found
 from rigidsym.mechanics.kinematics.workspace import Values

@@ -17,9 +17,8 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.integrate import Integrator, integration_codec
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.present import presenter_for
-from rigidsym.algebra.quotient import Quotient
-from rigidsym.algebra.rational import Rationals
+from rigidsym.algebra.present import Rationals, presenter_for
+from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import BodyError
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Proof

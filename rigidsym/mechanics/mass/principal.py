@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from rigidsym.algebra.rational import Rationals
+from rigidsym.algebra.present import Rationals
 
 _LAMBDA = sp.Symbol("lambda")
 _MOST_OPERATIONS = 200  # of a tensor whose characteristic polynomial is tried
