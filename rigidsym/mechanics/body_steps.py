@@ -13,7 +13,7 @@ from rigidsym.mechanics.dynamics.derive import EquationsOfMotion
 from rigidsym.mechanics.dynamics.lagrange import Lagrange
 from rigidsym.mechanics.energy import derive as energy
 from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn
-from rigidsym.mechanics.kinematics.workspace import NamedValues, Values
+from rigidsym.mechanics.kinematics.workspace import NamedRotation, Values
 from rigidsym.mechanics.mass import derive as mass
 from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, FLOW_QUANTITIES
@@ -39,7 +39,7 @@ def steps_of_body(
     whole = rigid_body(body)
     if forces is not None:
         whole = forces.with_parameters(whole, model)
-    values = (NamedValues if turns else Values)(model, whole, also=energy.OF_PARTICLES)
+    values = (NamedRotation if turns else Values)(model, whole, also=energy.OF_PARTICLES)
     found = dict(mass.steps(values, [n for n in INERTIA_QUANTITIES if not only or n in only]))
     absent = [name for name in INERTIA_QUANTITIES if name in only and name not in found]
     if absent:
@@ -66,8 +66,8 @@ def steps_of_body(
 def _renamed(step: Found, turns: TurnByTurn) -> Found:
     """The step with R and Ω′ as the recursions over the turns name them, and are proved to be."""
     recursion = turns.recursion
-    names = dict(zip(NamedValues.names.matrix, recursion.partial[-1], strict=True))
-    names |= dict(zip(NamedValues.velocity, recursion.omega_body[-1], strict=True))
+    names = dict(zip(NamedRotation.names.matrix, recursion.partial[-1], strict=True))
+    names |= dict(zip(NamedRotation.velocity, recursion.omega_body[-1], strict=True))
     if not step.expression.has(*names):
         return step
     proofs = turns.rotation_matrix().proofs + turns.angular_velocity_body().proofs

@@ -18,7 +18,7 @@ from rigidsym.formula.pen import Line, break_lines
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import latex, text
 from rigidsym.formula.unicode_pen import UnicodePen, columns
-from rigidsym.mechanics.arguments import arguments_of
+from rigidsym.mechanics.quantities.arguments import arguments_of
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.notes.formula.derivation_letters import letters_of
 

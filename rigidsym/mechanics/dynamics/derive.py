@@ -16,13 +16,17 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form
-from rigidsym.mechanics.arguments import arguments_of, arguments_of_flow, arguments_of_motion
 from rigidsym.mechanics.derivation import FirstIntegral, Found, Step
 from rigidsym.mechanics.dynamics.flow import flow_functions
 from rigidsym.mechanics.dynamics.lagrange import Lagrange
 from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import dynamics as claims
+from rigidsym.mechanics.quantities.arguments import (
+    arguments_of,
+    arguments_of_flow,
+    arguments_of_motion,
+)
 
 
 class EquationsOfMotion:

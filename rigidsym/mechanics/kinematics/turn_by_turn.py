@@ -14,7 +14,6 @@ from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.real_values import RealValues
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Bracket, Formula, Symbol
-from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.derivation import Definition, Found, Proof, Singularities
 from rigidsym.mechanics.kinematics.recursion import OrthogonalRows, Recursion
 from rigidsym.mechanics.kinematics.recursion_proofs import (
@@ -25,6 +24,7 @@ from rigidsym.mechanics.kinematics.recursion_proofs import (
 )
 from rigidsym.mechanics.prove import Prover, identity
 from rigidsym.mechanics.quantities import claims
+from rigidsym.mechanics.quantities.arguments import arguments_of
 from rigidsym.mechanics.quantities.kinematics import (
     ALPHA,
     ALPHA_BODY,

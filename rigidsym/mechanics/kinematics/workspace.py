@@ -14,8 +14,8 @@ from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.matrix import RingMatrix, hat, unhat
 from rigidsym.algebra.present import Presenter, presenter_for
 from rigidsym.algebra.ring import Ring
-from rigidsym.mechanics.arguments import arguments_of
 from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.quantities.arguments import arguments_of
 from rigidsym.models.parametrisations import DirectionCosines
 from rigidsym.models.rotation import RotationModel
 
@@ -154,7 +154,7 @@ class Values:
         return encoded(self.codec, matrix)
 
 
-class NamedValues(Values):
+class NamedRotation(Values):
     """R, dR/dt, Ω and Ω′ of a body whose rotation is known by names for R and Ω′.
 
     Of these only R Rᵀ = 1, det R = 1, Ω = R Ω′ and dR/dt = R C(Ω′) are used, which the derivation

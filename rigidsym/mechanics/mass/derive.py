@@ -13,13 +13,13 @@ from types import MappingProxyType
 import sympy as sp
 
 from rigidsym.algebra.present import Rationals
-from rigidsym.mechanics.arguments import DIRECTION, POINT
 from rigidsym.mechanics.derivation import Found
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass.moments import Moments, moments_of
 from rigidsym.mechanics.mass.principal import Principal, principal_of
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import mass as claims
+from rigidsym.mechanics.quantities.arguments import DIRECTION, POINT
 from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Composite, Known, Part
 
