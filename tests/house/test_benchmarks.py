@@ -307,13 +307,37 @@ def test_wrong_arguments_are_usage_errors(wrong, capsys):
 # rosetta
 
 
-def test_packages_that_are_installed_are_identified_and_others_left_empty():
-    scipy = next(call for call in rosetta.CALLS if call.package == "scipy")
-    _, _, convention, product = rosetta.row(scipy)
-    assert convention == "xyz extrinsic, active, radians, columns (a, b, c)"
-    assert product == "Rz(c) Ry(b) Rx(a)"
-    missing = rosetta.Call("no-such-package", "no_such_package", "f(a)", lambda module: module)
-    assert rosetta.row(missing) == ("no-such-package", "`f(a)`", "", "")
+def rows_of(package):
+    return [rosetta.row(call)[2:] for call in rosetta.CALLS if call.package == package]
+
+
+def test_installed_packages_are_identified():
+    kernels = 'rs.kernels("xyz"), q = (a, b, c)'
+    angles, _, quaternion, of_quaternion, of_vector = rows_of("scipy")
+    words = "xyz extrinsic, active, radians, columns (a, b, c)"
+    assert angles == (words, "Rz(c) Ry(b) Rx(a)", kernels, "R")
+    assert quaternion == (
+        f"{words}, scalar last",
+        "Rz(c) Ry(b) Rx(a)",
+        kernels,
+        "q[..., [1, 2, 3, 0]]",
+    )
+    assert of_quaternion == (
+        "quaternion, scalar last, active",
+        "R(q)",
+        'rs.kernels("unit_quaternion")',
+        "R",
+    )
+    assert of_vector == ("vector, active", "exp C(v)", 'rs.kernels("rotation_vector")', "R")
+
+
+def test_a_passive_matrix_is_the_transpose_of_ours():
+    assert rows_of("sympy")[1][-1] == "Rᵀ"
+
+
+def test_a_package_that_is_missing_leaves_its_row_empty():
+    missing = rosetta.Call("no-such-package", "import no_such_package", "f(a)")
+    assert rosetta.row(missing) == ("no-such-package", "`f(a)`", "", "", "", "")
 
 
 # bodies
