@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain, islice
 
 import sympy as sp
@@ -27,14 +26,6 @@ _NAME = 1.1  # ems of a name
 Part = tuple[sp.Symbol, sp.Expr]
 
 
-@dataclass(frozen=True, slots=True)
-class Named:
-    """A matrix in terms of parts with names, and what they stand for, in order of use."""
-
-    parts: tuple[Part, ...]
-    matrix: sp.ImmutableMatrix
-
-
 class Namer:
     """Names parts of matrices; what has a name already keeps it in all that follow."""
 
@@ -45,8 +36,11 @@ class Namer:
         self._known: dict[sp.Expr, sp.Symbol] = {}
         self._known_before = 0
 
-    def named(self, matrix: sp.ImmutableMatrix, room: float) -> Named:
-        """The matrix with parts of it named, so that every line is at most `room` ems wide."""
+    def named(
+        self, matrix: sp.ImmutableMatrix, room: float
+    ) -> tuple[tuple[Part, ...], sp.ImmutableMatrix]:
+        """The named parts in order of use, and the matrix in terms of them; every line of both
+        is at most `room` ems wide."""
         self._known_before = len(self._known)
         entries = [self.letters.shortened(entry) for entry in matrix]
         moving = sp.Tuple(*entries).atoms(AppliedUndef, sp.Derivative)
@@ -55,18 +49,13 @@ class Namer:
         found, short = sp.cse(still, symbols=sp.numbered_symbols("cse_"), order="canonical")
         back = {symbol: part for part, symbol in as_symbols.items()}
         parts = [(symbol, value.xreplace(back)) for symbol, value in found]
-        return self._of(parts, [e.xreplace(back) for e in short], matrix.shape, room)
+        parts, entries = self._worth_a_name(parts, [e.xreplace(back) for e in short])
+        parts, entries = self._breakable(parts, entries, room)
+        return tuple(parts), sp.ImmutableMatrix(*matrix.shape, entries)
 
     def forget(self) -> None:
         """Free the names that were given last, where they come to stand nowhere."""
         self._known = dict(islice(self._known.items(), self._known_before))
-
-    def _of(
-        self, found: list[Part], entries: list[sp.Expr], shape: tuple[int, int], room: float
-    ) -> Named:
-        parts, entries = self._worth_a_name(found, entries)
-        parts, entries = self._breakable(parts, entries, room)
-        return Named(tuple(parts), sp.ImmutableMatrix(*shape, entries))
 
     def _worth_a_name(
         self, found: Sequence[Part], entries: Sequence[sp.Expr]

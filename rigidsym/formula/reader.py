@@ -22,6 +22,7 @@ from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.errors import AlgebraError
 from rigidsym.formula.tree import (
+    MINUS,
     TRANSPOSE,
     Apply,
     Big,
@@ -51,19 +52,25 @@ _TOKEN = re.compile(
     r"|\\begin\{(?P<begin>\w+)\}|\\end\{(?P<end>\w+)\}"
     r"|#\d|\\\\(?:\[\w+\])?|\\[A-Za-z]+|\\.|\d+|\s+|."
 )
-_SIGNS = {
-    "-": "−",
-    **{sign: sign for sign in "+=/,;"},
-    r"\times": "×",
-    r"\cdot": "·",
-    r"\pm": "±",
-    r"\le": "≤",
-    "<": "<",
-    r"\in": "∈",
-    r"\Leftrightarrow": "⇔",
+_ATOMS: dict[str, Formula] = {
+    **{sign: Sign(sign) for sign in "+=/,;<"},
+    "…": Symbol("…"),
+    "-": MINUS,
+    r"\times": Sign("×"),
+    r"\cdot": Sign("·"),
+    r"\pm": Sign("±"),
+    r"\le": Sign("≤"),
+    r"\in": Sign("∈"),
+    r"\Leftrightarrow": Sign("⇔"),
+    r"\ldots": Symbol("…"),
+    r"\perp": Symbol("⊥"),
+    r"\varphi": Symbol("φ"),
+    r"\sum": Big("∑"),
+    r"\int": Big("∫"),
+    r"\partial": Differential("∂"),
+    r"\quad": Gap(),
+    r"\qquad": Gap(),
 }
-_LETTERS = {r"\ldots": "…", r"\perp": "⊥", r"\varphi": "φ"}
-_BIG: dict[str, Literal["∑", "∫"]] = {r"\sum": "∑", r"\int": "∫"}
 _FACES: dict[str, Face] = {
     r"\mathbf": "bold",
     r"\boldsymbol": "bold",
@@ -167,8 +174,8 @@ class _TexReader:
 
     def _part(self) -> Formula:
         token = self.tokens.pop() if self.tokens else ""
-        if token in _SIGNS:
-            return Sign(_SIGNS[token])
+        if token in _ATOMS:
+            return _ATOMS[token]
         if token in _OPEN:
             kind = _OPEN[token]
             inside = self.row((kind[1],))
@@ -183,15 +190,15 @@ class _TexReader:
             return self.parts[int(token[1:]) - 1]
         if token == "d" and (self._next()[:1].isalpha() or self._next()[:1] in ("\\", "#")):
             return Differential() if self._next() != r"\," else Symbol("d")
-        return self._macro(token) if token.startswith("\\") else self._letter(token)
-
-    def _letter(self, token: str) -> Formula:
-        if len(token) != 1 or not (token.isalpha() or token == "…"):
+        found = self._macro(token) if token.startswith("\\") else None
+        if len(token) == 1 and token.isalpha():
+            found = Symbol(token)
+        if found is None:
             self.tokens.append(token)
             raise self.error()
-        return Symbol(token)
+        return found
 
-    def _macro(self, token: str) -> Formula:
+    def _macro(self, token: str) -> Formula | None:
         match = _TOKEN.fullmatch(token)
         assert match
         if match["text"] is not None:
@@ -213,17 +220,8 @@ class _TexReader:
             return _quotient(self._argument(), self._argument())
         if token == r"\sqrt":
             return Radical(self._argument())
-        if token in _BIG:
-            return Big(_BIG[token])
-        if token == r"\partial":
-            return Differential("∂")
-        if token in (r"\quad", r"\qquad"):
-            return Gap()
-        letter = _LETTERS.get(token) or greek_letter(token[1:])
-        if not letter:
-            self.tokens.append(token)
-            raise self.error()
-        return Symbol(letter)
+        letter = greek_letter(token[1:])
+        return Symbol(letter) if letter else None
 
     def _call(self, function: str) -> Formula:
         """The function of the next part; a power is that of the value."""
@@ -264,18 +262,14 @@ class _TexReader:
         self.tokens.pop()
 
 
-def _symbols(inside: Formula) -> list[Symbol]:
-    parts = inside.parts if isinstance(inside, Row) else (inside,)
-    return [part for part in parts if isinstance(part, Symbol)]
-
-
 def _faced(inside: Formula, face: Face) -> Formula:
-    """A letter, or a bold 1 or 0, in another face."""
+    """A letter, a word, or a bold 1 or 0, in another face."""
     if isinstance(inside, Numeral):
         return Symbol(inside.digits, face)
-    if isinstance(inside, Symbol):
-        return replace(inside, face=face)
-    return Symbol("".join(symbol.letter for symbol in _symbols(inside)), face)
+    if isinstance(inside, Row):
+        letters = (part.letter for part in inside.parts if isinstance(part, Symbol))
+        return Symbol("".join(letters), face)
+    return replace(inside, face=face) if isinstance(inside, Symbol) else inside
 
 
 def _quotient(above: Formula, below: Formula) -> Formula:

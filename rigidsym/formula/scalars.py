@@ -11,7 +11,6 @@ from functools import lru_cache
 
 import sympy as sp
 
-from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import (
     FUNCTIONS,
     Letters,
@@ -37,7 +36,6 @@ from rigidsym.formula.tree import (
     joined,
     row,
 )
-from rigidsym.formula.unicode_pen import UnicodePen
 
 
 class Bound(IntEnum):
@@ -60,26 +58,9 @@ _BOUND = {
 }
 
 
-def latex(expression: sp.Expr, letters: Letters, *, short: bool = False) -> str:
-    """The expression in LaTeX; with `short`, s_θ and c_θ for sine and cosine.
-
-    Raises AlgebraError, naming its type, for a node that has no printed form.
-    """
-    return (
-        LatexPen(letters.notation, short=short)
-        .write(formula_of(sp.sympify(expression), letters))
-        .text
-    )
-
-
-def text(expression: sp.Expr, letters: Letters) -> str:
-    """The expression in one line of Unicode; raises AlgebraError as `latex` does."""
-    return UnicodePen(letters.notation).write(formula_of(sp.sympify(expression), letters)).text
-
-
 @lru_cache(maxsize=8192)
 def formula_of(expression: sp.Expr, letters: Letters) -> Formula:
-    """The expression as a tree; raises AlgebraError as `latex` does."""
+    """The expression as a tree; raises AlgebraError for a node without a printed form."""
     return _ScalarWalk(letters).expression(letters.shortened(expression))
 
 

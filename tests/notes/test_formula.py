@@ -11,12 +11,12 @@ from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
 from helpers.motions import derived
+from helpers.printing import latex, text
 from rigidsym.errors import AlgebraError
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Line, break_lines
 from rigidsym.formula.reader import formula
-from rigidsym.formula.scalars import latex, text
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.quantities.arguments import arguments_of
 from rigidsym.models.euler_angles import EulerAngles

@@ -9,10 +9,10 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
+from helpers.printing import text
 from helpers.typesetting import UNPACKED, bound_together, sheet_of
 from rigidsym.formula.abbreviations import Namer
 from rigidsym.formula.display import PAGE, display
-from rigidsym.formula.scalars import text
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import hat

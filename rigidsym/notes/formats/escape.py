@@ -42,14 +42,42 @@ _MATH = {
 }
 _SCRIPTS = {"<super>": "^", "<sub>": "_"}  # as Unicode tells of ², ₀, ₊ and ₐ
 _PLAIN = frozenset(f"{ascii_letters}{digits}+-=()")  # what LaTeX writes there as it is
-_GREEK = frozenset(
-    (
-        *("alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa"),
-        *("lambda", "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi"),
-        *("omega", "Gamma", "Delta", "Theta", "Lambda", "Xi", "Pi", "Sigma", "Upsilon", "Phi"),
-        *("Psi", "Omega"),
-    )
-)
+_GREEK = [
+    "alpha",
+    "beta",
+    "gamma",
+    "delta",
+    "epsilon",
+    "zeta",
+    "eta",
+    "theta",
+    "iota",
+    "kappa",
+    "lambda",
+    "mu",
+    "nu",
+    "xi",
+    "pi",
+    "rho",
+    "sigma",
+    "tau",
+    "upsilon",
+    "phi",
+    "chi",
+    "psi",
+    "omega",
+    "Gamma",
+    "Delta",
+    "Theta",
+    "Lambda",
+    "Xi",
+    "Pi",
+    "Sigma",
+    "Upsilon",
+    "Phi",
+    "Psi",
+    "Omega",
+]
 _TEXT_ACCENTS = {"\u0307": r"\.", "\u0308": r"\""}
 _MATH_ACCENTS = {"\u0307": r"\dot", "\u0308": r"\ddot"}
 _PUNCTUATION = "–—‘’“”…€"

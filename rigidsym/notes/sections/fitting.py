@@ -102,10 +102,9 @@ class Fitter:
     def _named(self, equation: Equation) -> _Form:
         scalar = equation.scalar
         matrix = sp.ImmutableMatrix([scalar]) if equation.matrix is None else equation.matrix
-        named = self._namer.named(matrix, PAGE - _ROOM_OF_A_NAME)
-        if equation.matrix is None:
-            return _Form(replace(equation, scalar=named.matrix[0]), named.parts)
-        return _Form(replace(equation, matrix=named.matrix), named.parts)
+        parts, short = self._namer.named(matrix, PAGE - _ROOM_OF_A_NAME)
+        value = {"scalar": short[0]} if equation.matrix is None else {"matrix": short}
+        return _Form(replace(equation, **value), parts)
 
     def _is_shorter(self, named: _Form, plain: _Form) -> bool:
         """Whether names save lines; two more are worth it where nothing is broken then."""
