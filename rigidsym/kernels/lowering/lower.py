@@ -10,8 +10,8 @@ the assignments are the derivation's own expression.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -26,7 +26,7 @@ from rigidsym.kernels.lowering.read import Reader
 from rigidsym.kernels.lowering.schedule import write
 from rigidsym.mechanics.conversions.conversion_functions import Continuity, Converted, converted
 from rigidsym.mechanics.conversions.conversions import Conversions
-from rigidsym.mechanics.conversions.function import ConversionFunction, ConversionInput
+from rigidsym.mechanics.conversions.function import ConversionFunction
 from rigidsym.mechanics.derivation import (
     Argument as Vector,
     Derivation,
@@ -100,42 +100,47 @@ def _roots(derivation: Derivation) -> list[sp.Expr]:
     return list(sp.ordered(p for p in powers if p.is_number and p.exp.is_Rational))
 
 
-def _named(vector: Vector, names: Names, known: dict[sp.Expr, str]) -> ir.KernelArgument:
-    """The argument, its components named as where they are known from another."""
-    for symbol, name in zip(vector.symbols, vector.names, strict=True):
-        if symbol not in known:
-            known[symbol] = names.fresh(name)
-    return ir.KernelArgument(
-        name=vector.name,
-        components=tuple(known[symbol] for symbol in vector.symbols),
-        units=vector.units,
-        about=vector.about,
-        is_scalar=vector.is_scalar,
-    )
-
-
 class _Lowering:
     """The kernels of one derivation, over the same names."""
 
     def __init__(self, derivation: Derivation, names: Names) -> None:
         self.derivation = derivation
-        self._vectors = {vector.name: vector for vector in derivation.arguments}
-        self._known: dict[sp.Expr, str] = {}  # the names of components
-        self.arguments = {v.name: _named(v, names, self._known) for v in derivation.arguments}
         self._names = names
+        self._known: dict[sp.Expr, str] = {}  # the names of components
+        self.arguments: dict[str, ir.KernelArgument] = {}
+        for vector in derivation.arguments:
+            self._argument(vector)
         self._definitions = {d.symbol: d.expression for d in derivation.definitions}
         model = derivation.model
         inputs = [symbol for vector in derivation.arguments for symbol in vector.symbols]
         self._given = [*model.matrix, *inputs, *_roots(derivation)]
         self._rewriter = rewriter_of(self._given, model.constraints)
 
+    def _argument(self, vector: Vector, **kinds: bool) -> ir.KernelArgument:
+        """The argument; components of another keep their names."""
+        if vector.name not in self.arguments:
+            for symbol, name in zip(vector.symbols, vector.names, strict=True):
+                if symbol not in self._known:
+                    self._known[symbol] = self._names.fresh(name)
+            self.arguments[vector.name] = ir.KernelArgument(
+                name=vector.name,
+                components=tuple(self._known[symbol] for symbol in vector.symbols),
+                units=vector.units,
+                about=vector.about,
+                is_scalar=vector.is_scalar,
+                **kinds,
+            )
+        return self.arguments[vector.name]
+
     def of_step(self, step: Step) -> ir.Kernel:
         """The kernel of one quantity."""
         quantity = step.quantity
         entries = self.rewritten(map(self._over_squares, step.expression))
-        kernel = self._kernel(quantity.name, quantity.inputs, entries, step.shape)
-        return replace(
-            kernel,
+        return self._kernel(
+            quantity.name,
+            list(map(self.derivation.argument, quantity.inputs)),
+            entries,
+            shape=step.shape,
             equation=step.number or None,
             symbol=quantity.symbol.text,
             definition=quantity.definition.text,
@@ -145,18 +150,14 @@ class _Lowering:
 
     def of_derivative(self, derivative: Derivative) -> ir.Kernel:
         """The kernel of a value and its derivative, one after the other."""
-        for vector in derivative.vectors:
-            if vector.name not in self.arguments:
-                self._vectors[vector.name] = vector
-                self.arguments[vector.name] = _named(vector, self._names, self._known)
-        step = derivative.step
-        count = len(step.expression)
+        step, count = derivative.step, len(derivative.step.expression)
         entries = self.rewritten([*step.expression, *derivative.jacobian()])
         entries = [*entries[:count], *derivative.results(entries[count:])]
-        inputs = [vector.name for vector in derivative.vectors]
-        kernel = self._kernel(derivative.request.name, inputs, entries, (len(entries),))
-        return replace(
-            kernel,
+        return self._kernel(
+            derivative.request.name,
+            derivative.vectors,
+            entries,
+            shape=(len(entries),),
             symbol=f"{step.quantity.symbol.text} by {derivative.by.name}",
             about=derivative.about,
             unit=step.quantity.unit,
@@ -165,9 +166,11 @@ class _Lowering:
 
     def of_function(self, function: ConversionFunction) -> ir.Kernel:
         """The kernel of a conversion: its values one by one, as they are written."""
-        arguments = tuple(map(self._taken, function.inputs))
-        vectors = [taken.argument for taken in function.inputs]
-        reader = self._reader(function.name, vectors, arguments)
+        arguments = tuple(
+            self._argument(given.argument, is_matrix=given.is_matrix, is_optional=given.is_optional)
+            for given in function.inputs
+        )
+        reader = self._reader(function.name, [given.argument for given in function.inputs])
         reader.graph.share([reader.define(symbol, value) for symbol, value in function.shared])
         for symbol, value in function.values:
             reader.hold(symbol, value)
@@ -185,26 +188,9 @@ class _Lowering:
             unit=function.unit,
         )
 
-    def _reader(
-        self, name: str, vectors: Iterable[Vector], arguments: Iterable[ir.KernelArgument]
-    ) -> Reader:
-        known = {
-            symbol: component
-            for vector, argument in zip(vectors, arguments, strict=True)
-            for symbol, component in zip(vector.symbols, argument.components, strict=True)
-        }
-        return Reader(name, known, self._definitions)
-
-    def _taken(self, given: ConversionInput) -> ir.KernelArgument:
-        """An argument of a conversion; the coordinates that are kept are called as in q."""
-        name = given.argument.name
-        if name not in self.arguments:
-            self.arguments[name] = replace(
-                _named(given.argument, self._names, self._known),
-                is_matrix=given.is_matrix,
-                is_optional=given.is_optional,
-            )
-        return self.arguments[name]
+    def _reader(self, name: str, vectors: Iterable[Vector]) -> Reader:
+        inputs = {symbol: self._known[symbol] for vector in vectors for symbol in vector.symbols}
+        return Reader(name, inputs, self._definitions)
 
     def unwrapping(self, found: Continuity) -> ir.Unwrapping:
         return ir.Unwrapping(
@@ -227,9 +213,9 @@ class _Lowering:
         else:
             value = sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
         is_free = value.free_symbols.isdisjoint(self.derivation.model.constants)
-        inputs = ("q",) if is_free else ("q", "parameters")
+        inputs = map(self.derivation.argument, ("q",) if is_free else ("q", "parameters"))
         symbol = _SYMBOLS.get(found.measure, "√Σ minors²") + ("" if scale == 1 else f"/({scale})")
-        yield replace(self._kernel(MARGIN, inputs, [value], ()), symbol=symbol, about=about)
+        yield self._kernel(MARGIN, list(inputs), [value], shape=(), symbol=symbol, about=about)
 
     def _over_squares(self, entry: sp.Expr) -> sp.Expr:
         """The entry with the minors squared in place of the determinant that divides.
@@ -261,16 +247,17 @@ class _Lowering:
         return [old if new is None else new for old, new in moving]  # a new one may be zero
 
     def _kernel(
-        self, name: str, inputs: Sequence[str], entries: Iterable[sp.Expr], shape: tuple[int, ...]
+        self, name: str, vectors: Sequence[Vector], entries: Iterable[sp.Expr], **words: Any
     ) -> ir.Kernel:
-        arguments = tuple(self.arguments[vector] for vector in inputs)
-        reader = self._reader(name, [self._vectors[vector] for vector in inputs], arguments)
+        """A kernel whose common subexpressions are shared, with its divisors guarded."""
+        arguments = tuple(map(self._argument, vectors))
+        reader = self._reader(name, vectors)
         weighted = [reader.weighted(entry) for entry in entries]
         reader.graph.share(node for _, node in weighted)
         names = self._names.copy()
         assignments, outputs = write(reader.graph, weighted, names)
         kernel = ir.Kernel(
-            name=name, arguments=arguments, assignments=assignments, outputs=outputs, shape=shape
+            name=name, arguments=arguments, assignments=assignments, outputs=outputs, **words
         )
         return guarded(kernel, names)
 

@@ -55,8 +55,8 @@ def _text(expression: Expression, functions: Mapping[str, str], number: Literal)
         case Number(value) if Fraction(float(value)) == value:
             return number(float(value)), _ATOM
         case Number(value):
-            above, below = Fraction(value).as_integer_ratio()
-            return f"{number(float(above))} / {number(float(below))}", _PRODUCT
+            ratio = (number(float(whole)) for whole in Fraction(value).as_integer_ratio())
+            return " / ".join(ratio), _PRODUCT
         case Call(function):
             given = ", ".join(argument.text for argument in expression.arguments)
             return f"{functions.get(function, function)}({given})", _ATOM
