@@ -11,7 +11,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
-from math import prod
 
 import sympy as sp
 
@@ -84,20 +83,16 @@ class Derivative:
     request: DerivativeRequest
     step: Step
     vectors: tuple[Argument, ...]  # the inputs of the quantity, then the vector of the product
-    given: Argument | None  # that vector
+    by: Argument  # what the derivative is taken by
+    given: Argument | None  # the vector of the product
     is_bound: bool = False  # a constraint binds the components of the vector of the request
 
     @property
     def parts(self) -> tuple[tuple[int, ...], ...]:
         """The shapes of the value and of the derivative."""
         shape, count = self.step.shape, len(self.by.symbols)
-        return shape, {"jacobian": (*shape, count), "jvp": shape, "vjp": (count,)}[
-            self.request.kind
-        ]
-
-    @property
-    def by(self) -> Argument:
-        return next(vector for vector in self.vectors if vector.name == self.request.vector)
+        of_kind = {"jacobian": (*shape, count), "jvp": shape, "vjp": (count,)}
+        return shape, of_kind[self.request.kind]
 
     @property
     def about(self) -> str:
@@ -146,13 +141,14 @@ def _derivative(derivation: Derivation, request: DerivativeRequest) -> Derivativ
     inputs = step.quantity.inputs
     if request.vector not in inputs:
         raise KernelError(f"{request}: {request.quantity} takes {' and '.join(inputs)} alone")
-    vectors = tuple(map(derivation.argument, inputs))
     by = derivation.argument(request.vector)
     given = {"jvp": _tangent(by), "vjp": _cotangent(step)}.get(request.kind)
+    vectors = map(derivation.argument, inputs)
     return Derivative(
         request=request,
         step=step,
-        vectors=(*vectors, given) if given else vectors,
+        vectors=(*vectors, given) if given else tuple(vectors),
+        by=by,
         given=given,
         is_bound=_is_bound(derivation.model, by),
     )
@@ -173,24 +169,19 @@ def _symbols(names: tuple[str, ...]) -> tuple[sp.Dummy, ...]:
 
 
 def _tangent(by: Argument) -> Argument:
-    return replace(
-        by,
-        name=f"{by.name}_tangent",
-        symbols=_symbols(by.names),
-        names=tuple(f"{name}_tangent" for name in by.names),
-        about=f"a direction in the space of {by.name}",
-    )
+    names = tuple(f"{name}_tangent" for name in by.names)
+    about = f"a direction in the space of {by.name}"
+    name = f"{by.name}_tangent"
+    return replace(by, name=name, symbols=_symbols(by.names), names=names, about=about)
 
 
 def _cotangent(step: Step) -> Argument:
-    count = prod(step.shape)
-    name = f"{step.quantity.name}_weights"
-    names = tuple(f"weight_{k}" for k in range(1, count + 1))
+    names = tuple(f"weight_{k + 1}" for k in range(len(step.expression)))
     return Argument(
-        name=name,
+        name=f"{step.quantity.name}_weights",
         symbols=_symbols(names),
         names=names,
         notation=(),  # it is in no note
-        units=("",) * count,
+        units=("",) * len(names),
         about=f"a weight for each entry of {step.quantity.name}, row by row",
     )

@@ -9,7 +9,7 @@ are covered by rounding the result up. Where a kernel divides, there is no such 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -65,8 +65,8 @@ class Rounding:
 
 def rounding(kernel: Kernel) -> Rounding | None:
     """The bound of a kernel; None where there is none: it divides, or takes roots."""
-    plain = used_plainly(kernel)
     halves = _halves(kernel)
+    plain = _used_plainly(kernel, halves)
     values = {name: _Bounded(1.0, 0.0) for name in plain.intersection(kernel.components)}
     try:
         for assignment in kernel.assignments:
@@ -76,30 +76,19 @@ def rounding(kernel: Kernel) -> Rounding | None:
         error = max(_bounded(output, values).error for output in kernel.outputs)
     except _NoBound:
         return None
-    is_plain = {a.name: not plain.isdisjoint(a.components) for a in kernel.arguments}
-    used = {name for value in _expressions(kernel) for name in names_in(value)}
+    used = [a for a in kernel.arguments if not kernel.used.isdisjoint(a.components)]
     return Rounding(
         error=ceil(10 * _SLACK * error) / 10,
-        of_any_size=tuple(
-            argument.name
-            for argument in kernel.arguments
-            if not is_plain[argument.name] and not used.isdisjoint(argument.components)
-        ),
-        up_to_one=tuple(name for name, is_so in is_plain.items() if is_so),
+        of_any_size=tuple(a.name for a in used if plain.isdisjoint(a.components)),
+        up_to_one=tuple(a.name for a in used if not plain.isdisjoint(a.components)),
     )
 
 
-def _expressions(kernel: Kernel) -> Iterator[Expression]:
-    yield from (assignment.value for assignment in kernel.assignments)
-    yield from kernel.outputs
-
-
-def used_plainly(kernel: Kernel) -> set[str]:
+def _used_plainly(kernel: Kernel, halves: dict[str, str]) -> set[str]:
     """The inputs that more is taken of than a sine or a cosine, of them or of a half of them.
 
     That a guard compares with an angle does not count.
     """
-    halves = _halves(kernel)
     others = [a.value for a in kernel.assignments if a.name not in halves]
     values = [v for v in (*others, *kernel.outputs) if not (_is_sine(v) or isinstance(v, Guarded))]
     plain = {name for value in values for name in names_in(value)}
@@ -112,8 +101,7 @@ def used_plainly(kernel: Kernel) -> set[str]:
 def adds_angles(kernel: Kernel) -> bool:
     """Whether a sine or a cosine is taken of what was rounded: a sum or a multiple of angles."""
     exact = {*kernel.components, *_halves(kernel)}
-    calls = [a.value for a in kernel.assignments if isinstance(a.value, Call)]
-    return any(_is_sine(call) and call.argument.text not in exact for call in calls)
+    return any(angle.text not in exact for angle in kernel.sines)
 
 
 def _halves(kernel: Kernel) -> dict[str, str]:
@@ -121,9 +109,9 @@ def _halves(kernel: Kernel) -> dict[str, str]:
     found = {}
     for assignment in kernel.assignments:
         match assignment.value:
-            case Product((Name(source),), (Number(value),)) if _is_power_of_two(value):
-                found[assignment.name] = source
-            case Product((Number(value), Name(source)), ()) if _is_power_of_two(value):
+            case Product((Name(source),), (Number(value),)) | Product(
+                (Number(value), Name(source)), ()
+            ) if _is_power_of_two(value):
                 found[assignment.name] = source
     return found
 
@@ -137,6 +125,7 @@ def _is_sine(value: Expression) -> bool:
 
 
 def _bounded(expression: Expression, values: Mapping[str, _Bounded]) -> _Bounded:
+    """From left to right, as the targets compute."""
     match expression:
         case Name(text):
             return values[text]
@@ -147,29 +136,18 @@ def _bounded(expression: Expression, values: Mapping[str, _Bounded]) -> _Bounded
         case Negative(operand):
             return _bounded(operand, values)
         case Sum(terms):
-            return _folded(_sum, (_bounded(term, values) for term in terms))
+            return reduce(_sum, (_bounded(term, values) for term in terms))
         case Product(factors, divisors) if all(isinstance(d, Number) for d in divisors):
             ones = (_inverse(divisor) for divisor in divisors if isinstance(divisor, Number))
-            return _folded(_product, (*(_bounded(f, values) for f in factors), *ones))
+            return reduce(_product, (*(_bounded(f, values) for f in factors), *ones))
         case Call("sin" | "cos", argument):
-            return _Bounded(1.0, SINE + _error_of(argument, values))
+            angle = values.get(argument.text, _Bounded(0.0, 0.0))  # an input is exact as given
+            return _Bounded(1.0, SINE + angle.error)
         case Call("abs", argument):
             return values[argument.text]
         case Call(_, argument) if expression.order is not None:
             return _entire(expression.order, values[argument.text])
     raise _NoBound
-
-
-def _error_of(angle: Name, values: Mapping[str, _Bounded]) -> float:
-    """Of an angle; an input is exact as given, whatever its size."""
-    return values[angle.text].error if angle.text in values else 0.0
-
-
-def _folded(
-    operation: Callable[[_Bounded, _Bounded], _Bounded], operands: Iterable[_Bounded]
-) -> _Bounded:
-    """From left to right, as the targets compute."""
-    return reduce(operation, operands)
 
 
 def _sum(a: _Bounded, b: _Bounded) -> _Bounded:

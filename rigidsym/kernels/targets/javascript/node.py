@@ -18,32 +18,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rigidsym.errors import MissingTool
+from rigidsym.system import resources
 
 _EXPORTED = re.compile(
     r"^export function (\w+)\((\w*).*\n(?:  const values = .*\n  return (\[))?", re.MULTILINE
 )  # name, first parameter, and whether two results are returned
-_RUN = """
-import { readFileSync } from "node:fs";
-import * as kernels from "./kernels.mjs";
-
-const [name, first, parted, ...sizes] = process.argv.slice(2);
-const numbers = new Float64Array(Uint8Array.from(readFileSync(0)).buffer);
-const count = sizes.reduce((sum, size) => sum + Number(size), 0);
-const results = [];
-for (let start = 0; start < Math.max(numbers.length, 1); start += Math.max(count, 1)) {
-  let place = start;
-  const vectors = sizes.map((size) => numbers.subarray(place, (place += Number(size))));
-  if (first === "t" && !name.endsWith("_batch")) vectors[0] = vectors[0][0]; // a number
-  results.push(kernels[name](...vectors));
-}
-const shape = (value) => (Array.isArray(value) ? [value.length, ...shape(value[0])] : []);
-const plain = (value) => (ArrayBuffer.isView(value) ? Array.from(value) : value);
-const one = plain(results[0]);
-const shapes = parted ? one.map(shape) : [shape(one)];
-process.stdout.write(JSON.stringify(shapes) + "\\n");
-const flat = results.map(plain).flat(3);
-process.stdout.write(new Uint8Array(Float64Array.from(flat).buffer));
-"""
 
 Numbers = NDArray[np.float64]
 Run = Callable[[list[Numbers]], list[Numbers]]
@@ -52,9 +31,9 @@ Run = Callable[[list[Numbers]], list[Numbers]]
 def module(name: str, source: str) -> ModuleType:
     """The functions of a module on arrays with components last; their other axes broadcast.
 
-    Those of many orientations, ..._batch and unwrap, take and give flat arrays as they do in
-    JavaScript; with ..._each behind the name, a call for every row, in one process. Raises
-    MissingTool where node is not installed.
+    Those of many orientations, ..._batch, take and give flat arrays as they do in JavaScript;
+    with ..._each behind the name, a call for every row, in one process. Raises MissingTool if
+    node is not installed.
     """
     if shutil.which("node") is None:
         raise MissingTool(
@@ -64,24 +43,18 @@ def module(name: str, source: str) -> ModuleType:
     for function, first, parted in _EXPORTED.findall(source):
         first = first.rstrip("_")
         run = partial(_run, source, function, first, parted)
-        is_flat = function.endswith("_batch") or function == "unwrap"
-        setattr(made, function, _flat(run) if is_flat else _caller(run, first))
+        is_flat = function.endswith("_batch")
+        setattr(made, function, _caller(run, first, is_flat=is_flat))
         if is_flat:
-            setattr(made, f"{function}_each", _caller(run, first))
+            setattr(made, f"{function}_each", _caller(run, first, is_flat=False))
     return made
 
 
-def _flat(run: Run) -> Callable[..., Numbers]:
-    def call(*vectors: ArrayLike) -> Numbers:
-        arrays = [np.asarray(vector, float).reshape(1, -1) for vector in vectors]
-        return run(arrays)[0][0]
-
-    return call
-
-
-def _caller(run: Run, first: str) -> Callable[..., Any]:
+def _caller(run: Run, first: str, *, is_flat: bool) -> Callable[..., Any]:
     def call(*vectors: ArrayLike) -> Any:
         arrays = [np.asarray(vector, float) for vector in vectors]
+        if is_flat:
+            return run([array.reshape(1, -1) for array in arrays])[0][0]
         if first == "matrix":
             arrays[0] = arrays[0].reshape(*arrays[0].shape[:-2], 9)
         if first == "t":
@@ -101,7 +74,7 @@ def _run(source: str, function: str, first: str, parted: str, rows: list[Numbers
     sizes = [str(array.shape[-1]) for array in rows]
     with TemporaryDirectory(prefix="rigidsym-") as folder:
         (Path(folder) / "kernels.mjs").write_text(source, encoding="utf-8")
-        (Path(folder) / "run.mjs").write_text(_RUN, encoding="utf-8")
+        (Path(folder) / "run.mjs").write_text(resources.text("templates", "javascript/run.mjs"))
         done = subprocess.run(
             ["node", "run.mjs", function, first, parted, *sizes],
             cwd=folder,
