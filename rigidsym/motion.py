@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, fields, replace
 from types import ModuleType
@@ -18,7 +18,11 @@ from rigidsym.kernels.module import KernelModule, generate
 from rigidsym.mechanics.conversions.conversions import Conversions, conversions_of
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import Body, derive as derivation_of
-from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, FLOW_QUANTITIES
+from rigidsym.mechanics.quantities.dynamics import (
+    DYNAMICS_QUANTITIES,
+    EULER_QUANTITIES,
+    FLOW_QUANTITIES,
+)
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
@@ -33,7 +37,7 @@ if TYPE_CHECKING:
 
 QUANTITIES = (
     *(*QUANTITY_NAMES, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES),
-    *(*DYNAMICS_QUANTITIES, *FLOW_QUANTITIES),
+    *dict.fromkeys((*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES)),
 )
 
 
@@ -170,6 +174,10 @@ def derive(
     body: Body | None = None,
     potential: sp.Expr | str | None = None,
     forces: Mapping[str, sp.Expr | str] | None = None,
+    torque: Sequence[sp.Expr | str] | None = None,
+    first_integrals: Mapping[str, sp.Expr | str] | None = None,
+    parts: Sequence[Mapping[str, Any]] | None = None,
+    method: str | None = None,
     theory: bool = False,
     timeout: float | None = None,
 ) -> Motion:
@@ -179,7 +187,10 @@ def derive(
     a `body`, its kinetic energy and angular momentum follow, in principal axes or any others; a
     description or a distribution of mass is integrated first.
     With a `potential` V(q) or `forces` by coordinate ("theta": "-c*theta_dot") its equations of
-    motion about a fixed point follow; the inertia tensor is then about that point.
+    motion about a fixed point follow; the inertia tensor is then about that point. The same
+    follows from a `torque` in body components. `method` is "lagrange", for free coordinates, or
+    "euler", with the state (q, Ω′); `first_integrals` are claims to be proved, by name; `parts`
+    move with the body: {"rotation", "principal_moments"} or {"velocity", "mass"}.
     `theory` adds equations 1 to 16 of the lecture, which hold for every body and rotation.
     `timeout` limits the time, in seconds.
 
@@ -204,10 +215,15 @@ def derive(
             raise QuantityError(f"no quantity {name!r}; {offer(name, QUANTITIES)}")
     with nullcontext() if timeout is None else time_limit(timeout):
         acting = None
-        if potential is not None or forces:
+        given = {
+            **{"potential": potential, "forces": forces, "torque": torque, "method": method},
+            **{"first_integrals": first_integrals, "parts": parts},
+        }
+        moving = {key: value for key, value in given.items() if value is not None}
+        if moving:
             if body is None:
                 raise ModelError("forces act on a body; expected body=rs.principal_moments(...)")
-            acting = forces_on(rotation, potential or 0, forces or {})
+            acting = forces_on(rotation, **moving)
         derivation = derivation_of(rotation, wanted, body=body, forces=acting, theory=theory)
     return Motion(**{f.name: getattr(derivation, f.name) for f in fields(Derivation)})
 

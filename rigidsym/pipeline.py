@@ -139,9 +139,8 @@ def motion_of(spec: DerivationSpec) -> Motion:
         model,
         only=spec.quantities,
         body=body,
-        potential=spec.potential,
-        forces=dict(spec.forces),
         theory=spec.theory,
+        **({} if spec.dynamics is None else {"potential": "0", **spec.dynamics}),
     )
     notation = cast("Notation | None", spec.notation) or DEFAULT
     return replace(motion, name=spec.name, title=spec.title or motion.title, notation=notation)

@@ -9,14 +9,13 @@ import sympy as sp
 
 from rigidsym.errors import QuantityError
 from rigidsym.mechanics.derivation import Found, OfBody
-from rigidsym.mechanics.dynamics.derive import EquationsOfMotion
-from rigidsym.mechanics.dynamics.lagrange import Lagrange
+from rigidsym.mechanics.dynamics.derive import equations_of_motion
 from rigidsym.mechanics.energy import derive as energy
 from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn
 from rigidsym.mechanics.kinematics.workspace import NamedRotation, Values
 from rigidsym.mechanics.mass import derive as mass
 from rigidsym.mechanics.mass.bodies import rigid_body
-from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, FLOW_QUANTITIES
+from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.models.body import BodyDescription, RigidBody
@@ -50,8 +49,8 @@ def steps_of_body(
         found = {name: _renamed(step, turns) for name, step in found.items()}
     if forces is None:
         return OfBody(values.arguments, found, whole)
-    motion = EquationsOfMotion(Lagrange(model, whole, forces))
-    found |= motion.steps([n for n in DYNAMICS_QUANTITIES if not only or n in only])
+    motion = equations_of_motion(model, whole, forces)
+    found |= motion.steps(tuple(only))
     asks = not only or not {*only}.isdisjoint(FLOW_QUANTITIES)
     functions = motion.functions() if asks else {}
     return OfBody(
@@ -60,6 +59,7 @@ def steps_of_body(
         body=whole,
         functions={n: f for n, f in functions.items() if not only or n in only},
         first_integrals=motion.first_integrals,
+        table=motion.table,
     )
 
 

@@ -16,6 +16,7 @@ from rigidsym.models.rotation import Citation, RotationModel
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
+    from rigidsym.models.forces import Forces
 
 Status = Literal["exact", "unproved"]
 
@@ -138,6 +139,7 @@ class OfBody:
     body: RigidBody | None = None
     functions: Mapping[str, Step] = field(default_factory=dict)  # of the state, for kernels
     first_integrals: tuple[FirstIntegral, ...] = ()
+    table: Mapping[str, Quantity] = field(default_factory=dict)  # of the quantities of motion
 
 
 @dataclass(frozen=True, slots=True)
@@ -291,6 +293,7 @@ class Derivation:
     theory: tuple[Statement, ...] = ()  # the equations that the steps rest on, where asked for
     definitions: tuple[Definition, ...] = ()  # intermediate quantities that the steps name
     first_integrals: tuple[FirstIntegral, ...] = ()  # where equations of motion were asked for
+    forces: Forces | None = None  # where equations of motion were asked for
     functions: tuple[Step, ...] = ()  # for kernels only: they repeat what the note has in parts
 
     def step(self, quantity: str) -> Step:

@@ -31,7 +31,11 @@ from rigidsym.mechanics.derivation import (
 from rigidsym.mechanics.kinematics import derive as kinematics
 from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, FLOW_QUANTITIES
+from rigidsym.mechanics.quantities.dynamics import (
+    DYNAMICS_QUANTITIES,
+    EULER_QUANTITIES,
+    FLOW_QUANTITIES,
+)
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES, quantities
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
@@ -101,10 +105,11 @@ def derive(
         title=model.title,
         model=model,
         arguments=tuple(arguments.values()),
-        steps=tuple(_numbered(found, _table(values), constants)),
+        steps=tuple(_numbered(found, {**_table(values), **of_body.table}, constants)),
         functions=tuple(_with_parameters(step, constants) for step in of_body.functions.values()),
         singularities=singularities,
         body=of_body.body,
+        forces=forces,
         definitions=definitions,
         first_integrals=of_body.first_integrals,
     )
@@ -130,14 +135,14 @@ def _resting_on(
 
 def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:
     of_body = (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if has_body else ()
-    of_motion = (*DYNAMICS_QUANTITIES, *FLOW_QUANTITIES) if has_forces else ()
+    of_motion = (*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES) if has_forces else ()
     known = (*QUANTITY_NAMES, *of_body, *of_motion)
     unknown = ", ".join(name for name in only if name not in known)
     if unknown:
         raise QuantityError(f"no quantity {unknown}; there are {', '.join(known)}")
 
 
-def _table(values: Values) -> Mapping[str, Quantity]:
+def _table(values: Values) -> dict[str, Quantity]:
     """Every quantity by name, as it is called for this model."""
     units = set(values.arguments["q_dot"].units)
     of_rotation = quantities(
@@ -145,7 +150,7 @@ def _table(values: Values) -> Mapping[str, Quantity]:
         coordinates=len(values.model.coordinates),
         rate_unit=units.pop() if len(units) == 1 else "",
     )
-    return {**of_rotation, **INERTIA_QUANTITIES, **ENERGY_QUANTITIES, **DYNAMICS_QUANTITIES}
+    return {**of_rotation, **INERTIA_QUANTITIES, **ENERGY_QUANTITIES}
 
 
 def _numbered(

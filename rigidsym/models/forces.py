@@ -1,67 +1,131 @@
-"""What acts on a body that turns about a fixed point: a potential and generalised forces."""
+"""What acts on a body that turns about a fixed point, and what moves with it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Any
 
 import sympy as sp
 
-from rigidsym.errors import ModelError
+from rigidsym.errors import ModelError, offer
 from rigidsym.models.body import Parameter, RigidBody
 from rigidsym.models.rotation import RotationModel
+from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import TIME, symbolic
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 
+METHODS = ("lagrange", "euler")
+OMEGA_BODY = tuple(sp.Symbol(f"Omega_body_{k}") for k in (1, 2, 3))
+_NONE: Mapping[Any, sp.Expr] = MappingProxyType({})
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Part:
+    """What moves with the body: another body that turns about the fixed point, or a particle.
+
+    Of a body, its rotation, in some of the same coordinates, and its principal moments; of a
+    particle, its velocity in space, linear in the rates, and its mass three times.
+    """
+
+    rotation: RotationModel | None
+    velocity: tuple[sp.Expr, ...]  # (3,) or none
+    inertia: tuple[sp.Expr, ...]  # (3,), kg m² or kg
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Forces:
-    """A potential energy V(q), in joules, and generalised forces Q by coordinate, in N m.
+    """A potential energy V(q, t), in joules, and generalised forces Q by coordinate, in N m.
 
     Symbols that are no coordinates are constants; they become parameters of the body. Forces may
-    depend on the rates as well.
+    depend on the rates as well, and the torque on Ω′ by the symbols OMEGA_BODY.
     """
 
     potential: sp.Expr = sp.S.Zero
-    generalised: Mapping[sp.Expr, sp.Expr] = field(default_factory=lambda: MappingProxyType({}))
+    generalised: Mapping[sp.Expr, sp.Expr] = field(default_factory=lambda: _NONE)
+    torque: tuple[sp.Expr, ...] = ()  # N′ beside them, in body components, N m; three or none
+    first_integrals: Mapping[str, sp.Expr] = field(default_factory=lambda: _NONE)  # claimed
+    method: str = ""  # one of METHODS; "": Lagrange's where the coordinates are free
+    parts: tuple[Part, ...] = ()
 
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
 
-        Raises ModelError for a potential that depends on the rates or on t by itself, and for a
-        force on what is no coordinate.
+        Raises ModelError for a potential that depends on the rates.
         """
         if self.potential.has(sp.Derivative):
             raise ModelError(f"the potential {self.potential} depends on rates; expected V(q)")
-        for coordinate in self.generalised:
-            if coordinate not in model.coordinates:
-                names = ", ".join(str(q.func) for q in model.coordinates)
-                raise ModelError(f"a force on {coordinate}, which is none of {names}")
-        known = {p.symbol for p in body.parameters} | {*model.constants, TIME}
-        given = (self.potential, *self.generalised.values())
-        symbols = set().union(*(expression.free_symbols for expression in given)) - known
+        known = {p.symbol for p in body.parameters} | {*model.constants, *OMEGA_BODY, TIME}
+        symbols = set().union(*(expression.free_symbols for expression in self._given())) - known
         more = (Parameter(symbol=s, positive=False) for s in sp.ordered(symbols))
         return replace(body, parameters=(*body.parameters, *more))
 
+    def _given(self) -> Iterator[sp.Expr]:
+        yield from (self.potential, *self.generalised.values(), *self.torque)
+        yield from self.first_integrals.values()
+        yield from (e for part in self.parts for e in (*part.velocity, *part.inertia))
+
 
 def forces_on(
-    model: RotationModel, potential: sp.Expr | str | int, forces: Mapping[str, sp.Expr | str]
+    model: RotationModel,
+    *,
+    potential: sp.Expr | str | int = 0,
+    forces: Mapping[str, sp.Expr | str] = MappingProxyType({}),
+    torque: Sequence[sp.Expr | str] = (),
+    first_integrals: Mapping[str, sp.Expr | str] = MappingProxyType({}),
+    parts: Sequence[Mapping[str, Any]] = (),
+    method: str = "",
 ) -> Forces:
-    """A potential and forces by the names of the coordinates; texts are read as in a file.
+    """What acts on a body, by the keys of [dynamics]; texts are read as in a file.
 
-    In a text `theta_dot` is the rate of theta; other names are constants. Raises ModelError for
-    a force on what is no coordinate, ExpressionError for a text that cannot be read.
+    In a text `theta_dot` is the rate of theta, `omega_body_1` a component of Ω′ and `t` the time;
+    other names are constants. Raises ModelError for a force on what is no coordinate and for parts
+    that are none, ExpressionError for a text that cannot be read.
     """
     known = {q.func.__name__: q for q in model.coordinates}
     names = known | {f"{name}_dot": sp.diff(q, TIME) for name, q in known.items()}
-    generalised = {}
-    for name, force in forces.items():
+    names |= {f"omega_body_{k}": OMEGA_BODY[k - 1] for k in (1, 2, 3)} | {"t": TIME}
+    for name in forces:
         if name not in known:
             raise ModelError(f"a force on {name}, which is none of {', '.join(known)}")
-        generalised[known[name]] = _read(force, names)
-    return Forces(potential=_read(potential, names), generalised=MappingProxyType(generalised))
+    if len(torque) not in (0, 3):
+        raise ModelError(f"a torque has three components, got {len(torque)}")
+    if method not in ("", *METHODS):
+        raise ModelError(f"no method {method!r}; {offer(method, METHODS)}")
+    return Forces(
+        potential=_read(potential, names),
+        generalised={known[name]: _read(force, names) for name, force in forces.items()},
+        torque=tuple(_read(component, names) for component in torque),
+        first_integrals={n: _read(value, names) for n, value in first_integrals.items()},
+        method=method,
+        parts=tuple(_part(part, names) for part in parts),
+    )
+
+
+def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> Part:
+    """Another body, {"rotation", "principal_moments"}, or a particle, {"velocity", "mass"}."""
+    if given.keys() == {"rotation", "principal_moments"}:
+        rotation = rotation_from(given["rotation"])
+        strange = [str(q.func) for q in rotation.coordinates if q not in names.values()]
+        if strange:
+            raise ModelError(f"a part turns by {strange[0]}, which is no coordinate of the body")
+        velocity, inertia = (), given["principal_moments"]
+    elif given.keys() == {"velocity", "mass"}:
+        rotation, velocity, inertia = None, given["velocity"], [given["mass"]] * 3
+    else:
+        raise ModelError(
+            f"a part with {', '.join(given) or 'nothing'}; expected rotation and "
+            "principal_moments, or velocity and mass"
+        )
+    if len(inertia) != 3 or len(velocity) not in (0, 3):
+        raise ModelError("a part has three principal moments, or three components of velocity")
+    return Part(
+        rotation=rotation,
+        velocity=tuple(_read(component, names) for component in velocity),
+        inertia=tuple(_read(moment, names) for moment in inertia),
+    )
 
 
 def _read(given: sp.Expr | str | int, names: Mapping[str, sp.Expr]) -> sp.Expr:

@@ -1,29 +1,31 @@
-"""A derivation with equations of motion, integrated in time by SciPy on its own kernels."""
+"""A derivation with equations of motion, integrated in time on its own kernels."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from types import ModuleType
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-import sympy as sp
+from numpy.typing import ArrayLike
 
 from rigidsym.errors import DerivationError, MissingExtra, ModelError, offer
-from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.derive import derive
+from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
+from rigidsym.models.forces import Forces
+from rigidsym.simulation.problem import POLE, Problem
 from rigidsym.simulation.trajectory import Array, Trajectory
 
-METHODS = ("DOP853", "RK45", "Radau", "LSODA")
-_POLE = 1e-6  # of the singularity margin: nearer to a pole no digits are left
+METHODS = ("DOP853", "RK45", "Radau", "LSODA", "lie", "exact")
+_NEEDED = ("rotation_matrix", "angular_velocity_body", "energy")
+_PREFERRED = ("rates_from_angular_velocity_body", "torque_body")
 
 Progress = Callable[[float], None]
 
 
 def simulate(
     derivation: Derivation,
-    initial: Mapping[str, float],
+    initial: Mapping[str, ArrayLike],
     parameters: Mapping[str, float],
     t_end: float,
     *,
@@ -33,151 +35,130 @@ def simulate(
     atol: float = 1e-12,
     progress: Progress | None = None,
 ) -> Trajectory:
-    """The motion from t = 0 to `t_end`, in seconds.
+    """The motion from t = 0 to `t_end`, in seconds; without forces, that of the free body.
 
-    `initial` holds the coordinates and rates by name (theta, theta_dot), and `parameters` the
-    constants. A motion that stops at a pole of the coordinates ends there, and says so; one that
-    goes straight through it goes on.
-    Raises ModelError for names that are missing or unknown, for a start at a pole, and if the
-    derivation has no equations of motion; MissingExtra without SciPy.
+    `initial` holds the coordinates by name (theta), with their rates (theta_dot) or the body
+    components of the angular velocity (angular_velocity_body), and `parameters` the constants.
+    `method` is one of SciPy's, "lie" for steps in the rotation group, which keep the angular
+    momentum of a free body to rounding, or "exact" for a free body in elliptic functions. A motion
+    that comes to a pole of the coordinates goes on as a quaternion, and says so.
+    Raises ModelError for names that are missing or unknown, and if the derivation has no
+    equations of motion; MissingExtra without SciPy.
     """
-    problem = _Problem(derivation, initial, parameters)
     if method not in METHODS:
         raise ModelError(f"no method {method!r}; {offer(method, METHODS)}")
     if not (np.isfinite(t_end) and t_end > 0):
         raise ModelError(f"the end time is {t_end}; expected a positive number of seconds")
     try:
-        from scipy.integrate import solve_ivp
+        import scipy.integrate  # noqa: F401
     except ModuleNotFoundError as error:
         raise MissingExtra("a simulation", "simulate") from error
+    problem = Problem(_with_motion(derivation), initial, parameters)
+    times = np.linspace(0.0, t_end, samples)
+    if method == "exact":
+        return _exact(problem, times)
+    if method == "lie":
+        from rigidsym.simulation.attitude import Attitude
 
-    def slopes(t: float, y: Array) -> Array:
+        attitude = Attitude(problem)
+        states = attitude.states(problem.start[None], attitude.in_group(times, progress))
+        return problem.trajectory(times, states)
+    return _integrated(problem, times, progress, {"method": method, "rtol": rtol, "atol": atol})
+
+
+def _with_motion(derivation: Derivation) -> Derivation:
+    """The quantities that a simulation needs; a body on which nothing acts is free."""
+    body = derivation.body
+    if body is None:
+        raise ModelError(
+            f"{derivation.name} has no equations of motion; expected a body and a potential, "
+            "as in rs.derive(..., body=..., potential=...)"
+        )
+    names = {step.quantity.name for step in (*derivation.steps, *derivation.functions)}
+    if derivation.forces is None or not names.issuperset((*_NEEDED, "state_derivative")):
+        forces = derivation.forces or Forces()
+        only = [*_NEEDED, *FLOW_QUANTITIES, "torque_body"]
+        if len(derivation.model.coordinates) >= 3:  # else the rates do not follow
+            only.append("rates_from_angular_velocity_body")
+        return derive(derivation.model, only, body=body, forces=forces)
+    return derivation.select([n for n in (*_NEEDED, *_PREFERRED) if n in names])
+
+
+def _integrated(
+    problem: Problem, times: Array, progress: Progress | None, options: Mapping[str, Any]
+) -> Trajectory:
+    """By one of SciPy's integrators, as a quaternion from where a pole comes near."""
+    name = problem.derivation.name
+    found: list[Array] = []
+    remarks: list[str] = []
+    at, state, ended = 0.0, problem.start, ""
+    if problem.margin(state) > POLE:
+        solved = _solve(problem.slopes, state, times, progress, options, problem.margin)
+        found.append(solved.y.T)
+        if solved.status == 1:
+            at, state = float(solved.t_events[0][0]), solved.y_events[0][0]
+        else:
+            at, ended = times[-1], _ending(name, solved)
+    rest = times[len(found[0]) if found else 0 :]
+    if not ended and len(rest):
+        from rigidsym.simulation.attitude import Attitude
+
+        attitude = Attitude(problem)
+        remarks.append(
+            f"near a pole of the coordinates at t = {at:.6g} s; from there on as a quaternion"
+        )
+        start = attitude.start(state)
+        solved = _solve(attitude.slopes, start, rest, progress, options, None, at)
+        before = np.concatenate([*found, state[None]])
+        found.append(attitude.states(before, solved.y.T))
+        ended = _ending(name, solved)
+    states = np.concatenate(found)
+    return problem.trajectory(times[: len(states)], states, ended, remarks)
+
+
+def _solve(
+    slopes: Callable[[float, Array], Array],
+    start: Array,
+    times: Array,
+    progress: Progress | None,
+    options: Mapping[str, Any],
+    margin: Callable[[Array], float] | None,
+    at: float = 0.0,
+) -> Any:
+    from scipy.integrate import solve_ivp
+
+    def reported(t: float, y: Array) -> Array:
         if progress is not None:
-            progress(t / t_end)
-        return problem.slopes(t, y)
+            progress(t / times[-1])
+        return slopes(t, y)
 
-    solved = solve_ivp(
-        slopes,
-        (0.0, t_end),
-        problem.start,
-        method=method,
-        t_eval=np.linspace(0.0, t_end, samples),
-        rtol=rtol,
-        atol=atol,
-        events=problem.margin,
-    )
+    def pole(_: float, y: Array) -> float:
+        return margin(y) - POLE if margin else 1.0
+
+    pole.terminal = True  # type: ignore[attr-defined]  # how SciPy is told to stop there
+    return solve_ivp(reported, (at, times[-1]), start, t_eval=times, events=pole, **options)
+
+
+def _ending(name: str, solved: Any) -> str:
+    """Why a motion ends before its time; raises DerivationError if it has not begun."""
+    if solved.status >= 0:
+        return ""
     if solved.t.size == 0:
-        raise DerivationError(f"{derivation.name}: no step could be taken: {solved.message}")
-    ended = ""
-    if solved.status == 1:
-        ended = (
-            f"ended at t = {solved.t_events[0][0]:.6g} s, at a pole of the coordinates; other "
-            "coordinates, such as another sequence of axes, go on"
-        )
-    elif solved.status != 0:
-        ended = f"ended at t = {solved.t[-1]:.6g} s: {solved.message}"
-    return problem.trajectory(solved.t, solved.y.T, ended)
+        raise DerivationError(f"{name}: no step could be taken: {solved.message}")
+    return f"ended at t = {solved.t[-1]:.6g} s: {solved.message}"
 
 
-class _Problem:
-    """The state y = (q, q̇) of one derivation, its parameters and its kernels."""
+def _exact(problem: Problem, times: Array) -> Trajectory:
+    """The free body in elliptic functions."""
+    from rigidsym.simulation.attitude import Attitude, quaternions_of
+    from rigidsym.simulation.free_body import free_motion
 
-    def __init__(
-        self,
-        derivation: Derivation,
-        initial: Mapping[str, float],
-        parameters: Mapping[str, float],
-    ) -> None:
-        if "accelerations" not in {step.quantity.name for step in derivation.steps}:
-            raise ModelError(
-                f"{derivation.name} has no equations of motion; expected a body and a potential, "
-                "as in rs.derive(..., body=..., potential=...)"
-            )
-        self.derivation = derivation
-        names = {a.name: a.names for a in derivation.arguments}
-        self.coordinates = names["q"]
-        self.count = len(self.coordinates)
-        constants = names.get("parameters", ())
-        wanted = (*names["q"], *names["q_dot"])
-        _check_names("initial values", initial, wanted, wanted)
-        needed = [name for name in constants if sp.Symbol(name) in self._symbols]
-        _check_names("parameters", parameters, needed, constants)
-        self.parameters = [float(parameters.get(name, 1.0)) for name in constants]
-        self.start = np.array([float(initial[name]) for name in wanted])
-        self._check_body(dict(zip(constants, self.parameters, strict=True)))
-        self.kernels: ModuleType = generate(derivation, "numpy").load()
-        self.margin: Any = self._margin_event()
-        self._slopes = self.kernels.state_derivative_scalar
-        self._constants = [v for given in self._given("state_derivative") for v in given]
-        if self.margin(0.0, self.start) <= 0:
-            raise ModelError(
-                f"{derivation.name}: the motion starts at a pole of the coordinates, where the "
-                "rates do not follow from the angular velocity"
-            )
-
-    @property
-    def _symbols(self) -> set[sp.Basic]:
-        """What the motion depends on; the mass of a body about a fixed point may not be in it."""
-        body = self.derivation.body
-        held = [self.derivation.step(name).expression for name in ("accelerations", "energy")]
-        held += [body.inertia] if body else []
-        return set().union(*(expression.free_symbols for expression in held))
-
-    def _check_body(self, values: Mapping[str, float]) -> None:
-        """A body with values for its parameters checks its moments when it is made."""
-        body = self.derivation.body
-        if body is not None:
-            known = (replace(p, value=values[p.symbol.name]) for p in body.parameters)
-            replace(body, parameters=tuple(known))
-
-    def _given(self, name: str) -> list[list[float]]:
-        """The parameters, if a function takes them."""
-        step = self.derivation.step(name)
-        return [self.parameters] if "parameters" in step.quantity.inputs else []
-
-    def slopes(self, t: float, y: Array) -> Array:
-        """The derivative of one state."""
-        return np.array(self._slopes(t, *y.tolist(), *self._constants))
-
-    def _margin_event(self) -> Any:
-        """The distance from a pole, for the integrator to stop at; never if there is none."""
-        found = getattr(self.kernels, "singularity_margin_scalar", None)
-
-        def margin(_: float, y: Array) -> float:
-            return 1.0 if found is None else found(*y[: self.count].tolist()) - _POLE
-
-        margin.terminal = True  # type: ignore[attr-defined]  # how SciPy is told to stop there
-        return margin
-
-    def trajectory(self, t: Array, states: Array, ended: str) -> Trajectory:
-        q, q_dot = states[:, : self.count], states[:, self.count :]
-        return Trajectory(
-            name=self.derivation.name,
-            coordinates=self.coordinates,
-            t=t,
-            q=q,
-            q_dot=q_dot,
-            angular_velocity_body=self.kernels.angular_velocity_body(q, q_dot),
-            rotation_matrix=self.kernels.rotation_matrix(q),
-            first_integrals=self._integrals(states),
-            ended=ended,
-        )
-
-    def _integrals(self, states: Array) -> dict[str, Array]:
-        names = [integral.name for integral in self.derivation.first_integrals]
-        if not names:
-            return {}
-        values = self.kernels.first_integrals(states, *self._given("first_integrals"))
-        return dict(zip(names, values.T, strict=True))
-
-
-def _check_names(
-    what: str, given: Mapping[str, float], wanted: Sequence[str], known: Sequence[str]
-) -> None:
-    """All that is missing at once, and the first that is unknown."""
-    missing = [name for name in wanted if name not in given]
-    if missing:
-        raise ModelError(f"missing {what}: {', '.join(missing)}")
-    for name in given:
-        if name not in known:
-            raise ModelError(f"unknown {what}: {name}; {offer(name, known)}")
+    attitude = Attitude(problem)
+    if not attitude.is_free:
+        raise ModelError(f"{problem.derivation.name}: the exact solution is that of a free body")
+    start = problem.start
+    omega, rotation = free_motion(
+        problem.inertia, problem.omega(start), problem.rotation(start), times
+    )
+    found = np.concatenate([quaternions_of(rotation), omega], axis=1)
+    return problem.trajectory(times, attitude.states(start[None], found))

@@ -25,7 +25,9 @@ class Trajectory:
     angular_velocity_body: Array  # (n, 3), rad/s
     rotation_matrix: Array  # (n, 3, 3), body to space components
     first_integrals: Mapping[str, Array]  # (n,) each
+    inertia: Array  # (3, 3), kg m², about the fixed point in the axes of the body
     ended: str = ""  # why the motion ends before its time, if it does
+    remarks: tuple[str, ...] = ()  # such as a pole that was passed
 
     @property
     def drift(self) -> Mapping[str, float]:
@@ -44,8 +46,7 @@ class Trajectory:
     def report(self) -> str:
         """How long it is, and the drift of each first integral."""
         lines = [f"{self.name}: {len(self.t)} moments from 0 to {self.t[-1]:g} s"]
-        if self.ended:
-            lines.append(self.ended)
+        lines += [text for text in (*self.remarks, self.ended) if text]
         width = max(map(len, self.first_integrals), default=0)
         lines += [f"  {name:{width}}  drift {value:.1e}" for name, value in self.drift.items()]
         return "\n".join(lines)

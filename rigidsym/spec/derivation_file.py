@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,7 @@ A_PAIR_OF_FRAMES = 'two names such as ["inertial", "spacecraft"]'
 _OF_BOTH = ("title", "theory", "parameters", "body", "dynamics", "notation")
 _FILE = (*_OF_BOTH, "rotation", "output")
 _RECORD = (*_OF_BOTH, "name", "rotations")
-_DYNAMICS = ("potential", "forces")
+_DYNAMICS = ("potential", "forces", "torque", "first_integrals", "parts", "method")
 _FORMER = ("measured",)  # in old records: errors that were printed with the kernels
 _OUTPUT = ("quantities", "kernels", "note", "style", "conversions", "derivatives")
 
@@ -192,22 +192,44 @@ class _Reader:
 
 
 def _read_dynamics(table: Table, models: Sequence[RotationModel]) -> dict[str, Any]:
-    """The potential and the forces of [dynamics], each read once with the names of every model."""
+    """What [dynamics] holds, each key read once with the names of every model."""
     dynamics = table.table("dynamics")
     if dynamics is None:
         return {}
     dynamics.refuse_others(_DYNAMICS)
     if table.value("body") is None:
         table.fault("forces act on a body; expected [body] as well", "dynamics")
-    inner = dynamics.table("forces")
-    potential = dynamics.text("potential") or "0"
-    forces = {key: inner.text(key) or "0" for key in inner.data} if inner else {}
+    found = dict(_dynamics(dynamics))
     for model in models:
-        with dynamics.noting("potential"):
-            forces_on(model, potential, {})
-        with dynamics.noting("forces"):
-            forces_on(model, "0", forces)
-    return {"potential": potential, "forces": tuple(forces.items())}
+        for key, value in found.items():
+            with dynamics.noting(key):
+                forces_on(model, **{key: value})
+    return {"dynamics": found}
+
+
+def _dynamics(table: Table) -> Iterator[tuple[str, Any]]:
+    """The keys of [dynamics] that are there, with values of the right type."""
+    for key in ("potential", "method"):
+        if text := table.text(key):
+            yield key, text
+    for key in ("forces", "first_integrals"):
+        if inner := table.table(key):
+            yield key, {name: inner.text(name) or "0" for name in inner.data}
+    if torque := table.texts("torque", "three components"):
+        yield "torque", list(torque.values())
+    if table.value("parts") is not None:
+        parts = table.tables("parts", "a list of tables: [[dynamics.parts]]")
+        yield "parts", [dict(_part(part)) for part in parts]
+
+
+def _part(table: Table) -> Iterator[tuple[str, Any]]:
+    table.refuse_others(("rotation", "principal_moments", "velocity", "mass"))
+    for key in ("rotation", "mass"):
+        if text := table.text(key):
+            yield key, text
+    for key in ("principal_moments", "velocity"):
+        if texts := table.texts(key, "three expressions"):
+            yield key, list(texts.values())
 
 
 def _read_body(table: Table, name: str, folder: Path | None) -> Body | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
@@ -37,8 +37,7 @@ class DerivationSpec:
     title: str | None = None  # None: the rotation's own
     models: tuple[RotationModel, ...]
     body: Body | None = None
-    potential: str | None = None  # V(q) as text; None: no equations of motion
-    forces: tuple[tuple[str, str], ...] = ()  # generalised forces, as texts by coordinate
+    dynamics: Mapping[str, Any] | None = None  # as `forces_on` reads it; None: no motion
     theory: bool = False  # whether the theory for every body and rotation comes first
     quantities: tuple[str, ...] = ()  # empty: all
     kernels: tuple[str, ...] = ("numpy",)
@@ -79,7 +78,7 @@ class DerivationSpec:
         """
         optional: dict[str, Any] = {
             "theory": self.theory,
-            "dynamics": self._dynamics_data(),
+            "dynamics": None if self.dynamics is None else {"potential": "0"} | {**self.dynamics},
             "style": self.style if self.style != "lecture" else "",
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),
@@ -95,10 +94,6 @@ class DerivationSpec:
             **(self.body.request if self.body else {}),
             **{key: value for key, value in optional.items() if value},
         }
-
-    def _dynamics_data(self) -> dict[str, Any]:
-        forces = {"forces": dict(self.forces)} if self.forces else {}
-        return {} if self.potential is None else {"potential": self.potential, **forces}
 
     def _notation_data(self) -> dict[str, Any]:
         if self.notation is None or self.notation == type(self.notation)():

@@ -12,7 +12,7 @@ from sympy.physics.mechanics import LagrangesMethod
 
 import rigidsym as rs
 from helpers.witness import agree, evaluate, mp
-from rigidsym.mechanics.dynamics.derive import EquationsOfMotion
+from rigidsym.mechanics.dynamics.derive import LagrangeEquations
 from rigidsym.mechanics.dynamics.lagrange import Lagrange
 from rigidsym.models.forces import Forces
 
@@ -179,7 +179,7 @@ def test_a_wrong_bias_is_refuted():
     work = Lagrange(rs.EulerAngles("ZXZ"), rs.principal_moments(A, A, C), Forces())
     work.gyroscopic = work.gyroscopic.scale(work.ring.one + work.ring.one)
     with pytest.raises(rs.RigidsymError, match="is false"):
-        EquationsOfMotion(work).bias_vector()
+        LagrangeEquations(work).bias_vector()
 
 
 @pytest.mark.parametrize(
@@ -199,4 +199,9 @@ def test_forces_need_a_body_and_free_coordinates():
     with pytest.raises(rs.RigidsymError, match="a body"):
         rs.derive("ZXZ", potential=TOP)
     with pytest.raises(rs.RigidsymError, match="three free coordinates"):
-        rs.derive("unit_quaternion", body=rs.principal_moments(A, A, C), potential=0)
+        rs.derive(
+            "unit_quaternion",
+            body=rs.principal_moments(A, A, C),
+            potential=0,
+            method="lagrange",
+        )

@@ -94,13 +94,52 @@ def test_a_motion_straight_through_the_pole_goes_on_with_its_integrals_kept():
     assert max(found.drift.values()) < 1e-9
 
 
+def test_a_motion_that_starts_at_a_pole_is_that_of_the_quaternion():
+    """The sleeping top: upright, and stable if C² ω₃² > 4 A m g l"""
+    least = 2 * np.sqrt(TOP["A"] * TOP["m"] * TOP["g"] * TOP["l"]) / TOP["C"]
+    for spin, is_stable in ((1.1 * least, True), (0.9 * least, False)):
+        start = REST | {"psi_dot": spin, "theta_dot": 1e-4}
+        found = top().simulate(start, TOP, 15.0, samples=301)
+        assert "near a pole of the coordinates at t = 0 s" in found.report()
+        upright = found.rotation_matrix[:, 2, 2].min()
+        assert bool(upright > 0.99999) is is_stable
+        assert found.drift["energy"] < 1e-9
+
+
+def test_a_trajectory_through_a_pole_agrees_with_one_in_quaternions():
+    """From the pole back in time, and from there on through it: the motion is reversible"""
+    values = {"A": 1.0, "B": 1.3, "C": 0.5, "m": 1.0, "g": 9.81, "a": 0.1, "b": 0.05, "l": 0.2}
+    body = rs.principal_moments(A, B, C)
+    height = "m*g*(2*a*(x*z - w*y) + 2*b*(y*z + w*x) + l*(1 - 2*x**2 - 2*y**2))"
+    quaternions = rs.derive("unit_quaternion", ["state_derivative"], body=body, potential=height)
+    upright = {"w": 1, "x": 0, "y": 0, "z": 0, "angular_velocity_body": (-1.0, -0.3, -2.0)}
+    back = quaternions.simulate(upright, values, 1.0, samples=2)
+    first = dict(zip("wxyz", back.q[-1], strict=True))
+    first["angular_velocity_body"] = -back.angular_velocity_body[-1]
+    same = quaternions.simulate(first, values, 3.0)
+
+    model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
+    potential = "m*g*(a*sin(theta)*sin(psi) + b*sin(theta)*cos(psi) + l*cos(theta))"
+    motion = rs.derive(model, body=body, potential=potential)
+    angles = motion.kernels(conversions=True).load().from_quaternion(back.q[-1])
+    start = dict(zip(("phi", "theta", "psi"), angles, strict=True))
+    start["angular_velocity_body"] = first["angular_velocity_body"]
+    found = motion.simulate(start, values, 3.0)
+    assert "near a pole of the coordinates at t = 0.99" in found.report()
+    assert np.abs(found.rotation_matrix - same.rotation_matrix).max() < 1e-7
+    assert np.abs(np.diff(found.q[:, [0, 1, 2]].sum(axis=1))).max() < 0.5  # no jumps
+    assert max(found.drift.values()) < 1e-7
+
+
 @pytest.mark.parametrize(
     ("initial", "values", "t_end", "message"),
     [
         ({}, TOP, 1.0, "missing initial values: phi, theta, psi, phi_dot, theta_dot, psi_dot"),
         (REST | {"theta": 1}, {"A": 1}, 1.0, "missing parameters: C, g, l, m"),
         (REST | {"theta": 1, "chi": 1}, TOP, 1.0, "unknown initial values: chi"),
-        (REST, TOP, 1.0, "starts at a pole"),
+        (REST | {"theta": 1}, TOP, float("nan"), "expected a positive number of seconds"),
+        ({"phi": 0, "theta": 0, "psi": 0, "angular_velocity_body": [1, 2, 3]}, TOP, 1.0, "a pole"),
+        ({"phi": 0, "theta": 1, "psi": 0, "angular_velocity_body": 1}, TOP, 1.0, "three compon"),
         (REST | {"theta": 1}, TOP | {"C": 9.0}, 1.0, "principal moments"),
         (REST | {"theta": 1}, TOP, -1.0, "expected a positive number of seconds"),
     ],

@@ -6,44 +6,51 @@ act on it. What does not depend on a coordinate, or on time, is conserved, and p
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from functools import cached_property
-from types import MappingProxyType
 
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.matrix import RingMatrix, cross
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form
-from rigidsym.mechanics.derivation import FirstIntegral, Found, Step
-from rigidsym.mechanics.dynamics.flow import flow_functions
-from rigidsym.mechanics.dynamics.lagrange import Lagrange
+from rigidsym.mechanics.derivation import FirstIntegral, Found
+from rigidsym.mechanics.dynamics.euler import EulerEquations
+from rigidsym.mechanics.dynamics.flow import Block, Flow
+from rigidsym.mechanics.dynamics.lagrange import Lagrange, is_free
 from rigidsym.mechanics.kinematics.workspace import encoded
-from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import dynamics as claims
-from rigidsym.mechanics.quantities.arguments import (
-    arguments_of,
-    arguments_of_flow,
-    arguments_of_motion,
-)
+from rigidsym.models.body import RigidBody
+from rigidsym.models.forces import OMEGA_BODY, Forces
+from rigidsym.models.rotation import RotationModel
 
 
-class EquationsOfMotion:
-    """The steps of one rotation, one body and the forces on it."""
+def equations_of_motion(model: RotationModel, body: RigidBody, forces: Forces) -> Flow:
+    """Lagrange's equations if the coordinates are free, else Euler's, unless one is asked for."""
+    method = forces.method or ("lagrange" if is_free(model) else "euler")
+    if method == "euler":
+        return EulerEquations(model, body, forces)
+    return LagrangeEquations(Lagrange(model, body, forces))
+
+
+class LagrangeEquations(Flow):
+    """The steps of one rotation, one body and the forces on it, in Lagrange's form."""
+
+    table = claims.DYNAMICS_QUANTITIES
+    second = "q_dot"
 
     def __init__(self, work: Lagrange) -> None:
+        super().__init__(work.model, work.body, work.acting, work.codec)
         self.work = work
-        self.present = presenter_for(work.codec)
-        self.prove = Prover(work.model, work.codec)
-        self.arguments = {a.name: a for a in arguments_of(work.model)}
-        self.added = arguments_of_motion(work.model)  # by the equations of motion
-        self.added += arguments_of_flow([self.arguments["q"], self.arguments["q_dot"]])
-        self.arguments |= {a.name: a for a in self.added}
 
-    def steps(self, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
-        """(name, what was found) of the quantities of motion that are wanted."""
-        yield from ((name, _STEPS[name](self)) for name in wanted)
+    @cached_property
+    def blocks(self) -> tuple[Block, Block]:
+        work = self.work
+        return (
+            Block(work.model.coordinates, work.q_dot, work.ring.one),
+            Block(work.rates, *work.solved),
+        )
 
     @cached_property
     def kinetic(self) -> sp.Expr:
@@ -51,7 +58,7 @@ class EquationsOfMotion:
         return half_form(self.present, self.work.inertia, self.work.omega)
 
     def _scalar(self, expression: sp.Expr) -> RingMatrix:
-        return self.work.column([expression])
+        return self.column([expression])
 
     @property
     def _left_side(self) -> RingMatrix:
@@ -145,45 +152,20 @@ class EquationsOfMotion:
             (proof,),
         )
 
-    def angular_acceleration_from_torque(self) -> Found:
-        """I′⁻¹ (N′ − Ω′ × I′ Ω′) for free Ω′ and N′, in a ring of their own."""
-        omega, torque = self.arguments["omega_body"].symbols, self.arguments["torque"].symbols
-        inertia = self.work.body.inertia
-        codec = codec_for([e for e in (*inertia, *omega, *torque) if e != 0], order=0)
-        w, n = (RingMatrix.column(codec.ring, map(codec.encode, v)) for v in (omega, torque))
-        tensor = encoded(codec, inertia)
-        turned = cross(codec.ring, w.entries, (tensor @ w).entries)
-        left = n - RingMatrix.column(codec.ring, turned)
-        above, below = tensor.adjugate() @ left, tensor.det()
-        residual = tensor @ above - left.scale(below)
-        proof = Prover(self.work.model, codec).vanishes(residual, claims.EULER, divided_by=below)
-        return Found(
-            presenter_for(codec).matrix(above, below),
-            "Euler's equations: the torque changes the angular momentum, which is written along "
-            "the axes of the body.",
-            (proof,),
+    def in_state(self, value: sp.Expr) -> sp.Expr:
+        """Ω′ = W′ q̇."""
+        return value.xreplace(
+            dict(zip(OMEGA_BODY, self.present.matrix(self.work.omega), strict=True))
         )
 
-    def functions(self) -> Mapping[str, Step]:
-        """What kernels take beside the steps: the derivative of the state y = (q, q̇)."""
-        accelerations = self.present.matrix(*self.work.solved)
-        integrals = [integral.expression for integral in self.first_integrals]
-        state = self.arguments["y"]
-        return flow_functions(state, [*self.work.rates, *accelerations], integrals)
-
-    @cached_property
-    def first_integrals(self) -> tuple[FirstIntegral, ...]:
-        """What is constant along every motion, with its proof."""
-        return tuple(self._first_integrals())
-
-    def _first_integrals(self) -> Iterator[FirstIntegral]:
+    def own_integrals(self) -> Iterator[FirstIntegral]:
         work = self.work
         if not any(work.forces):
             yield FirstIntegral(
                 name="energy",
                 symbol=claims.ENERGY,
                 expression=self.kinetic + work.potential,
-                proof=self.prove.vanishes(self._energy_rate, claims.ENERGY_IS_CONSTANT),
+                proof=self.prove.vanishes(self._energy_rate, claims.is_constant(claims.ENERGY)),
             )
         momenta = self.present.matrix(work.momenta)
         for k, q in enumerate(work.model.coordinates):
@@ -196,8 +178,3 @@ class EquationsOfMotion:
                         expression=momenta[k],
                         proof=self.prove.vanishes(slope, claims.momentum_is_constant(k + 1)),
                     )
-
-
-_STEPS: Mapping[str, Callable[[EquationsOfMotion], Found]] = MappingProxyType(
-    {name: getattr(EquationsOfMotion, name) for name in claims.DYNAMICS_QUANTITIES}
-)

@@ -1,37 +1,168 @@
-"""ẏ = f(t, y): the equations of motion as an integrator takes them, for kernels only."""
+"""ẏ = f(t, y): equations of motion as an integrator takes them, and what they keep constant.
+
+The state y is made of two blocks, (q, q̇) in Lagrange's form and (q, Ω′) in Euler's. The rate of a
+function F of the state is ∇F·f, reduced in the ring: F is a first integral if it vanishes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from math import prod
+from typing import NamedTuple
 
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
-from rigidsym.mechanics.derivation import Argument, Step
-from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
+from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.matrix import RingMatrix, cross
+from rigidsym.algebra.present import presenter_for
+from rigidsym.errors import ModelError
+from rigidsym.mechanics.derivation import FirstIntegral, Found, Quantity, Step
+from rigidsym.mechanics.kinematics.workspace import encoded
+from rigidsym.mechanics.prove import Prover
+from rigidsym.mechanics.quantities import dynamics as claims
+from rigidsym.mechanics.quantities.arguments import (
+    arguments_of,
+    arguments_of_flow,
+    arguments_of_motion,
+)
+from rigidsym.models.body import RigidBody
+from rigidsym.models.forces import Forces
+from rigidsym.models.rotation import RotationModel
 
 
-def flow_functions(
-    state: Argument, slopes: Sequence[sp.Expr], integrals: Sequence[sp.Expr]
-) -> Mapping[str, Step]:
-    """The derivative of the state, its Jacobian and the first integrals, by name."""
-    values = {
-        "state_derivative": sp.ImmutableMatrix(slopes),
-        "state_jacobian": _jacobian(slopes, state.symbols),
-        "first_integrals": sp.ImmutableMatrix(integrals),
-    }
-    return {
-        name: Step(
-            number=0, quantity=FLOW_QUANTITIES[name], expression=value, because="", proofs=()
+class Block(NamedTuple):
+    """A part of the state, and its time derivative as numerators over one divisor."""
+
+    symbols: Sequence[sp.Expr]
+    numerators: RingMatrix
+    divisor: PolyElement
+
+
+class Flow:
+    """The equations of motion of one rotation, one body and the forces on it.
+
+    A form of the equations gives its `blocks`, the first integrals that it has, and steps by the
+    names of the quantities in `table`.
+    """
+
+    table: Mapping[str, Quantity]
+    second: str  # the argument beside q in the state
+
+    def __init__(self, model: RotationModel, body: RigidBody, forces: Forces, codec: Codec) -> None:
+        self.model, self.body, self.forces, self.codec = model, body, forces, codec
+        self.present = presenter_for(codec)
+        self.prove = Prover(model, codec)
+        self.arguments = {a.name: a for a in arguments_of(model)}
+        self.added = arguments_of_motion(model)  # by the equations of motion
+        self.added += arguments_of_flow([self.arguments["q"], self.arguments[self.second]])
+        self.arguments |= {a.name: a for a in self.added}
+
+    def steps(self, only: Sequence[str]) -> Iterator[tuple[str, Found]]:
+        """(name, what was found) of the quantities of motion that are wanted."""
+        for name in self.table:
+            if not only or name in only:
+                yield name, getattr(self, name)()
+
+    def column(self, entries: Sequence[sp.Expr]) -> RingMatrix:
+        return RingMatrix.column(self.codec.ring, map(self.codec.encode, entries))
+
+    @property
+    def blocks(self) -> tuple[Block, Block]:
+        raise NotImplementedError
+
+    def rate(self, value: sp.Expr) -> tuple[RingMatrix, PolyElement]:
+        """dF/dt along the motion, as a numerator and its divisor."""
+        ring = self.codec.ring
+        parts = []
+        for block in self.blocks:
+            others = [other.divisor for other in self.blocks if other is not block]
+            slopes = self.column(_slopes(value, block.symbols, self.arguments["y"].symbols))
+            parts.append((slopes.T @ block.numerators).scale(prod(others, start=ring.one)))
+        divisor = prod((block.divisor for block in self.blocks), start=ring.one)
+        return parts[0] + parts[1], ring.reduce(divisor)
+
+    @cached_property
+    def first_integrals(self) -> tuple[FirstIntegral, ...]:
+        """What is constant along every motion, with its proof."""
+        return (*self.own_integrals(), *map(self._claimed, self.forces.first_integrals.items()))
+
+    def own_integrals(self) -> Iterator[FirstIntegral]:
+        """The first integrals that this form of the equations looks for."""
+        raise NotImplementedError
+
+    def in_state(self, value: sp.Expr) -> sp.Expr:
+        """The value with Ω′ written in the state."""
+        return value
+
+    def _claimed(self, claimed: tuple[str, sp.Expr]) -> FirstIntegral:
+        """One that the user claims. Raises DerivationError if it is not constant."""
+        name, value = claimed
+        value = self.in_state(value)
+        residual, divisor = self.rate(value)
+        symbol = claims.integral_symbol(name)
+        proof = self.prove.vanishes(residual, claims.is_constant(symbol), divided_by=divisor)
+        return FirstIntegral(name=name, symbol=symbol, expression=value, proof=proof)
+
+    def functions(self) -> Mapping[str, Step]:
+        """The derivative of the state, its Jacobian and the first integrals, by name."""
+        slopes = [e for b in self.blocks for e in self.present.matrix(b.numerators, b.divisor)]
+        symbols = self.arguments["y"].symbols
+        values = {
+            "state_derivative": sp.ImmutableMatrix(slopes),
+            "state_jacobian": sp.ImmutableMatrix([_slopes(s, symbols, symbols) for s in slopes]),
+            "first_integrals": sp.ImmutableMatrix([i.expression for i in self.first_integrals]),
+        }
+        return {
+            name: Step(number=0, quantity=quantity, expression=values[name], because="", proofs=())
+            for name, quantity in claims.FLOW_QUANTITIES.items()
+            if len(values[name])
+        }
+
+    def angular_acceleration_from_torque(self) -> Found:
+        """I′⁻¹ (N′ − Ω′ × I′ Ω′) for free Ω′ and N′, in a ring of their own."""
+        omega, torque = self.arguments["omega_body"].symbols, self.arguments["torque"].symbols
+        inertia = self.body.inertia
+        codec = codec_for([e for e in (*inertia, *omega, *torque) if e != 0], order=0)
+        w, n = (RingMatrix.column(codec.ring, map(codec.encode, v)) for v in (omega, torque))
+        tensor = encoded(codec, inertia)
+        above, below = solved_euler(tensor, w, n, codec.ring.one)
+        left = n - turned(tensor, w)
+        residual = tensor @ above - left.scale(below)
+        proof = Prover(self.model, codec).vanishes(residual, claims.EULER, divided_by=below)
+        return Found(
+            presenter_for(codec).matrix(above, below),
+            "Euler's equations: the torque changes the angular momentum, which is written along "
+            "the axes of the body.",
+            (proof,),
         )
-        for name, value in values.items()
-        if len(value)
-    }
 
 
-def _jacobian(entries: Sequence[sp.Expr], symbols: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
-    """The derivatives by the components of the state; a rate does not follow its coordinate."""
-    plain = {symbol: sp.Dummy() for symbol in reversed(symbols)}  # the rates first
+def turned(tensor: RingMatrix, omega: RingMatrix) -> RingMatrix:
+    """Ω′ × I′ Ω′."""
+    ring = tensor.ring
+    return RingMatrix.column(ring, cross(ring, omega.entries, (tensor @ omega).entries))
+
+
+def solved_euler(
+    tensor: RingMatrix, omega: RingMatrix, torque: RingMatrix, below: PolyElement
+) -> tuple[RingMatrix, PolyElement]:
+    """I′⁻¹ (N′ − Ω′ × I′ Ω′) as n/d, for the torque `torque`/`below`.
+
+    Raises ModelError if the tensor has no inverse.
+    """
+    if not tensor.det():
+        raise ModelError("the inertia tensor has no inverse; expected three positive moments")
+    left = torque - turned(tensor, omega).scale(below)
+    return tensor.adjugate() @ left, tensor.ring.reduce(tensor.det() * below)
+
+
+def _slopes(
+    value: sp.Expr, symbols: Sequence[sp.Expr], independent: Sequence[sp.Expr]
+) -> list[sp.Expr]:
+    """The derivatives of a value by symbols; a rate does not follow its coordinate."""
+    plain = {symbol: sp.Dummy() for symbol in reversed(independent)}  # the rates first
     back = {dummy: symbol for symbol, dummy in plain.items()}
-    rows = [entry.xreplace(plain) for entry in entries]
-    found = [[sp.diff(row, plain[symbol]).xreplace(back) for symbol in symbols] for row in rows]
-    return sp.ImmutableMatrix(found)
+    held = value.xreplace(plain)
+    return [sp.diff(held, plain[symbol]).xreplace(back) for symbol in symbols]

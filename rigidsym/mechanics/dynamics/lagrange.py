@@ -26,6 +26,11 @@ from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
 
 
+def is_free(model: RotationModel) -> bool:
+    """Whether there are three coordinates that nothing binds."""
+    return not model.constraints and model.pullback is None and len(model.coordinates) == 3
+
+
 class Lagrange:
     """T, V, p, M, h and the accelerations of one rotation, one body and one potential."""
 
@@ -35,15 +40,16 @@ class Lagrange:
         body: RigidBody,
         forces: Forces,
     ) -> None:
-        if model.constraints or model.pullback is not None or len(model.coordinates) != 3:
+        if not is_free(model):
             raise ModelError(
                 f"{model.name}: Lagrange's equations need three free coordinates, such as the "
-                "Euler angles; expected such a rotation beside a potential"
+                "Euler angles; expected such a rotation, or Euler's equations"
             )
         fixed = dict.fromkeys(model.coordinates, sp.S.Zero)
         if TIME in forces.potential.xreplace(fixed).free_symbols:
             raise ModelError(f"{model.name}: the potential {forces.potential} depends on t")
-        self.model, self.body, self.potential = model, body, forces.potential
+        self.model, self.body, self.acting = model, body, forces
+        self.potential = forces.potential
         self.rotation = Values(model)
         self.rates = [sp.diff(q, TIME) for q in model.coordinates]
         self.accelerations = [sp.diff(q, TIME, 2) for q in model.coordinates]
@@ -54,6 +60,7 @@ class Lagrange:
         self.rate_matrix = sp.ImmutableMatrix(3, 3, [decode(e) for e in matrix.entries])
         held = [*self.rate_matrix, *body.inertia, sp.Rational(1, 2), self.potential]
         held += [*self.gradient, *self.forces, *self.rates, *self.accelerations]
+        held += [*forces.first_integrals.values()]
         self.codec = codec_for([entry for entry in held if entry != 0])
         self.ring = self.codec.ring
 

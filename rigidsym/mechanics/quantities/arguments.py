@@ -13,6 +13,7 @@ from rigidsym.algebra.adjoin import rate_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula, named
 from rigidsym.mechanics.derivation import Argument
+from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME, time_function
 
@@ -24,7 +25,6 @@ _CENTRE = ("X", "Y", "Z")
 POINT = tuple(sp.Symbol(f"p_{axis}") for axis in "xyz")
 DIRECTION = tuple(sp.Symbol(f"n_{axis}") for axis in "xyz")
 _SPACE = tuple(sp.Symbol(f"Omega_{k}") for k in (1, 2, 3))
-_BODY = tuple(sp.Symbol(f"Omega_body_{k}") for k in (1, 2, 3))
 
 
 def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[Argument, ...]:
@@ -38,7 +38,7 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
         _coordinates(model, 1, "q_dot", "their time derivatives"),
         _coordinates(model, 2, "q_ddot", "their second time derivatives"),
         _angular_velocity("space", _SPACE, r"\Omega_{}"),
-        _angular_velocity("body", _BODY, r"\Omega'_{}"),
+        _angular_velocity("body", OMEGA_BODY, r"\Omega'_{}"),
         *((_centre(0), _centre(1), *_of_lines()) if body else ()),
         *_parameters(model, body),
     )

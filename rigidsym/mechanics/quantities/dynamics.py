@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rigidsym.formula.reader import formula
+from rigidsym.formula.symbol_names import named
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.energy import ROTATIONAL
@@ -89,6 +90,29 @@ DYNAMICS_QUANTITIES = read_table(
     _SOURCES,
 )
 
+EULER_QUANTITIES = read_table(
+    """
+    potential_energy                  scalar  J         q                   -
+        potential energy
+    torque_body                       vector  N m       q omega_body        Goldstein 5.5
+        torque about the fixed point, body components
+    energy                            scalar  J         q omega_body        -
+        energy
+    angular_acceleration_from_torque  vector  rad/s^2   omega_body torque   Goldstein 5.5
+        angular acceleration from the torque, body components (Euler's equations)
+    """,
+    {
+        "potential_energy": (POTENTIAL,),
+        "torque_body": (TORQUE,),
+        "energy": (ENERGY, formula(_PLUS, ROTATIONAL, POTENTIAL)),
+        "angular_acceleration_from_torque": (
+            ALPHA_BODY,
+            formula(r"#1^{-1}\left(#2 - #3\times#1\,#3\right)", *(INERTIA, TORQUE, BODY.omega)),
+        ),
+    },
+    _SOURCES,
+)
+
 FLOW_QUANTITIES = read_table(
     """
     state_derivative  vector  -  t y  -
@@ -118,7 +142,17 @@ EQUATIONS = formula("#1#2 + #3 = #4", MASS_MATRIX, ACCELERATIONS, BIAS, FORCES)
 ENERGY_RATE = formula(r"\frac{d#1}{dt} = #2\,#3", ENERGY, transpose_of(RATES), FORCES)
 HAMILTONIAN_IS_ENERGY = formula("#1 = #2", HAMILTONIAN, ENERGY)
 EULER = formula(r"#1\,#2 + #3\times#1\,#3 = #4", INERTIA, ALPHA_BODY, BODY.omega, TORQUE)
-ENERGY_IS_CONSTANT = formula(r"\frac{d#1}{dt} = 0", ENERGY)
+POWER = formula(r"\frac{d#1}{dt} = #2\,#3", ENERGY, transpose_of(BODY.omega), TORQUE)
+MOMENTUM_SQUARED = formula(r"\mathbf{L}^2")
+
+
+def is_constant(symbol: Formula) -> Formula:
+    return formula(r"\frac{d#1}{dt} = 0", symbol)
+
+
+def integral_symbol(name: str) -> Formula:
+    """Of a first integral that the user names."""
+    return named(name)
 
 
 def momentum_is_constant(place: int) -> Formula:

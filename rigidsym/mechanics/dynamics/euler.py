@@ -1,0 +1,138 @@
+"""Euler's equations of one body on any rotation, with the state y = (q, Ω′).
+
+    q̇ = W′⁻¹ Ω′,  dΩ′/dt = I′⁻¹ (N′ − Ω′ × I′ Ω′),  N′ = N′_given + W′⁻ᵀ (Q − ∂V/∂q)
+
+The torque of a potential follows from its power, N′·Ω′ = −dV/dt. No coordinate has to be free, so
+that quaternions and rotation vectors will do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+
+import sympy as sp
+
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.squares import half_form
+from rigidsym.errors import ModelError
+from rigidsym.formula.reader import formula
+from rigidsym.mechanics.derivation import FirstIntegral, Found
+from rigidsym.mechanics.dynamics.flow import Block, Flow, solved_euler
+from rigidsym.mechanics.kinematics.workspace import Values, encoded
+from rigidsym.mechanics.quantities import dynamics as claims
+from rigidsym.models.body import RigidBody
+from rigidsym.models.forces import OMEGA_BODY, Forces
+from rigidsym.models.rotation import RotationModel
+
+
+class EulerEquations(Flow):
+    """The steps of one rotation, one body and the torque on it."""
+
+    table = claims.EULER_QUANTITIES
+    second = "omega_body"
+
+    def __init__(self, model: RotationModel, body: RigidBody, forces: Forces) -> None:
+        """Raises ModelError if the rates do not follow from the angular velocity."""
+        rotation = Values(model)
+        if rotation.inverse_body is None:
+            raise ModelError(
+                f"{model.name}: Euler's equations need rates that follow from the angular velocity"
+            )
+        inverse, divisor = rotation.inverse_body
+        decode = rotation.codec.decode
+        self._inverse = sp.ImmutableMatrix(*inverse.shape, [decode(e) for e in inverse.entries])
+        self._divisor = decode(divisor)
+        self._matrix = rotation.model.matrix
+        q = model.coordinates
+        self._gradient = [sp.diff(forces.potential, x) for x in q]
+        self._forces = [forces.generalised.get(x, sp.S.Zero) for x in q]
+        self._torque = forces.torque or (sp.S.Zero,) * 3
+        held = [*self._inverse, self._divisor, *self._matrix, *body.inertia, sp.Rational(1, 2)]
+        held += [forces.potential, *self._gradient, *self._forces, *self._torque]
+        held += [*OMEGA_BODY, *forces.first_integrals.values()]
+        codec = codec_for([e for e in held if e != 0], constraints=model.constraints, order=1)
+        super().__init__(model, body, forces, codec)
+
+    @cached_property
+    def omega(self) -> RingMatrix:
+        return self.column(OMEGA_BODY)
+
+    @cached_property
+    def inertia(self) -> RingMatrix:
+        return encoded(self.codec, self.body.inertia)
+
+    @cached_property
+    def torque(self) -> tuple[RingMatrix, sp.Expr]:
+        """N′ as a numerator and its divisor."""
+        given = self.column(self._torque)
+        acting = [q - v for q, v in zip(self._forces, self._gradient, strict=True)]
+        if not any(acting):
+            return given, self.codec.ring.one
+        below = self.codec.encode(self._divisor)
+        turning = encoded(self.codec, self._inverse).T @ self.column(acting)
+        return given.scale(below) + turning, below
+
+    @cached_property
+    def blocks(self) -> tuple[Block, Block]:
+        rates = encoded(self.codec, self._inverse) @ self.omega
+        slopes, below = solved_euler(self.inertia, self.omega, *self.torque)
+        return (
+            Block(self.model.coordinates, rates, self.codec.encode(self._divisor)),
+            Block(OMEGA_BODY, slopes, below),
+        )
+
+    @cached_property
+    def _energy(self) -> sp.Expr:
+        return half_form(self.present, self.inertia, self.omega) + self.forces.potential
+
+    def potential_energy(self) -> Found:
+        return Found(
+            sp.ImmutableMatrix([[self.forces.potential]]), "The potential energy is given."
+        )
+
+    def torque_body(self) -> Found:
+        return Found(
+            self.present.matrix(*self.torque),
+            "The torque of the potential follows from its power.",
+        )
+
+    def energy(self) -> Found:
+        """With its rate, the power of what the potential does not account for."""
+        rate, divisor = self.rate(self._energy)
+        below = self.codec.encode(self._divisor)
+        forced = encoded(self.codec, self._inverse).T @ self.column(self._forces)
+        power = self.omega.T @ (self.column(self._torque).scale(below) + forced)
+        residual = rate.scale(below) - power.scale(divisor)
+        return Found(
+            sp.ImmutableMatrix([[self._energy]]),
+            "The energy changes at the power of the other torques.",
+            (self.prove.vanishes(residual, claims.POWER, divided_by=divisor),),
+        )
+
+    def own_integrals(self) -> Iterator[FirstIntegral]:
+        """Those of the energy and the angular momentum, in space and along the body's axes, that
+        do not change.
+        """
+        momentum = self.inertia @ self.omega
+        matrix = encoded(self.codec, sp.ImmutableMatrix(self._matrix))
+        in_space = self.present.matrix(matrix @ momentum)
+        in_body = self.present.matrix(momentum)
+        candidates = {"energy": (claims.ENERGY, self._energy)}
+        candidates["angular_momentum_squared"] = (
+            claims.MOMENTUM_SQUARED,
+            sp.Add(*(entry**2 for entry in in_body)),
+        )
+        along = [("angular_momentum_body", in_body, "L'_{}")]
+        if self.model.pullback is None:  # else R and its derivatives are long in this ring
+            along.insert(0, ("angular_momentum", in_space, "L_{}"))
+        for name, entries, symbol in along:
+            for k in range(3):
+                candidates[f"{name}_{k + 1}"] = (formula(symbol.format(k + 1)), entries[k])
+        for name, (symbol, value) in candidates.items():
+            residual, divisor = self.rate(value)
+            if residual.is_zero():
+                claim = claims.is_constant(symbol)
+                proof = self.prove.vanishes(residual, claim, divided_by=divisor)
+                yield FirstIntegral(name=name, symbol=symbol, expression=value, proof=proof)

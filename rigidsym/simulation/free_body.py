@@ -1,0 +1,104 @@
+"""The free rigid body in closed form: Ω′ in Jacobi elliptic functions, R with Legendre's Π.
+
+L. Landau, E. Lifshitz, Mechanics (1976), section 37. The polhode encircles one axis c, that of the
+greatest or of the least moment; about L this axis precesses at
+
+    L (2E − C Ω_c²)/(L² − C² Ω_c²) = L/C + L (2E C − L²)/(C (L² − C² Ω_c²)).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ellipj, ellipkinc, elliprf, elliprj
+
+Array = NDArray[np.float64]
+_ROUNDING = 1e-15  # relative: by which L and Ω may differ in direction and count as parallel
+
+
+def free_motion(inertia: Array, omega: Array, rotation: Array, t: Array) -> tuple[Array, Array]:
+    """Ω′ and R at the times t, (n, 3) and (n, 3, 3), from their values at t = 0.
+
+    `inertia` is the tensor about the fixed point in the axes of the body, (3, 3).
+    """
+    moments, axes = np.linalg.eigh(inertia)
+    if np.count_nonzero(inertia - np.diag(np.diag(inertia))) == 0:  # keep its digits
+        order = np.argsort(np.diag(inertia))
+        moments, axes = np.diag(inertia)[order], np.eye(3)[:, order]
+    axes = axes * [np.linalg.det(axes), 1, 1]  # right-handed
+    start = axes.T @ omega
+    momentum = moments * start
+    square, twice = momentum @ momentum, momentum @ start  # L², 2E
+    if square == 0:
+        return np.zeros((len(t), 3)), np.repeat(rotation[None], len(t), axis=0)
+    a, b, c = (0, 1, 2) if square >= twice * moments[1] else (2, 1, 0)
+    if np.linalg.norm(np.cross(momentum, start)) <= _ROUNDING * twice:  # a principal axis
+        return np.repeat(omega[None], len(t), axis=0), rotation @ _turns(omega, t)
+    (in_a, in_b, in_c), precession = _in_principal_axes(moments, start, (a, b, c), t)
+    principal = np.empty((len(t), 3))
+    principal[:, a], principal[:, b], principal[:, c] = in_a, in_b, in_c
+    frames = _frames(moments * principal / np.sqrt(square), c)
+    turned = _about_third(precession) @ frames
+    whole = rotation @ axes @ _frames(momentum[None] / np.sqrt(square), c)[0].T @ turned @ axes.T
+    return principal @ axes.T, whole
+
+
+def _in_principal_axes(
+    moments: Array, start: Array, places: tuple[int, int, int], t: Array
+) -> tuple[tuple[Array, Array, Array], Array]:
+    """Ω′ along a, b and c, and the angle by which c has precessed about L."""
+    a, b, c = places
+    A, B, C = moments[[a, b, c]]
+    # the combinations of E and L, from the components themselves so that no digits cancel
+    of_c = A * (A - C) * start[a] ** 2 + B * (B - C) * start[b] ** 2  # L² − 2E C
+    of_a = B * (B - A) * start[b] ** 2 + C * (C - A) * start[c] ** 2  # L² − 2E A
+    size_a = np.sqrt(of_c / (A * (A - C)))
+    size_b = np.sqrt(of_c / (B * (B - C)))
+    size_c = np.sqrt(of_a / (C * (C - A)))
+    sign = np.copysign(1.0, start[c])
+    rate = np.sqrt((C - B) * of_a / (A * B * C))
+    m = min((B - A) * of_c / ((B - C) * of_a), 1.0)
+    first = np.arctan2(sign * start[b] / size_b, start[a] / size_a)
+    sn, cn, dn, amplitude = ellipj(ellipkinc(first, m) + rate * t, m)
+    momentum = np.sqrt(sum((moments * start) ** 2))
+    across = A * A * size_a**2  # L² − C² Ω_c² where sn = 0
+    n = -(C * C * size_c**2 * m) / across
+    turned = (_third_kind(n, amplitude, m) - _third_kind(n, np.array([first]), m)) / rate
+    precession = momentum / C * t - momentum * of_c / (C * across) * turned
+    return (size_a * cn, sign * size_b * sn, sign * size_c * dn), precession
+
+
+def _third_kind(n: float, amplitude: Array, m: float) -> Array:
+    """Legendre's Π(n; φ | m), by Carlson's integrals; φ of any size, n < 0."""
+    turns = np.round(amplitude / np.pi)
+    near = amplitude - turns * np.pi
+    return _near(n, near, m) + 2 * turns * (_near(n, np.array([np.pi / 2]), m) if any(turns) else 0)
+
+
+def _near(n: float, amplitude: Array, m: float) -> Array:
+    s, c = np.sin(amplitude), np.cos(amplitude)
+    x, y = c * c, 1 - m * s * s
+    return np.asarray(s * elliprf(x, y, 1.0) + n / 3 * s**3 * elliprj(x, y, 1.0, 1 - n * s * s))
+
+
+def _frames(momentum: Array, c: int) -> Array:
+    """Rows x, y, z of frames with z along the momentum and the axis c in the half-plane x > 0."""
+    axis = np.eye(3)[c]
+    y = np.cross(momentum, axis)
+    y /= np.linalg.norm(y, axis=1)[:, None]
+    return np.stack([np.cross(y, momentum), y, momentum], axis=1)
+
+
+def _about_third(angle: Array) -> Array:
+    c, s, zero = np.cos(angle), np.sin(angle), np.zeros_like(angle)
+    rows = [[c, -s, zero], [s, c, zero], [zero, zero, zero + 1]]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+def _turns(omega: Array, t: Array) -> Array:
+    """exp(t C(Ω))"""
+    x, y, z = omega
+    size = np.linalg.norm(omega)
+    skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) / size
+    angle = (size * t)[:, None, None]
+    return np.asarray(np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * (skew @ skew))

@@ -1,0 +1,178 @@
+"""What is integrated: the state of one derivation, its parameters and its kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import ArrayLike
+
+from rigidsym.errors import ModelError, offer
+from rigidsym.kernels.module import generate
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.simulation.trajectory import Array, Trajectory
+
+POLE = 1e-3  # of the singularity margin: nearer to a pole, coordinates lose digits
+_UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
+OMEGA = "angular_velocity_body"
+
+
+class Problem:
+    """The state y of one derivation, (q, q̇) or (q, Ω′), its parameters and its kernels."""
+
+    def __init__(
+        self,
+        derivation: Derivation,
+        initial: Mapping[str, ArrayLike],
+        parameters: Mapping[str, float],
+    ) -> None:
+        """Raises ModelError for names that are missing or unknown, and for an impossible body."""
+        self.derivation = derivation
+        self.names = {a.name: a.names for a in derivation.arguments}
+        self.coordinates = self.names["q"]
+        self.count = len(self.coordinates)
+        self.is_euler = self.names["y"][self.count :] == self.names["omega_body"]
+        self.parameters = self._parameters(parameters)
+        alone = derivation.forces is None or not derivation.forces.parts
+        self.is_alone = alone  # so that a quaternion can take the place of the coordinates
+        self.kernels: ModuleType = generate(derivation, "numpy", conversions=alone).load()
+        self.constants = self.given("state_derivative")
+        self.start = self._start(initial)
+        if (
+            np.abs(self.rotation(self.start) @ self.rotation(self.start).T - np.eye(3)).max()
+            > _UNIT
+        ):
+            values = ", ".join(f"{n} = {initial[n]}" for n in self.coordinates)
+            raise ModelError(f"{derivation.name}: no rotation has the coordinates {values}")
+
+    def _parameters(self, given: Mapping[str, float]) -> list[float]:
+        constants = self.names.get("parameters", ())
+        needed = [name for name in constants if sp.Symbol(name) in self._symbols]
+        check_names("parameters", given, needed, constants)
+        values = [float(given.get(name, 1.0)) for name in constants]
+        body = self.derivation.body
+        if body is not None:  # made with values for its parameters, it checks its moments
+            by_name = dict(zip(constants, values, strict=True))
+            replace(
+                body,
+                parameters=tuple(replace(p, value=by_name[p.symbol.name]) for p in body.parameters),
+            )
+        return values
+
+    @property
+    def _symbols(self) -> set[sp.Basic]:
+        """What the motion depends on; the mass of a body about a fixed point may not be in it."""
+        body = self.derivation.body
+        held = [self.derivation.step(name).expression for name in ("state_derivative", "energy")]
+        held += [body.inertia] if body else []
+        return set().union(*(expression.free_symbols for expression in held))
+
+    def _start(self, initial: Mapping[str, ArrayLike]) -> Array:
+        """The state at t = 0, from coordinates and rates by name or the angular velocity."""
+        rates = (OMEGA,) if OMEGA in initial else self.names["q_dot"]
+        wanted = (*self.coordinates, *rates)
+        known = (*self.coordinates, *self.names["q_dot"], OMEGA)
+        check_names("initial values", initial, wanted, wanted if OMEGA in initial else known)
+        q = np.array([initial[name] for name in self.coordinates], float)
+        given = np.array(
+            initial[OMEGA] if OMEGA in initial else [initial[name] for name in rates], float
+        )
+        if OMEGA in initial and given.shape != (3,):
+            raise ModelError(f"{OMEGA}: expected three components, got {initial[OMEGA]}")
+        if OMEGA in initial and not self.is_euler:
+            given = self.kernels.rates_from_angular_velocity_body(q, given, *self.angles)
+            if not np.isfinite(given).all():
+                raise ModelError(
+                    f"{self.derivation.name}: the motion starts at a pole of the coordinates, "
+                    f"where the rates do not follow from {OMEGA}; expected rates, or a rotation "
+                    "without this pole, such as unit_quaternion"
+                )
+        elif OMEGA not in initial and self.is_euler:
+            given = self.kernels.angular_velocity_body(q, given, *self.angles)
+        return np.concatenate([q, given])
+
+    def given(self, function: str) -> list[float]:
+        """The parameters, if a function takes them."""
+        step = self.derivation.step(function)
+        return self.parameters if "parameters" in step.quantity.inputs else []
+
+    @property
+    def angles(self) -> list[list[float]]:
+        """The parameters as the functions of a rotation with constants take them."""
+        return [self.parameters] if self.derivation.model.constants else []
+
+    def slopes(self, t: float, y: Array) -> Array:
+        """The derivative of one state."""
+        return np.array(self.kernels.state_derivative_scalar(t, *y.tolist(), *self.constants))
+
+    def margin(self, y: Array) -> float:
+        """The distance from a pole of the coordinates; 1 if there is none."""
+        found = getattr(self.kernels, "singularity_margin_scalar", None)
+        if found is None or not self.is_alone:
+            return 1.0
+        return float(found(*y[: self.count].tolist(), *self.angles[:1]))
+
+    def rotation(self, y: Array) -> Array:
+        return np.asarray(self.kernels.rotation_matrix(y[..., : self.count], *self.angles))
+
+    def omega(self, y: Array) -> Array:
+        """Ω′ of states, (..., 3)."""
+        q, rest = y[..., : self.count], y[..., self.count :]
+        if self.is_euler:
+            return rest
+        return np.asarray(self.kernels.angular_velocity_body(q, rest, *self.angles))
+
+    @cached_property
+    def inertia(self) -> Array:
+        """I′ in numbers, (3, 3)."""
+        body = self.derivation.body
+        assert body is not None
+        symbols = map(sp.Symbol, self.names.get("parameters", ()))
+        values = dict(zip(symbols, self.parameters, strict=True))
+        return np.array(body.inertia.xreplace(values).tolist(), float)
+
+    def trajectory(
+        self, t: Array, states: Array, ended: str = "", remarks: Sequence[str] = ()
+    ) -> Trajectory:
+        q, omega = states[:, : self.count], self.omega(states)
+        rates = states[:, self.count :]
+        if self.is_euler:
+            rates = self.kernels.rates_from_angular_velocity_body(q, omega, *self.angles)
+        return Trajectory(
+            name=self.derivation.name,
+            coordinates=self.coordinates,
+            t=t,
+            q=q,
+            q_dot=rates,
+            angular_velocity_body=omega,
+            rotation_matrix=self.rotation(states),
+            first_integrals=self._integrals(states),
+            inertia=self.inertia,
+            ended=ended,
+            remarks=tuple(remarks),
+        )
+
+    def _integrals(self, states: Array) -> dict[str, Array]:
+        names = [integral.name for integral in self.derivation.first_integrals]
+        if not names:
+            return {}
+        constants = self.given("first_integrals")
+        values = self.kernels.first_integrals(states, *([constants] if constants else []))
+        return dict(zip(names, values.T, strict=True))
+
+
+def check_names(
+    what: str, given: Mapping[str, Any], wanted: Sequence[str], known: Sequence[str]
+) -> None:
+    """All that is missing at once, and the first that is unknown."""
+    missing = [name for name in wanted if name not in given]
+    if missing:
+        raise ModelError(f"missing {what}: {', '.join(missing)}")
+    for name in given:
+        if name not in known:
+            raise ModelError(f"unknown {what}: {name}; {offer(name, known)}")
