@@ -104,7 +104,7 @@ class Motion(Derivation):
 
     def simulate(
         self,
-        initial: Mapping[str, float],
+        initial: Mapping[str, Any],
         parameters: Mapping[str, float],
         t_end: float,
         **options: Any,
@@ -215,7 +215,7 @@ def derive(
             raise QuantityError(f"no quantity {name!r}; {offer(name, QUANTITIES)}")
     with nullcontext() if timeout is None else time_limit(timeout):
         acting = None
-        given = {
+        given: dict[str, Any] = {
             **{"potential": potential, "forces": forces, "torque": torque, "method": method},
             **{"first_integrals": first_integrals, "parts": parts},
         }

@@ -23,7 +23,7 @@ _NONE: Mapping[Any, sp.Expr] = MappingProxyType({})
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Part:
+class MovingPart:
     """What moves with the body: another body that turns about the fixed point, or a particle.
 
     Of a body, its rotation, in some of the same coordinates, and its principal moments; of a
@@ -48,7 +48,7 @@ class Forces:
     torque: tuple[sp.Expr, ...] = ()  # N′ beside them, in body components, N m; three or none
     first_integrals: Mapping[str, sp.Expr] = field(default_factory=lambda: _NONE)  # claimed
     method: str = ""  # one of METHODS; "": Lagrange's where the coordinates are free
-    parts: tuple[Part, ...] = ()
+    parts: tuple[MovingPart, ...] = ()
 
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
@@ -104,16 +104,18 @@ def forces_on(
     )
 
 
-def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> Part:
+def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
     """Another body, {"rotation", "principal_moments"}, or a particle, {"velocity", "mass"}."""
+    velocity: Sequence[Any] = ()
+    rotation = None
     if given.keys() == {"rotation", "principal_moments"}:
         rotation = rotation_from(given["rotation"])
         strange = [str(q.func) for q in rotation.coordinates if q not in names.values()]
         if strange:
             raise ModelError(f"a part turns by {strange[0]}, which is no coordinate of the body")
-        velocity, inertia = (), given["principal_moments"]
+        inertia = given["principal_moments"]
     elif given.keys() == {"velocity", "mass"}:
-        rotation, velocity, inertia = None, given["velocity"], [given["mass"]] * 3
+        velocity, inertia = given["velocity"], [given["mass"]] * 3
     else:
         raise ModelError(
             f"a part with {', '.join(given) or 'nothing'}; expected rotation and "
@@ -121,7 +123,7 @@ def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> Part:
         )
     if len(inertia) != 3 or len(velocity) not in (0, 3):
         raise ModelError("a part has three principal moments, or three components of velocity")
-    return Part(
+    return MovingPart(
         rotation=rotation,
         velocity=tuple(_read(component, names) for component in velocity),
         inertia=tuple(_read(moment, names) for moment in inertia),

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import ArrayLike
 
 from rigidsym.errors import ModelError, offer
 from rigidsym.kernels.module import generate
@@ -28,7 +27,7 @@ class Problem:
     def __init__(
         self,
         derivation: Derivation,
-        initial: Mapping[str, ArrayLike],
+        initial: Mapping[str, Any],
         parameters: Mapping[str, float],
     ) -> None:
         """Raises ModelError for names that are missing or unknown, and for an impossible body."""
@@ -72,7 +71,7 @@ class Problem:
         held += [body.inertia] if body else []
         return set().union(*(expression.free_symbols for expression in held))
 
-    def _start(self, initial: Mapping[str, ArrayLike]) -> Array:
+    def _start(self, initial: Mapping[str, Any]) -> Array:
         """The state at t = 0, from coordinates and rates by name or the angular velocity."""
         rates = (OMEGA,) if OMEGA in initial else self.names["q_dot"]
         wanted = (*self.coordinates, *rates)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rigidsym.errors import DerivationError, MissingExtra, ModelError, offer
 from rigidsym.mechanics.derivation import Derivation
@@ -25,7 +24,7 @@ Progress = Callable[[float], None]
 
 def simulate(
     derivation: Derivation,
-    initial: Mapping[str, ArrayLike],
+    initial: Mapping[str, Any],
     parameters: Mapping[str, float],
     t_end: float,
     *,
@@ -111,6 +110,8 @@ def _integrated(
         solved = _solve(attitude.slopes, start, rest, progress, options, None, at)
         before = np.concatenate([*found, state[None]])
         found.append(attitude.states(before, solved.y.T))
+        if at == 0:
+            found[-1][0] = problem.start  # its rates are known, even at the pole
         ended = _ending(name, solved)
     states = np.concatenate(found)
     return problem.trajectory(times[: len(states)], states, ended, remarks)

@@ -65,4 +65,5 @@ class Trajectory:
 
 def _drift(values: Array) -> float:
     size = abs(float(values[0])) or 1.0
-    return float(np.abs(values - values[0]).max()) / size
+    changes = np.abs(values - values[0])
+    return float(np.nanmax(changes)) / size  # NaN where rates are not defined, at a pole

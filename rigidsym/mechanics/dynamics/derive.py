@@ -17,7 +17,7 @@ from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form
 from rigidsym.mechanics.derivation import FirstIntegral, Found
 from rigidsym.mechanics.dynamics.euler import EulerEquations
-from rigidsym.mechanics.dynamics.flow import Block, Flow
+from rigidsym.mechanics.dynamics.flow import StateBlock, Flow
 from rigidsym.mechanics.dynamics.lagrange import Lagrange, is_free
 from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.quantities import dynamics as claims
@@ -45,11 +45,11 @@ class LagrangeEquations(Flow):
         self.work = work
 
     @cached_property
-    def blocks(self) -> tuple[Block, Block]:
+    def blocks(self) -> tuple[StateBlock, StateBlock]:
         work = self.work
         return (
-            Block(work.model.coordinates, work.q_dot, work.ring.one),
-            Block(work.rates, *work.solved),
+            StateBlock(work.model.coordinates, work.q_dot, work.ring.one),
+            StateBlock(work.rates, *work.solved),
         )
 
     @cached_property

@@ -19,7 +19,7 @@ from rigidsym.algebra.squares import half_form
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import FirstIntegral, Found
-from rigidsym.mechanics.dynamics.flow import Block, Flow, solved_euler
+from rigidsym.mechanics.dynamics.flow import StateBlock, Flow, solved_euler
 from rigidsym.mechanics.kinematics.workspace import Values, encoded
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.models.body import RigidBody
@@ -75,12 +75,12 @@ class EulerEquations(Flow):
         return given.scale(below) + turning, below
 
     @cached_property
-    def blocks(self) -> tuple[Block, Block]:
+    def blocks(self) -> tuple[StateBlock, StateBlock]:
         rates = encoded(self.codec, self._inverse) @ self.omega
         slopes, below = solved_euler(self.inertia, self.omega, *self.torque)
         return (
-            Block(self.model.coordinates, rates, self.codec.encode(self._divisor)),
-            Block(OMEGA_BODY, slopes, below),
+            StateBlock(self.model.coordinates, rates, self.codec.encode(self._divisor)),
+            StateBlock(OMEGA_BODY, slopes, below),
         )
 
     @cached_property
@@ -127,9 +127,9 @@ class EulerEquations(Flow):
         along = [("angular_momentum_body", in_body, "L'_{}")]
         if self.model.pullback is None:  # else R and its derivatives are long in this ring
             along.insert(0, ("angular_momentum", in_space, "L_{}"))
-        for name, entries, symbol in along:
+        for name, entries, typed in along:
             for k in range(3):
-                candidates[f"{name}_{k + 1}"] = (formula(symbol.format(k + 1)), entries[k])
+                candidates[f"{name}_{k + 1}"] = (formula(typed.format(k + 1)), entries[k])
         for name, (symbol, value) in candidates.items():
             residual, divisor = self.rate(value)
             if residual.is_zero():

@@ -32,7 +32,7 @@ from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel
 
 
-class Block(NamedTuple):
+class StateBlock(NamedTuple):
     """A part of the state, and its time derivative as numerators over one divisor."""
 
     symbols: Sequence[sp.Expr]
@@ -69,7 +69,7 @@ class Flow:
         return RingMatrix.column(self.codec.ring, map(self.codec.encode, entries))
 
     @property
-    def blocks(self) -> tuple[Block, Block]:
+    def blocks(self) -> tuple[StateBlock, StateBlock]:
         raise NotImplementedError
 
     def rate(self, value: sp.Expr) -> tuple[RingMatrix, PolyElement]:

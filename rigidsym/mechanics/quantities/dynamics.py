@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from rigidsym.formula.reader import formula
-from rigidsym.formula.symbol_names import named
+from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.energy import ROTATIONAL
