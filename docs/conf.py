@@ -21,9 +21,9 @@ html_title = f"rigidsym {version}"
 html_extra_path = ["derivation.schema.json"]
 if (built := Path(__file__).parents[1] / "build" / "gallery").is_dir():
     html_extra_path.append(str(built))
+exclude_patterns = ["_build"]
 
 html_static_path = ["_static"]
 html_css_files = ["notes.css"]
 html_math_renderer = "mathml"
 html_show_sphinx = False
-exclude_patterns = ["_build"]

@@ -8,7 +8,12 @@ from collections.abc import Iterable, Sequence
 from types import NoneType
 
 import click
-from gallery import rotation_gallery, solid_gallery  # noqa: F401
+from gallery import (  # noqa: F401
+    conventions_gallery,
+    motions_gallery,
+    parametrisations_gallery,
+    solids_gallery,
+)
 from literature import (  # noqa: F401
     bodies_of_literature,
     kinematics_of_literature,

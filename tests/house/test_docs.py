@@ -23,6 +23,8 @@ import jsonschema
 import pytest
 
 from helpers.command import ROOT
+from rigidsym.models.euler_angles import EULER_SEQUENCES
+from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.solids import SHAPES
 from rigidsym.pipeline import vocabulary
 from rigidsym.spec import body_table, derivation_file, rotation_table
@@ -192,11 +194,45 @@ def test_the_schema_refuses_what_the_reader_refuses(text, schema):
 # the gallery
 
 
-def test_the_gallery_writes_the_files_of_an_item(tmp_path, monkeypatch):
+@pytest.fixture
+def gallery(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(DOCS))
-    item = importlib.import_module("gallery").Item("ZXZ")
-    name = item.write(tmp_path, pdf=False)
-    endings = {".html", "_page.html", ".py", ".c", ".h", ".mjs"}
-    assert {path.name.removeprefix(name) for path in (tmp_path / name).iterdir()} >= endings
-    assert item.entry().count("<svg") == 1
-    assert "<mi>θ</mi>" in item.entry()
+    module = importlib.import_module("gallery")
+    monkeypatch.setattr(module, "BUILT", tmp_path)
+    monkeypatch.setattr(module, "ENTRIES", tmp_path / "entries")
+    return module
+
+
+def test_the_gallery_writes_the_files_of_an_item(gallery, tmp_path):
+    item = gallery.Item("ZXZ")
+    derived = item.entry()
+    name = item.write(pdf=False)
+    endings = {".html", "_page.html", ".tex", ".py", ".c", ".h", ".mjs", ".json"}
+    written = {path.name.removeprefix(name) for path in (tmp_path / "gallery" / name).iterdir()}
+    assert written >= endings
+    assert item.entry().startswith(derived.strip())
+    assert derived.count("<svg") == 1
+    assert "<mi>θ</mi>" in derived
+
+
+def test_an_entry_of_other_code_is_not_used(gallery, monkeypatch):
+    item = gallery.Item("rod", "solid")
+    item.write(pdf=False)
+    made = next(gallery.ENTRIES.iterdir())
+    made.write_text(made.read_text(encoding="utf-8").replace("polyline", "old"), encoding="utf-8")
+    assert "old" in item.entry()
+    monkeypatch.setattr(gallery, "state_of_the_code", lambda: "other")
+    assert "old" not in item.entry()
+
+
+def test_the_gallery_has_every_rotation_solid_and_shipped_file(gallery):
+    found = {item.name for item in gallery.everything()}
+    shipped = {path.stem for path in ROOT.glob("derivations/*.toml")}
+    assert found >= {*EULER_SEQUENCES, *PARAMETRISATIONS, *PRESETS, *SHAPES} - {"tetrahedron"}
+    assert found >= shipped - {"euler_all", "euler_zxz"}  # those are conventions
+
+
+def test_every_solid_has_a_drawing(gallery):
+    for shape in SHAPES:
+        if shape != "tetrahedron":
+            assert gallery.wireframe(shape).count("<polyline") >= 1
