@@ -25,7 +25,7 @@ from rigidsym.mechanics.quantities.dynamics import (
 )
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES
-from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
 from rigidsym.models.forces import forces_on
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from rigidsym.simulation.trajectory import Trajectory
 
 QUANTITIES = (
-    *(*QUANTITY_NAMES, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES),
+    *(*QUANTITY_NAMES, BODY_ALONE, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES),
     *dict.fromkeys((*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES)),
 )
 

@@ -11,7 +11,7 @@ from rigidsym.formula.unicode_pen import columns
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import quantities
-from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
@@ -71,9 +71,12 @@ def _solids() -> list[str]:
 
 def _quantities() -> list[str]:
     return [
-        f"{quantity.name:<34} {_padded(quantity.symbol.text, 15)} {quantity.about}"
-        for table in (quantities(passive=False), INERTIA_QUANTITIES, ENERGY_QUANTITIES)
-        for quantity in table.values()
+        f"{BODY_ALONE:<50} all quantities that a body has without a rotation",
+        *(
+            f"{quantity.name:<34} {_padded(quantity.symbol.text, 15)} {quantity.about}"
+            for table in (quantities(passive=False), INERTIA_QUANTITIES, ENERGY_QUANTITIES)
+            for quantity in table.values()
+        ),
     ]
 
 

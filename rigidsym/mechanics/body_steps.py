@@ -17,7 +17,7 @@ from rigidsym.mechanics.mass import derive as mass
 from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES, OF_BODY_ALONE
 from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.distribution import Distribution
 from rigidsym.models.forces import Forces
@@ -40,7 +40,8 @@ def steps_of_body(
         whole = forces.with_parameters(whole, model)
     values = (NamedRotation if turns else Values)(model, whole, also=energy.OF_PARTICLES)
     found = dict(mass.steps(values, [n for n in INERTIA_QUANTITIES if not only or n in only]))
-    absent = [name for name in INERTIA_QUANTITIES if name in only and name not in found]
+    asked = set(only) - (set(OF_BODY_ALONE) if BODY_ALONE in only else set())
+    absent = [name for name in INERTIA_QUANTITIES if name in asked and name not in found]
     if absent:
         reasons = (f"no quantity {name}: {mass.WITHOUT[name]}" for name in absent)
         raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")

@@ -38,7 +38,7 @@ from rigidsym.mechanics.quantities.dynamics import (
 )
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES, quantities
-from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES, OF_BODY_ALONE
 from rigidsym.mechanics.singularities.derive import singularities_of
 from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.distribution import Distribution
@@ -74,6 +74,8 @@ def derive(
         wanted = only and {*only, *NEEDED}
         return with_theory(derive(model, wanted, body=body, forces=forces))
     _check_names(only, has_body=body is not None, has_forces=forces is not None)
+    if BODY_ALONE in only:
+        only = {*only, *OF_BODY_ALONE}
     turns = TurnByTurn(model) if is_shorter(model) else None
     values = Values(model)
     turning = [name for name in only if name in QUANTITY_NAMES]
@@ -134,7 +136,7 @@ def _resting_on(
 
 
 def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:
-    of_body = (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if has_body else ()
+    of_body = (BODY_ALONE, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if has_body else ()
     of_motion = (*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES) if has_forces else ()
     known = (*QUANTITY_NAMES, *of_body, *of_motion)
     unknown = ", ".join(name for name in only if name not in known)

@@ -78,13 +78,17 @@ def note(
     document = composer.document
     if notation.frames != FRAMES:
         document = document.changed(lambda text: tuple(map(notation.named, text)))
-    return Note(in_style(document, style))
+    return Note(in_style(document, style, is_short=composer.is_short))
 
 
 def _composer_of(derivation: Derivation) -> type[Composer]:
-    """What composes the note of a derivation, with its theory or without."""
-    if not derivation.theory:
-        return Composer
-    from rigidsym.notes.sections.lecture_note import LectureComposer
+    """What composes the note of a derivation, with its theory, its body, or without."""
+    if derivation.theory:
+        from rigidsym.notes.sections.lecture_note import LectureComposer
 
-    return LectureComposer
+        return LectureComposer
+    if derivation.body is not None:
+        from rigidsym.notes.sections.body_note import BodyComposer
+
+        return BodyComposer
+    return Composer

@@ -18,6 +18,7 @@ from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document.document import Document, Equation, Paragraph, Text, words
+from rigidsym.notes.figure.body_mesh import own_shape
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
 from rigidsym.notes.prose.singular_words import singular
@@ -26,7 +27,6 @@ from rigidsym.notes.prose.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of
 from rigidsym.page.copies import LANGUAGES, copies_of
 from rigidsym.page.functions import Functions, functions_of
-from rigidsym.page.own_body import own_shape
 from rigidsym.page.shapes import SHAPES, as_data
 from rigidsym.page.stage import has_turns, label, shown_angles, stage_of
 from rigidsym.system import resources

@@ -6,49 +6,31 @@ Each shape is made of closed pieces whose faces, seen from outside, run counterc
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from math import cos, pi, sin
 from typing import Any
 
-Point = tuple[float, float, float]
-Color = tuple[int, int, int]
+from rigidsym.notes.figure.body_mesh import BLUE, BRONZE, GOLD, GREY, RED, Color, Face, Shape
+from rigidsym.notes.figure.camera import Vector
 
-WHITE, PAGES = (246, 244, 238), (236, 228, 206)
-BLUE, NAVY = (58, 110, 190), (36, 70, 130)
-GOLD, BRONZE = (226, 182, 74), (196, 146, 56)
-RED, GREY = (204, 72, 58), (176, 182, 190)
-HOLE = (52, 54, 60)
-
-
-@dataclass(frozen=True, slots=True)
-class Face:
-    """A flat polygon, counterclockwise as seen from outside."""
-
-    corners: tuple[Point, ...]
-    color: Color
-
-
-Shape = tuple[Face, ...]
+WHITE, PAGES, NAVY = (246, 244, 238), (236, 228, 206), (36, 70, 130)
 
 
 def book() -> Shape:
     """A cuboid with three different moments of inertia: cover up, spine to the left."""
-    half = (0.62, 0.86, 0.13)
-    left, bottom, top = BLUE, NAVY, BLUE
-    plain = _cuboid(half, (PAGES, left, PAGES, PAGES, top, bottom))
-    cover = [face for face in plain if face.corners[0][2] == face.corners[2][2] > 0]
-    rest = [face for face in plain if face not in cover]
-    columns, rows = (-0.62, -0.4, 0.4, 0.62), (-0.86, 0.2, 0.62, 0.86)
-    tiles = (
+    x, y, z = 0.62, 0.86, 0.13
+    block = _prism([(-x, -y), (x, -y), (x, y), (-x, y)], -z, z, PAGES)
+    _, back, near, right, far, spine = block
+    columns, rows = (-x, -0.4, 0.4, x), (-y, 0.2, 0.62, y)
+    cover = (
         Face(
-            ((x0, y0, half[2]), (x1, y0, half[2]), (x1, y1, half[2]), (x0, y1, half[2])),
+            ((x0, y0, z), (x1, y0, z), (x1, y1, z), (x0, y1, z)),
             WHITE if (x0, y0) == (-0.4, 0.2) else BLUE,
         )
         for x0, x1 in pairwise(columns)
         for y0, y1 in pairwise(rows)
     )
-    return (*rest, *tiles)
+    return (Face(back.corners, NAVY), near, right, far, Face(spine.corners, BLUE), *cover)
 
 
 def coin() -> Shape:
@@ -99,7 +81,7 @@ SHAPES: Mapping[str, Callable[[], Shape]] = {
 
 def as_data(shape: Shape) -> dict[str, Any]:
     """The shape by indices: points, colours, and faces as [colour, corner, corner, ...]."""
-    points: dict[Point, int] = {}
+    points: dict[Vector, int] = {}
     colors: dict[Color, int] = {}
     faces = [
         [
@@ -111,31 +93,9 @@ def as_data(shape: Shape) -> dict[str, Any]:
     return {"points": [*points], "colors": [*colors], "faces": faces}
 
 
-def _rounded(point: Point) -> Point:
+def _rounded(point: Vector) -> Vector:
     x, y, z = (round(part, 3) + 0.0 for part in point)
     return (x, y, z)
-
-
-def _cuboid(half: Point, colors: Sequence[Color]) -> Shape:
-    """A cuboid about the origin; colours of its faces at x > 0, x < 0, y > 0, and so on."""
-    a, b, c = half
-    signs = (-1, 1)
-    corners = {(i, j, k): (i * a, j * b, k * c) for i in signs for j in signs for k in signs}
-    around = ((-1, -1), (1, -1), (1, 1), (-1, 1))
-    faces = []
-    for place, color in enumerate(colors):
-        axis, side = divmod(place, 2)
-        sign = 1 - 2 * side
-        ring = [_inserted(axis, sign, p, q) for p, q in around]
-        faces.append(Face(tuple(corners[key] for key in (ring if sign > 0 else ring[::-1])), color))
-    return tuple(faces)
-
-
-def _inserted(axis: int, sign: int, p: int, q: int) -> tuple[int, int, int]:
-    """The signs of a corner: along the axis, and along the two that follow it cyclically."""
-    key = [0, 0, 0]
-    key[axis], key[(axis + 1) % 3], key[(axis + 2) % 3] = sign, p, q
-    return (key[0], key[1], key[2])
 
 
 def _revolved(

@@ -17,8 +17,8 @@ from scipy.spatial.transform import Rotation
 import rigidsym as rs
 from rigidsym.models.distribution import Composite, Part, Particle, Particles
 from rigidsym.models.solids import SHAPES as SOLIDS, shaped
-from rigidsym.page.own_body import lengths_of, meshed, own_shape
-from rigidsym.page.shapes import HOLE, SHAPES, Shape, as_data
+from rigidsym.notes.figure.body_mesh import HOLE, Shape, lengths_of, meshed, own_shape
+from rigidsym.page.shapes import SHAPES, as_data
 from rigidsym.system import resources
 
 LINES = ("rod", "ring")

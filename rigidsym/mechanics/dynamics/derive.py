@@ -17,7 +17,7 @@ from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form
 from rigidsym.mechanics.derivation import FirstIntegral, Found
 from rigidsym.mechanics.dynamics.euler import EulerEquations
-from rigidsym.mechanics.dynamics.flow import StateBlock, Flow
+from rigidsym.mechanics.dynamics.flow import Flow, StateBlock
 from rigidsym.mechanics.dynamics.lagrange import Lagrange, is_free
 from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.quantities import dynamics as claims

@@ -19,7 +19,7 @@ from rigidsym.algebra.squares import half_form
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import FirstIntegral, Found
-from rigidsym.mechanics.dynamics.flow import StateBlock, Flow, solved_euler
+from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, solved_euler
 from rigidsym.mechanics.kinematics.workspace import Values, encoded
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.models.body import RigidBody

@@ -81,6 +81,8 @@ INERTIA_QUANTITIES = read_table(
     },
     {"Steiner": STEINER},
 )
+BODY_ALONE = "body"  # asks for all that a body has without a rotation
+OF_BODY_ALONE = tuple(name for name, q in INERTIA_QUANTITIES.items() if "q" not in q.inputs)
 
 # Claims.
 

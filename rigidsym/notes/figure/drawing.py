@@ -128,11 +128,21 @@ def _half_width(symbol: Formula) -> float:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Facet:
+    """A face of a body as it is seen."""
+
+    points: tuple[Point, ...]
+    color: tuple[int, int, int]  # red, green, blue, of 255
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Drawing:
-    """What the pens draw: the sectors of turns, then strokes, then labels."""
+    """What the pens draw: a body, the sectors of turns, then strokes, then labels."""
 
     strokes: tuple[Stroke, ...]
     labels: tuple[Label, ...]
+    behind: tuple[Stroke, ...] = ()  # what the facets hide
+    facets: tuple[Facet, ...] = ()  # of a body, the farthest first
 
     @property
     def sectors(self) -> tuple[Ellipse, ...]:
@@ -142,7 +152,8 @@ class Drawing:
     @property
     def bounds(self) -> tuple[Point, Point]:
         """The lower left and the upper right corner of all that is drawn."""
-        points = [point for stroke in self.strokes for point in stroke.points]
+        points = [point for stroke in (*self.strokes, *self.behind) for point in stroke.points]
+        points += [point for facet in self.facets for point in facet.points]
         for box in (label.box for label in self.labels):
             x, y = box.centre
             points += [

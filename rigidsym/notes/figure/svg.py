@@ -36,9 +36,23 @@ def svg(drawing: Drawing, *, title: str, description: str, name: str) -> str:
 
 
 def _elements(drawing: Drawing) -> Iterator[str]:
+    yield from _strokes(drawing.behind)
+    for facet in drawing.facets:
+        color = "#" + "".join(f"{part:02x}" for part in facet.color)
+        yield f'<polygon fill="{color}" stroke="{color}" points="{_points(facet.points)}"/>'
     for arc in drawing.sectors:
         yield f'<polygon class="area turn" points="{_points((arc.centre, *arc.points))}"/>'
-    for stroke in drawing.strokes:
+    yield from _strokes(drawing.strokes)
+    for label in drawing.labels:
+        x, y = label.place
+        yield (
+            f'<text class="{label.kind}" x="{_number(x * _SCALE)}" y="{_number(-y * _SCALE)}" '
+            f'dy=".32em">{escape(as_in_formulas(label.symbol.text))}</text>'
+        )
+
+
+def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:
+    for stroke in strokes:
         names = [
             stroke.kind,
             *(["thin"] if stroke.is_thin else []),
@@ -47,12 +61,6 @@ def _elements(drawing: Drawing) -> Iterator[str]:
         yield f'<polyline class="{" ".join(names)}" points="{_points(stroke.points)}"/>'
         if stroke.has_arrow:
             yield f'<polygon class="head {stroke.kind}" points="{_points(_head(stroke))}"/>'
-    for label in drawing.labels:
-        x, y = label.place
-        yield (
-            f'<text class="{label.kind}" x="{_number(x * _SCALE)}" y="{_number(-y * _SCALE)}" '
-            f'dy=".32em">{escape(as_in_formulas(label.symbol.text))}</text>'
-        )
 
 
 def _head(stroke: Stroke) -> tuple[Point, ...]:

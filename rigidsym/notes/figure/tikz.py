@@ -9,7 +9,7 @@ from unicodedata import normalize
 
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.figure.camera import Point
-from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Ellipse, Stroke
+from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Ellipse, Facet, Stroke
 
 _EM = 0.3865  # cm, at 11 points
 _UNIT = _EM / TYPE_SIZE
@@ -28,7 +28,9 @@ def tikz(drawing: Drawing) -> str:
     return "\n".join(
         [
             rf"\begin{{tikzpicture}}[{options}, {_STYLES}]",
-            *_coordinates(drawing.strokes),
+            *_coordinates((*drawing.strokes, *drawing.behind)),
+            *_strokes(drawing.behind),
+            *_facets(drawing.facets),
             *_sectors(drawing.sectors),
             *_strokes(drawing.strokes),
             *(
@@ -57,6 +59,14 @@ def _named(axis: Formula) -> str:
 def _sectors(arcs: Iterable[Ellipse]) -> Iterator[str]:
     for arc in arcs:
         yield rf"\fill[turn, opacity=.1, {_plane(arc)}] (0,0) -- {_turned(arc)} -- cycle;"
+
+
+def _facets(facets: Iterable[Facet]) -> Iterator[str]:
+    for facet in facets:
+        red, green, blue = facet.color
+        color = f"{{rgb,255:red,{red};green,{green};blue,{blue}}}"
+        outline = " -- ".join(map(_point, facet.points))
+        yield rf"\filldraw[line width=.2pt, color={color}] {outline} -- cycle;"
 
 
 def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:

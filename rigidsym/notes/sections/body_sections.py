@@ -47,6 +47,7 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
     body = derivation.body
     if body is None:
         return
+    yield from _parameters(body, letters)
     match body.distribution:
         case Solid():
             yield from _solid(body.distribution, letters)
@@ -54,7 +55,8 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
             yield said("The body is composed of the following parts.")
             yield _parts(body.distribution.parts, letters)
             solids = (part.what for part in body.distribution.parts)
-            for solid in dict.fromkeys(what for what in solids if isinstance(what, Solid)):
+            kinds = {what.title: what for what in solids if isinstance(what, Solid)}
+            for solid in kinds.values():
                 yield from _solid(solid, letters)
         case Particles():
             yield _particles(body.distribution, letters)
@@ -67,6 +69,14 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
                 )
             )
     yield from _numbers(body, letters)
+
+
+def _parameters(body: RigidBody, letters: Letters) -> Iterator[NoteBlock]:
+    """What the letters of the body are; those with a value are in the table of numbers."""
+    told = [p for p in body.parameters if p.about and p.value is None]
+    if told:
+        first, *others = [(formula_of(p.symbol, letters), f" is the {p.about}") for p in told]
+        yield Paragraph(("Here ", *listed([first, *others]), "."))
 
 
 def _solid(solid: Solid, letters: Letters) -> Iterator[NoteBlock]:

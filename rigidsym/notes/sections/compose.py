@@ -20,7 +20,6 @@ from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
-from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.models.matrices import GIVEN
 from rigidsym.models.rotation import Citation, Turn
 from rigidsym.models.so3 import hat
@@ -84,6 +83,7 @@ class Composer:
     """
 
     of_the_body = ""  # ends titles that the theory has too
+    is_short = False  # whether the note does without tables at its end
 
     def __init__(
         self,
@@ -106,11 +106,15 @@ class Composer:
         self.said: set[str] = set()
 
     @property
+    def subtitle(self) -> str:
+        return self.derivation.subject
+
+    @property
     def document(self) -> Document:
         return Document(
             name=self.derivation.name,
             title=self.derivation.title,
-            subtitle=self.derivation.subject,
+            subtitle=self.subtitle,
             letters=self.letters,
             sections=tuple(self.sections()),
         )
@@ -166,11 +170,8 @@ class Composer:
         yield from blocks_of_conversions(self.conversions, has_functions=bool(self.module))
 
     def _body(self) -> Iterator[NoteBlock]:
-        if self.derivation.body is not None:
-            from rigidsym.notes.sections.body_sections import blocks_of_body
-
-            yield from blocks_of_body(self.derivation, self.letters)
-            yield from self._steps(tuple(INERTIA_QUANTITIES))
+        """What is said of a body; nothing here."""
+        return iter(())
 
     def _motion(self) -> Iterator[NoteBlock]:
         """Lagrange's and Euler's equations, and what is constant along every motion."""
@@ -312,7 +313,8 @@ class Composer:
     def _equation(self, step: Step) -> Equation:
         function = _call(step) if step.quantity.name in self.functions else ""
         equation = equation_of(step, self.derivation.arguments)
-        return replace(equation, function=function, is_result=step.quantity.name in RESULTS)
+        is_result = step.quantity.name in RESULTS
+        return replace(equation, function=function, is_result=is_result)
 
     def _proofs(self) -> Iterator[NoteBlock]:
         steps = self.derivation.steps

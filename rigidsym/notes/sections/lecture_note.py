@@ -17,9 +17,9 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.formula.summands import sums
 from rigidsym.notes.prose.words import with_source
+from rigidsym.notes.sections.body_note import BodyComposer
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
-from rigidsym.notes.sections.compose import Composer
 from rigidsym.notes.sections.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
@@ -40,7 +40,7 @@ _METHOD = (
 )
 
 
-class LectureComposer(Composer):
+class LectureComposer(BodyComposer):
     """The sections of the theory, of the rotation, of the body."""
 
     of_the_body = " of the body"

@@ -19,21 +19,23 @@ _VERIFIED = {
 }
 
 
-def in_style(document: Document, style: str) -> Document:
+def in_style(document: Document, style: str, *, is_short: bool = False) -> Document:
     """The document in a style; unproved claims stay in every one.
 
-    Raises ModelError for a name that is not one of STYLES.
+    A short note has no tables at its end, unless it is an audit. Raises ModelError for a name
+    that is not one of STYLES.
     """
     if style not in STYLES:
         raise ModelError(f"style is {', '.join(STYLES[:-1])} or {STYLES[-1]}, and not {style!r}")
     if style == "audit":
         return document
-    kept = [section for section in document.sections if section.title not in _LEFT_OUT[style]]
+    left_out = _LEFT_OUT["paper" if is_short else style]
+    kept = [section for section in document.sections if section.title not in left_out]
     identities = [replace(s, title=APPENDIX) for s in kept if s.title == IDENTITIES]
     others = [section for section in kept if section.title != IDENTITIES]
     if all(not equation.unproved for equation in document.equations):
         first, *rest = others
-        said = Paragraph((_VERIFIED[style],))
+        said = Paragraph((_VERIFIED["paper" if is_short else style],))
         others = [replace(first, blocks=(*first.blocks, said)), *rest]
     return replace(document, sections=tuple(map(_plain, (*others, *identities))))
 

@@ -11,6 +11,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import RATES
+from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
 from rigidsym.notes.document.document import (
     Code,
     CodeBlock,
@@ -42,7 +43,9 @@ _CODE_WIDTH = 76  # columns of typewriter type on a page
 def symbols(derivation: Derivation, letters: Letters) -> NoteTable:
     """Every symbol with what it means and its unit."""
     known: dict[str, Row] = {}
-    named = (_arguments, _constants, _of_the_body, partial(_length, letters), _points)
+    of_motion = (_arguments, partial(_length, letters), _points)
+    of_body = (_constants, _of_the_body)
+    named = of_body if is_body_alone(derivation) else (*of_motion[:1], *of_body, *of_motion[1:])
     for row in chain.from_iterable(rows(derivation) for rows in named):
         known.setdefault(str(row[0]), row)
     found = derivation.singularities
@@ -64,6 +67,11 @@ def symbols(derivation: Derivation, letters: Letters) -> NoteTable:
 
 
 Row = tuple[Text, ...]
+
+
+def is_body_alone(derivation: Derivation) -> bool:
+    """Whether nothing is derived of the rotation, so that a note leaves it out."""
+    return all(step.quantity.name in OF_BODY_ALONE for step in derivation.steps)
 
 
 def _arguments(derivation: Derivation) -> Iterator[Row]:

@@ -1,4 +1,4 @@
-"""The body of a derivation as a shape for the live page, meshed from its description.
+"""A body as flat faces, meshed from its description, for the figure of a note and the live page.
 
 A solid is a map of a box of coordinates; its surface is the image of the sides of the box, without
 those that shrink to lines and those that meet, as at the angles 0 and 2π.
@@ -7,17 +7,32 @@ those that shrink to lines and those that meet, as at the angles 0 and 2π.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import islice, pairwise, permutations, product
 from math import hypot, isfinite
+from typing import Any
 
 import sympy as sp
 
 from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Composite, Distribution, Part, Particles, Polyhedron, Solid
 from rigidsym.notes.figure.camera import Vector, combined, cross, dot, scaled, unit
-from rigidsym.page.shapes import BLUE, BRONZE, GOLD, GREY, HOLE, RED, Color, Face, Shape
 
+Color = tuple[int, int, int]
+BLUE, GOLD, GREY = (58, 110, 190), (226, 182, 74), (176, 182, 190)
+RED, BRONZE, HOLE = (204, 72, 58), (196, 146, 56), (52, 54, 60)
+
+
+@dataclass(frozen=True, slots=True)
+class Face:
+    """A flat polygon, counterclockwise as seen from outside."""
+
+    corners: tuple[Vector, ...]
+    color: Color
+
+
+Shape = tuple[Face, ...]
 Numbers = Mapping[sp.Symbol, sp.Float]
 Map = Callable[..., Vector]
 Evaluator = Callable[[Sequence[float]], float]
@@ -27,8 +42,8 @@ _SIZE = 0.95  # of the body drawn, from its centre of mass
 _LENGTHS = (1.0, 0.22, 0.3, 1.4, 0.6, 0.15, 0.8)  # of parameters without a value
 _TWO_LENGTHS = (0.6, 1.0)
 _MOST_TRIES = 500
-_ROUND, _CURVED = 20, 8  # divisions of a coordinate within sines, and of any other that bends
 _IN_MATH = {"Abs": "fabs"}  # the functions that Python's math names otherwise
+_ROUND, _CURVED = 20, 8  # divisions of a coordinate within sines, and of any other that bends
 _THICK = 0.03  # half the width of a line
 _PARTICLE = 0.09  # radius
 
@@ -47,7 +62,7 @@ def lengths_of(
 ) -> dict[sp.Symbol, sp.Float] | None:
     """The parameters with their values, or a suitable length if they have none."""
     known = {symbol: value for symbol, value in values.items() if value is not None}
-    missing = [symbol for symbol in values if symbol not in known and _holds(what, symbol)]
+    missing = [s for s in sorted(values, key=str) if s not in known and _holds(what, s)]
     lengths = _TWO_LENGTHS if len(missing) == 2 else _LENGTHS[: len(missing)]
     if len(missing) > len(lengths):
         return None
@@ -154,9 +169,9 @@ def _faces(what: Distribution, numbers: Numbers, color: Color) -> Iterator[Face]
     match what:
         case Particles():
             for particle in what.particles:
-                yield from _octahedron(_vector(particle.position, numbers), color)
+                yield from _octahedron(vector_of(particle.position.xreplace(numbers)), color)
         case Polyhedron():
-            corners = [_vector(vertex, numbers) for vertex in what.vertices]
+            corners = [vector_of(vertex.xreplace(numbers)) for vertex in what.vertices]
             yield from (Face(tuple(corners[k] for k in face), color) for face in what.faces)
         case Solid():
             yield from _of_solid(what, numbers, color)
@@ -165,14 +180,15 @@ def _faces(what: Distribution, numbers: Numbers, color: Color) -> Iterator[Face]
                 yield from _placed(part, numbers, HOLE if part.hole else tint)
 
 
-def _vector(column: sp.MatrixBase, numbers: Numbers) -> Vector:
-    x, y, z = (float(part) for part in column.xreplace(numbers))
+def vector_of(column: Iterable[Any]) -> Vector:
+    """Three numbers as floats."""
+    x, y, z = map(float, column)
     return (x, y, z)
 
 
 def _placed(part: Part, numbers: Numbers, color: Color) -> Iterator[Face]:
-    at = _vector(part.at, numbers)
-    axes = [_vector(part.turned[:, k], numbers) for k in range(3)]
+    at = vector_of(part.at.xreplace(numbers))
+    axes = [vector_of(part.turned[:, k].xreplace(numbers)) for k in range(3)]
     swell = 1.01 if part.hole else 1.0  # its rim is seen on the surface
     for face in _faces(part.what, numbers, color):
         moved = (combined((1, swell), (at, combined(corner, axes))) for corner in face.corners)

@@ -1,0 +1,116 @@
+"""Notes of bodies: in physical names, with a drawing, and of a body alone."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
+from rigidsym.motion import Motion
+from rigidsym.notes.document.document import Equation, Figure
+from rigidsym.notes.figure.body_drawing import body_drawing
+from rigidsym.notes.figure.body_mesh import HOLE
+from rigidsym.notes.sections.named_body import in_names
+from rigidsym.pipeline import motion_of, read_spec
+
+DRILLED = """
+[rotation]
+sequence = "ZXZ"
+[output]
+{quantities}
+[[body.parts]]
+shape = "box"
+sides = ["2*a", "b", "b/2"]
+density = "rho"
+[[body.parts]]
+shape = "cylinder"
+radius = "b/4"
+height = "b"
+density = "rho"
+at = [{at}, 0]
+hole = true
+"""
+
+
+@cache
+def drilled(at: str = "0, 0", quantities: str = "") -> Motion:
+    text = DRILLED.format(at=at, quantities=quantities)
+    return motion_of(read_spec(text, source="drilled.toml", name="drilled"))
+
+
+@cache
+def cone(*only: str) -> Motion:
+    return rs.derive("ZXZ", only, body=rs.solid("cone"))
+
+
+@pytest.mark.parametrize("motion", [drilled, cone], ids=["drilled", "cone"])
+def test_what_is_shown_in_names_has_the_value_that_was_derived(motion):
+    derived = motion()
+    shown, moments = in_names(derived)
+    values = dict(moments) | {sp.Symbol("M"): derived.body.mass}
+    rng = np.random.default_rng(1)
+    symbols = {s for argument in derived.arguments for s in argument.symbols}
+    numbers = {s: sp.Float(x) for s, x in zip(symbols, rng.uniform(0.3, 0.7, 99), strict=False)}
+    replaced = 0
+    for before, after in zip(derived.steps, shown.steps, strict=True):
+        replaced += before.expression != after.expression
+        named = after.expression.xreplace(values)
+        order = sorted(symbols, key=lambda s: -sp.count_ops(s))  # rates before coordinates
+        rest = named - before.expression
+        for symbol in order:
+            rest = rest.xreplace({symbol: numbers[symbol]})
+        assert max(map(abs, rest)) < 1e-12
+    assert replaced > 8
+
+
+def test_the_note_gives_each_moment_once_and_the_energy_by_the_moments():
+    equations = [
+        block
+        for section in cone().note().document.sections
+        for block in section.blocks
+        if isinstance(block, Equation)
+    ]
+    given = [name.text for e in equations if not e.sides for name in e.entries]
+    assert given.count("I₁") == given.count("I₃") == 1
+    energy = next(e for e in equations if e.label == "rotational_energy")
+    assert "I₁ Ω′₁² + I₁ Ω′₂² + I₃ Ω′₃²" in energy.sides[-1].text
+    assert {s.name for s in energy.scalar.free_symbols} == {"I_1", "I_3", "t"}
+
+
+def test_a_body_alone_has_a_note_without_a_rotation():
+    document = cone("body").note().document
+    labels = {equation.label for equation in document.equations}
+    assert labels <= set(OF_BODY_ALONE)
+    assert "inertia_tensor" in labels
+    assert [section.title for section in document.sections] == ["The body"]
+    assert any(isinstance(block, Figure) for block in document.sections[0].blocks)
+
+
+def test_the_body_is_drawn_from_the_back_with_its_holes_and_its_principal_axes():
+    drawing, is_principal = body_drawing(drilled())
+    assert is_principal
+    assert [label.symbol.text for label in drawing.labels] == ["x′", "y′", "z′"]
+    dark = max(HOLE)
+    holes = [max(facet.color) <= dark for facet in drawing.facets]
+    assert any(holes)
+    assert not all(holes)
+    areas = [_area(facet.points) for facet in drawing.facets]
+    assert all(area > 0 for area in areas)  # each is seen from outside
+
+
+def test_an_axis_that_is_no_coordinate_axis_is_named_after_its_moment():
+    motion = drilled('"a/2", "b/8"', 'quantities = ["body"]')
+    found = body_drawing(motion)
+    assert found is not None
+    drawing, is_principal = found
+    assert not is_principal
+    assert [label.symbol.text for label in drawing.labels] == ["I₁", "I₂", "I₃"]
+
+
+def _area(points: tuple[tuple[float, float], ...]) -> float:
+    x, y = np.array(points).T
+    return float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2)
