@@ -11,8 +11,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from rigidsym.formula.reader import formula
-from rigidsym.formula.symbol_names import named
+from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import MINUS, PLUS, Formula, bracketed, joined, row
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
