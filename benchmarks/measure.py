@@ -42,6 +42,7 @@ class Settings:
     repeats: int | None = None  # None: each benchmark's own
     size: int = 1_000_000  # orientations in a batch of the kernels
     samples: int = 40  # orientations of each kind whose errors are taken
+    files: int = 100  # inputs of each kind of the campaign "fuzz", kills of "kills"
     fresh: bool = False  # survey SymPy's forms anew
 
 

@@ -37,6 +37,8 @@ NAMES = (
     "bodies",
     "notes",
     "rosetta",
+    "fuzz",
+    "kills",
 )
 
 
@@ -86,6 +88,7 @@ def _settings(given: argparse.Namespace) -> Settings:
         repeats=given.repeats,
         size=given.size,
         samples=given.samples,
+        files=given.files,
         fresh=given.fresh,
     )
 
@@ -101,6 +104,7 @@ def _parser() -> argparse.ArgumentParser:
         ("--repeats", None, "of each measurement, instead of its own number"),
         ("--size", usual.size, "orientations in a batch of the kernels"),
         ("--samples", usual.samples, "orientations of each kind whose errors are taken"),
+        ("--files", usual.files, "inputs of each kind of fuzz, and kills"),
     ):
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)
     parser.add_argument(
