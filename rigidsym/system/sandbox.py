@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from time import monotonic
 from traceback import walk_tb
 from types import TracebackType
-from typing import Any, NoReturn
+from typing import Any, NoReturn, cast
 
 from jinja2 import (
     FunctionLoader,
@@ -15,25 +16,34 @@ from jinja2 import (
     TemplateError,
     TemplateNotFound,
     TemplateSyntaxError,
+    nodes,
 )
 from jinja2.exceptions import SecurityError
 from jinja2.runtime import Context
-from jinja2.sandbox import SandboxedEnvironment
+from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from rigidsym.errors import TemplateFault
 
 Find = Callable[[str], tuple[str, str]]  # name -> text, file
-_LONGEST = 20_000_000  # characters that one template may print
+_LONGEST = 20_000_000  # characters that one template may print, or put together
+_SECONDS = 60.0  # for one template
 _PADDING = frozenset({"center", "ljust", "rjust", "zfill", "expandtabs", "format", "format_map"})
 _PADDING |= {"replace", "join", "translate"}  # methods of text whose result may be of any length
-_REMOVED = ("batch", "center", "format", "indent", "pprint", "replace", "slice", "wordwrap")
+_FILTERS = (  # whose result is hardly longer than what they are given
+    *("abs", "attr", "capitalize", "count", "d", "default", "dictsort", "e", "escape", "first"),
+    *("float", "int", "items", "last", "length", "list", "lower", "map", "max", "min", "reject"),
+    *("rejectattr", "reverse", "round", "safe", "select", "selectattr", "sort", "string"),
+    *("striptags", "title", "trim", "truncate", "unique", "upper", "wordcount"),
+)
 
 
 class _BoundedTemplate(Template):
-    """A template whose output is bounded."""
+    """A template whose output is bounded, and its time."""
 
     def render(self, *arguments: Any, **names: Any) -> str:
         length, chunks = 0, []
+        assert isinstance(self.environment, SandboxedTemplates)
+        self.environment.begin()
         for chunk in self.generate(*arguments, **names):
             length += len(chunk)
             if length > _LONGEST:
@@ -42,14 +52,19 @@ class _BoundedTemplate(Template):
         return "".join(chunks)
 
 
-class SandboxedTemplates(SandboxedEnvironment):
-    """Templates found by a function; every fault in one is a TemplateFault."""
+class SandboxedTemplates(ImmutableSandboxedEnvironment):
+    """Templates found by a function; every fault in one is a TemplateFault.
 
-    intercepted_binops = frozenset({"*", "**", "%"})  # a short template could fill the memory
+    Time is looked at in each turn of a loop, at each call and at each inclusion; what happens
+    between two of them is bounded by the length of texts.
+    """
+
+    intercepted_binops = frozenset({"+", "*", "**", "%"})  # a short template could fill the memory
     template_class = _BoundedTemplate
 
     def __init__(self, find: Find, **options: Any) -> None:
         self._files: set[str] = set()
+        self._last = monotonic() + _SECONDS
         settings: dict[str, Any] = {
             "loader": FunctionLoader(lambda name: self._load(find, name)),
             "undefined": StrictUndefined,
@@ -59,10 +74,51 @@ class SandboxedTemplates(SandboxedEnvironment):
             "lstrip_blocks": True,
         }
         super().__init__(**(settings | options))
-        for name in _REMOVED:
-            del self.filters[name]
+        self.filters = {name: self.filters[name] for name in _FILTERS}
+        self.filters |= {"join": _joined, "_in_time": self._in_time, "_joined": _joined}
         for name in ("lipsum", "joiner", "cycler"):
             self.globals.pop(name, None)
+
+    def begin(self) -> None:
+        """The time of a template counts from now on."""
+        self._last = monotonic() + _SECONDS
+
+    def _tick(self) -> None:
+        if monotonic() > self._last:
+            raise SecurityError(f"it takes more than {_SECONDS:g} s")
+
+    def _in_time(self, items: Iterable[Any]) -> Iterator[Any]:
+        for item in items:
+            self._tick()
+            yield item
+
+    def _parse(self, source: str, name: str | None, filename: str | None) -> nodes.Template:
+        """As Jinja2 parses, with loops that look at the time, and `~` that looks at the length."""
+        tree = super()._parse(source, name, filename)
+        for loop in tree.find_all(nodes.For):
+            loop.iter = _filtered(loop.iter, "_in_time")
+        for parent in tree.find_all(nodes.Node):
+            for field, value in parent.iter_fields():
+                if isinstance(value, nodes.Concat):
+                    setattr(parent, field, _filtered(nodes.List(value.nodes), "_joined"))
+                elif isinstance(value, list):
+                    value[:] = [
+                        _filtered(nodes.List(each.nodes), "_joined")
+                        if isinstance(each, nodes.Concat)
+                        else each
+                        for each in value
+                    ]
+        return tree
+
+    def call(self, context: Context, called: Any, /, *arguments: Any, **names: Any) -> Any:
+        """A call in a template; macros may call one another."""
+        self._tick()
+        return super().call(context, called, *arguments, **names)
+
+    def get_template(self, *arguments: Any, **options: Any) -> Template:
+        """Also the templates that one includes."""
+        self._tick()
+        return super().get_template(*arguments, **options)
 
     def wrap_str_format(self, value: Any) -> None:
         """No formatting in place of `str.format`, which `is_safe_attribute` refuses."""
@@ -82,8 +138,12 @@ class SandboxedTemplates(SandboxedEnvironment):
         self._files.add(file)
         return text, file, None
 
-    def call_binop(self, _context: Context, operator: str, _left: Any, _right: Any) -> Any:
-        raise SecurityError(f"templates place text; {operator} is not for them")
+    def call_binop(self, _context: Context, operator: str, left: Any, right: Any) -> Any:
+        if operator != "+":
+            raise SecurityError(f"templates place text; {operator} is not for them")
+        if all(hasattr(value, "__len__") for value in (left, right)):
+            _check_length(len(left) + len(right))
+        return left + right
 
     def handle_exception(self, source: str | None = None) -> NoReturn:
         """Jinja2 comes here with every exception from a template."""
@@ -113,8 +173,25 @@ class SandboxedTemplates(SandboxedEnvironment):
     def _is_of_template(self, error: BaseException) -> bool:
         """Whether a template or Jinja2 raised it, and not the code that the template called."""
         *_, (frame, _) = walk_tb(error.__traceback__)
-        is_by_jinja = frame.f_globals.get("__name__", "").startswith("jinja2.")
+        is_by_jinja = frame.f_globals.get("__name__", "").startswith(("jinja2.", __name__))
         return is_by_jinja or frame.f_code.co_filename in self._files
+
+
+def _filtered(node: nodes.Node, name: str) -> nodes.Filter:
+    given = cast(nodes.Expr, node)
+    return nodes.Filter(given, name, [], [], None, None, lineno=node.lineno)
+
+
+def _joined(items: Iterable[Any], separator: str = "") -> str:
+    """Texts one after the other, if they are not too long together."""
+    texts = [str(item) for item in items]
+    _check_length(sum(map(len, texts)) + len(separator) * len(texts))
+    return separator.join(texts)
+
+
+def _check_length(length: int) -> None:
+    if length > _LONGEST:
+        raise SecurityError(f"it makes more than {_LONGEST} characters")
 
 
 def _names_at(trace: TracebackType | None, common: set[str]) -> list[str]:

@@ -65,6 +65,9 @@ def test_an_own_template_may_include_others(tmp_path: Path):
         ("{{ 'a'|center(9999999999) }}", 1, "No filter named 'center'"),
         ("{{ '{:9999999999}'.format(1) }}", 1, "unsafe"),
         ("{{ lipsum(n=999999) }}", 1, "'lipsum' is undefined"),
+        ("{{ ['a'].append('b') }}", 1, "access to attribute 'append'"),
+        ("\n{% for x in 1 %}{% endfor %}", 2, "'int' object is not iterable"),
+        ("{{ title|tojson }}", 1, "No filter named 'tojson'"),
         ("{{ 'a' * 9999999999 }}", 1, "templates place text; * is not for them"),
     ],
 )
@@ -80,6 +83,42 @@ def test_the_output_of_a_template_is_bounded(tmp_path: Path):
     text = loop * 3 + "xxxxxxxxxx" + "{% endfor %}" * 3
     with pytest.raises(TemplateFault, match="it prints more than 20000000 characters"):
         html_with(tmp_path, text)
+
+
+GROWING = (
+    "{% set all = namespace(x='ab') %}{% for i in range(90) %}{% set all.x = GROWN %}{% endfor %}"
+)
+
+
+@pytest.mark.parametrize(
+    "grown", ["all.x ~ all.x", "all.x + all.x", "(all.x, all.x)|join", "all.x ~ ' ' ~ all.x"]
+)
+def test_what_a_template_puts_together_is_bounded(tmp_path: Path, grown):
+    with pytest.raises(TemplateFault, match="it makes more than 20000000 characters"):
+        html_with(tmp_path, GROWING.replace("GROWN", grown))
+
+
+@pytest.mark.parametrize(
+    "endless",
+    [
+        "{% for a in range(99999) %}{% for b in range(99999) %}{% endfor %}{% endfor %}",
+        "{% macro twice(n) %}{% if n %}{{ twice(n - 1) }}{{ twice(n - 1) }}{% endif %}"
+        "{% endmacro %}{{ twice(60) }}",
+        "{% set all = namespace(depth=n|default(0)) %}"
+        "{% if depth|default(60) %}{% set depth = depth|default(60) - 1 %}"
+        "{% include 'note.html.jinja' %}{% include 'note.html.jinja' %}{% endif %}",
+    ],
+    ids=["loops", "macros", "inclusions"],
+)
+def test_the_time_of_a_template_is_bounded_from_python_too(tmp_path: Path, endless, monkeypatch):
+    monkeypatch.setattr("rigidsym.system.sandbox._SECONDS", 0.3)
+    with pytest.raises(TemplateFault, match=r"it takes more than 0\.3 s"):
+        html_with(tmp_path, endless)
+
+
+def test_text_is_put_together_as_jinja_does(tmp_path: Path):
+    template = "{{ 1 ~ 'a' ~ title|length }} {{ ['a', 1]|join(', ') }} {{ 1 + 2 }}"
+    assert html_with(tmp_path, template) == "1a27 a, 1 3"
 
 
 def test_a_fault_in_an_included_template_is_named_there(tmp_path: Path):
