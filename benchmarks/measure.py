@@ -100,9 +100,13 @@ def run_process(command: Sequence[str]) -> str:
 
 
 def environment() -> dict[str, str]:
-    """This process's environment, with the checkout first among the places for modules."""
+    """This process's environment, with the checkout first among the places for modules.
+
+    Bytecode is kept, as it is where the package is installed.
+    """
+    kept = {key: v for key, v in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
     places = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(places)}
+    return {**kept, "PYTHONPATH": os.pathsep.join(places)}
 
 
 def progress(text: str = "") -> None:

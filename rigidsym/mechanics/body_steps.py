@@ -71,6 +71,6 @@ def _renamed(step: Found, turns: TurnByTurn) -> Found:
     names |= dict(zip(NamedRotation.velocity, recursion.omega_body[-1], strict=True))
     if not step.expression.has(*names):
         return step
-    proofs = turns.rotation_matrix().proofs + turns.angular_velocity_body().proofs
+    proofs = [p for n in ("rotation_matrix", "angular_velocity_body") for p in turns.proofs(n)]
     expression = sp.ImmutableMatrix(step.expression.xreplace(names))
-    return replace(step, expression=expression, proofs=step.proofs + proofs)
+    return replace(step, expression=expression, proofs=(*step.proofs, *proofs))

@@ -28,7 +28,7 @@ from rigidsym.mechanics.derivation import (
     Singularities,
     Step,
 )
-from rigidsym.mechanics.kinematics import derive as kinematics
+from rigidsym.mechanics.kinematics.derive import Expanded
 from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn, is_shorter
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.dynamics import (
@@ -79,9 +79,7 @@ def derive(
     turns = TurnByTurn(model) if is_shorter(model) else None
     values = Values(model)
     turning = [name for name in only if name in QUANTITY_NAMES]
-    found = dict(
-        turns.steps(turning or only) if turns else kinematics.steps(values, turning or only)
-    )
+    found = dict((turns or Expanded(values)).steps(turning or only))
     absent = ", ".join(name for name in turning if name not in found)
     if absent:
         raise QuantityError(

@@ -60,6 +60,14 @@ def identity(
     return Prover(Conditions(name, tuple(conditions)), field.codec).cancel(quotients, claim)
 
 
+def consequence(proofs: Sequence[Proof], claim: Formula) -> Proof:
+    """The proof of what follows from other claims: exact if all of them are."""
+    if not proofs:
+        raise ValueError(f"{claim.text} follows from nothing")
+    left = next((proof for proof in proofs if not proof.is_exact), proofs[0])
+    return Proof(claim=claim, status=left.status, residual=left.residual)
+
+
 class Prover:
     """Decides claims about one subject in its ring."""
 

@@ -1,70 +1,219 @@
 """R → dR/dt → dR/dt Rᵀ → Ω → Ω′, rate matrices and their inverses, angular accelerations.
 
-One algorithm for every rotation model, in the model's ring (lecture, eq. 15 and 16).
+What is claimed of each is the same however it is worked out: multiplied out in the model's ring, by
+one algorithm for every rotation model (`Expanded`; lecture, eq. 15 and 16), or turn by turn.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
-from types import MappingProxyType
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import cached_property
 
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.matrix import RingMatrix, hat
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Found, Proof
+from rigidsym.mechanics.derivation import Found, Proof, VectorForm
 from rigidsym.mechanics.kinematics.vector_forms import applied_form, matrix_form, vector_form
-from rigidsym.mechanics.kinematics.workspace import Inverse, Values
+from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities import claims
 from rigidsym.mechanics.quantities.kinematics import (
     ALPHA,
     ALPHA_BODY,
     BODY,
     COSINES,
+    QUANTITY_NAMES,
     RATES,
     ROTATION,
     SPACE,
     Frame,
 )
+from rigidsym.models.rotation import RotationModel
+
+Law = tuple[str, Formula]  # what is to be proved, by name, and how it is written
+FRAMES = {"space": SPACE, "body": BODY}
+IS_OPERATOR = ("angular_velocity_space", claims.is_operator(SPACE.omega, claims.spin_of(ROTATION)))
 
 
-def steps(values: Values, only: Collection[str] = ()) -> Iterator[tuple[str, Found]]:
-    """(name, what was found) of the quantities that are wanted and that the model has.
+class Kinematics(ABC):
+    """The steps of one rotation, worked out in one of two ways."""
 
-    The matrix is proved to be a rotation in any case: all else rests on it. Raises NotARotation
-    if R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over.
-    """
-    work = _Kinematics(values)
-    rotation = work.rotation_matrix()
-    for name, find in _STEPS.items():
-        if not only or name in only:
-            found = rotation if name == "rotation_matrix" else find(work)
-            if found is not None:
-                yield name, found
+    def __init__(self, model: RotationModel) -> None:
+        self.model = model
+        self.symbol = COSINES if model.passive else ROTATION
+
+    def steps(self, only: Collection[str] = ()) -> Iterator[tuple[str, Found]]:
+        """(name, what was found) of the quantities that are wanted and that the model has.
+
+        The matrix is proved to be a rotation in any case: all else rests on it. Raises NotARotation
+        if R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over.
+        """
+        for name in QUANTITY_NAMES:
+            if not only or name in ("rotation_matrix", *only):
+                found = self.find(name)
+                if found is not None and (not only or name in only):
+                    yield name, found
+
+    @abstractmethod
+    def find(self, name: str) -> Found | None:
+        """One quantity with its proofs; None if the model does not have it."""
+
+    @cached_property
+    def laws(self) -> Mapping[str, Sequence[Law]]:
+        """What is to be proved of each quantity."""
+        symbol, spin = self.symbol, claims.spin_of(self.symbol)
+        whole_rate = claims.rate_of_whole(claims.spin_of(ROTATION))
+        skew = [("skew", claims.skew(spin))]
+        if self.model.passive:
+            skew.append(("passive_operator", claims.is_operator(BODY.omega, spin, "-")))
+        found: dict[str, Sequence[Law]] = {
+            "rotation_matrix": [
+                ("orthogonal", claims.orthogonal(symbol)),
+                ("proper", claims.proper(symbol)),
+            ],
+            "rotation_rate": [("skew", claims.stays_orthogonal(symbol))],
+            "spin_matrix": skew,
+            "angular_velocity_space": [IS_OPERATOR],
+        }
+        of_frames = {
+            "angular_velocity_body": claims.rotates(ROTATION, BODY.omega, SPACE.omega),
+            "angular_acceleration_space": claims.is_operator(ALPHA, whole_rate),
+            "angular_acceleration_body": claims.rotates(ROTATION, ALPHA_BODY, ALPHA),
+        }
+        for name, frame in FRAMES.items():
+            inverse = self.inverse_symbol(frame)
+            of_frames |= {
+                f"rate_matrix_{name}": claims.maps_rates(frame.matrix, RATES, frame.omega),
+                f"inverse_rate_matrix_{name}": claims.inverse_of(frame.matrix, inverse),
+                f"rates_from_angular_velocity_{name}": claims.solves(
+                    frame.matrix, inverse, frame.omega
+                ),
+            }
+        return found | {name: [(name, claim)] for name, claim in of_frames.items()}
+
+    def inverse_symbol(self, frame: Frame) -> Formula:
+        return frame.inverse if len(self.model.coordinates) == 3 else frame.right_inverse
 
 
-class _Kinematics:
-    """The steps of one derivation; each is worked out by its own method."""
+def kind_and_frame(name: str) -> tuple[str, str]:
+    """A quantity or a law without its frame, and the frame; "" if it has none."""
+    kind, _, frame = name.rpartition("_")
+    return (kind, frame) if frame in FRAMES else (name, "")
+
+
+class Expanded(Kinematics):
+    """The steps multiplied out, in the ring of the model."""
 
     def __init__(self, values: Values) -> None:
+        super().__init__(values.model)
         self.values = values
-        self.model = values.model
-        self.present, self.prove = values.present, values.prove
 
-    def rotation_matrix(self) -> Found:
-        values, symbol = self.values, self._shown_symbol
-        residual = self._shown(values.R).gram() - values.one
-        determinant = values.column([values.R.det() - 1])
-        proofs = (
-            self.prove.is_rotation(residual, claims.orthogonal(symbol)),
-            self.prove.is_rotation(determinant, claims.proper(symbol)),
-        )
-        return self._matrix(
-            self._shown(values.R),
-            self._given_as(),
-            *proofs,
-            symbol=symbol,
-        )
+    def find(self, name: str) -> Found | None:
+        found = self._value(name)
+        if found is None:
+            return None
+        matrix, below = found
+        proofs = [self._holds(law, claim, below) for law, claim in self.laws[name]]
+        form = self._form(name, matrix, below) if self.model.vector else None
+        if form is not None:
+            proofs.append(form.proof)
+        shown = self.values.present.matrix(matrix, below)
+        return Found(shown, self._because(name), tuple(proofs), form)
+
+    def _value(self, name: str) -> tuple[RingMatrix, PolyElement] | None:
+        """The quantity as a matrix over a divisor."""
+        values, (kind, frame) = self.values, kind_and_frame(name)
+        if kind == "inverse_rate_matrix":
+            return values.inverse(frame)
+        if kind == "rates_from_angular_velocity":
+            inverse = values.inverse(frame)
+            return inverse and (inverse[0] @ values.argument(f"omega_{frame}"), inverse[1])
+        match kind:
+            case "rotation_matrix":
+                matrix = self._shown(values.R)
+            case "rotation_rate":
+                matrix = self._shown(values.R_dot)
+            case "spin_matrix":
+                matrix = self._spin
+            case "angular_velocity":
+                matrix = values.omega(frame)
+            case "rate_matrix":
+                matrix = values.rate_matrix(frame)
+            case _:
+                matrix = values.omega(frame).dt()
+        return matrix, values.ring.one
+
+    def _holds(self, law: str, claim: Formula, below: PolyElement) -> Proof:
+        prove = self.values.prove
+        if law in ("orthogonal", "proper"):
+            return prove.is_rotation(self._residual(law, below), claim)
+        return prove.vanishes(self._residual(law, below), claim, divided_by=below)
+
+    def _residual(self, law: str, below: PolyElement) -> RingMatrix:
+        """What vanishes if a law holds."""
+        values, (kind, frame) = self.values, kind_and_frame(law)
+        match law:
+            case "orthogonal":
+                return self._shown(values.R).gram() - values.one
+            case "proper":
+                return values.column([values.R.det() - 1])
+            case "skew":
+                return self._spin + self._spin.T
+            case "passive_operator":
+                return self._spin + hat(values.omega_body)
+            case "angular_velocity_space":
+                return values.spin - hat(values.omega_space)
+            case "angular_velocity_body":
+                return values.R @ values.omega_body - values.omega_space
+            case "angular_acceleration_space":
+                return values.spin.dt() - hat(values.omega_space.dt())
+            case "angular_acceleration_body":
+                return values.R @ values.omega_body.dt() - values.omega_space.dt()
+        matrix, found = values.rate_matrix(frame), self._value(law)
+        assert found is not None
+        if kind == "rate_matrix":
+            return matrix @ values.argument("q_dot") - values.omega(frame)
+        whole = values.one if kind == "inverse_rate_matrix" else values.argument(f"omega_{frame}")
+        return matrix @ found[0] - whole.scale(below)
+
+    def _form(self, name: str, matrix: RingMatrix, below: PolyElement) -> VectorForm | None:
+        """The quantity as a function of the vector of the coordinates, if it is one."""
+        prove, vector, (kind, where) = self.values.prove, self.model.vector, kind_and_frame(name)
+        if kind == "rotation_matrix":
+            return matrix_form(prove, vector, matrix, below, self.symbol)
+        frame = FRAMES.get(where, SPACE)
+        if kind == "angular_velocity":
+            return vector_form(prove, vector, matrix, frame.omega)
+        if kind == "rate_matrix":
+            return matrix_form(prove, vector, matrix, below, frame.matrix)
+        if kind == "inverse_rate_matrix":
+            return matrix_form(prove, vector, matrix, below, self.inverse_symbol(frame))
+        inverse = self.values.inverse(where) if kind == "rates_from_angular_velocity" else None
+        if inverse is None:
+            return None
+        given = frame.omega, self.values.argument(f"omega_{where}")
+        return applied_form(prove, vector, *inverse, RATES, to=given)
+
+    def _shown(self, matrix: RingMatrix) -> RingMatrix:
+        return matrix.T if self.model.passive else matrix
+
+    @property
+    def _spin(self) -> RingMatrix:
+        return self.values.spin_of_transpose if self.model.passive else self.values.spin
+
+    # How each follows, in words
+
+    def _because(self, name: str) -> str:
+        kind, frame = kind_and_frame(name)
+        if kind == "rotation_matrix":
+            return self._given_as()
+        if kind == "rate_matrix":
+            return self._columns_in_words(frame)
+        if kind == "inverse_rate_matrix":
+            return self._inverse_in_words()
+        words = _PASSIVE_WORDS if self.model.passive and name in _PASSIVE_WORDS else _WORDS
+        return words[name if name in words else kind]
 
     def _given_as(self) -> str:
         """Where the matrix that is shown comes from."""
@@ -79,205 +228,53 @@ class _Kinematics:
                 return "The rotation is a single turn."
         return "Multiplying the matrices of the turns gives the rotation matrix."
 
-    def rotation_rate(self) -> Found:
-        spin = self._shown_spin
-        return Found(
-            self.present.matrix(self._shown(self.values.R_dot)),
-            "The chain rule gives the time derivative of each entry.",
-            (self.prove.vanishes(spin + spin.T, claims.stays_orthogonal(self._shown_symbol)),),
-        )
-
-    def spin_matrix(self) -> Found:
-        spin, symbol = self._shown_spin, claims.spin_of(self._shown_symbol)
-        proofs = [self.prove.vanishes(spin + spin.T, claims.skew(symbol))]
-        because = "Multiplying the derivative by the transpose gives a skew matrix"
-        if self.model.passive:
-            operator = claims.is_operator(BODY.omega, symbol, "-")
-            proofs.append(self.prove.vanishes(spin + hat(self.values.omega_body), operator))
-            because += ", and it is the operator of −Ω′, not of Ω"
-        return Found(self.present.matrix(spin), f"{because}.", tuple(proofs))
-
-    def angular_velocity_space(self) -> Found:
-        values = self.values
-        because = "The components of Ω are the entries (3,2), (1,3) and (2,1) of this skew matrix."
-        if self.model.passive:
-            because = (
-                "The derivative of the transpose times the matrix is the operator of Ω, as "
-                "the transpose is R. " + because
-            )
-        claim = claims.is_operator(SPACE.omega, claims.spin_of(ROTATION))
-        proof = self.prove.vanishes(values.spin - hat(values.omega_space), claim)
-        return self._vector(SPACE, values.omega_space, because, proof)
-
-    def angular_velocity_body(self) -> Found:
-        values = self.values
-        return self._vector(
-            BODY,
-            values.omega_body,
-            f"Multiplying by {'A' if self.model.passive else 'Rᵀ'} gives the components along the "
-            "axes of the body.",
-            self.prove.vanishes(
-                values.R @ values.omega_body - values.omega_space,
-                claims.rotates(ROTATION, BODY.omega, SPACE.omega),
-            ),
-        )
-
-    def rate_matrix(self, frame: Frame, matrix: RingMatrix, omega: RingMatrix) -> Found:
-        residual = matrix @ self.values.argument("q_dot") - omega
-        claim = claims.maps_rates(frame.matrix, RATES, frame.omega)
-        return self._matrix(
-            matrix,
-            self._columns_in_words(frame)
-            if len(self.model.coordinates) > 1
-            else "The angular velocity is the rate times the axis of the turn.",
-            self.prove.vanishes(residual, claim),
-            symbol=frame.matrix,
-        )
-
-    def _columns_in_words(self, frame: Frame) -> str:
+    def _columns_in_words(self, frame: str) -> str:
+        coordinates = self.model.coordinates
+        if len(coordinates) == 1:
+            return "The angular velocity is the rate times the axis of the turn."
         turns = [turn.angle for turn in self.model.turns]
-        if turns and all(a == q for a, q in zip(turns, self.model.coordinates, strict=False)):
-            where = "in space" if frame is SPACE else "in the body"
+        if turns and all(a == q for a, q in zip(turns, coordinates, strict=False)):
+            where = "space" if frame == "space" else "the body"
             return (
                 "The angular velocity depends linearly on the rates; the columns of the rate "
-                f"matrix are the axes of the turns, with their components {where}."
+                f"matrix are the axes of the turns, with their components in {where}."
             )
         return (
             "The angular velocity depends linearly on the rates; the columns of the rate matrix "
             "are their coefficients."
         )
 
-    def inverse(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> Found | None:
-        if inverse is None:
-            return None
-        above, below = inverse
-        proof = self.prove.vanishes(
-            matrix @ above - self.values.one.scale(below),
-            claims.inverse_of(frame.matrix, self._inverse_symbol(frame)),
-            divided_by=below,
-        )
-        return self._matrix(
-            above,
-            "The inverse gives the rates for a known angular velocity, for example one measured by "
-            "gyroscopes; it is the adjugate divided by the determinant."
-            if matrix.shape == (3, 3)
-            else self._of_all_rates(),
-            proof,
-            symbol=self._inverse_symbol(frame),
-            below=below,
-        )
-
-    def _of_all_rates(self) -> str:
-        is_bound = self.values.bound is not None
-        if is_bound:
+    def _inverse_in_words(self) -> str:
+        if len(self.model.coordinates) == 3:
+            return (
+                "The inverse gives the rates for a known angular velocity, for example one "
+                "measured by gyroscopes; it is the adjugate divided by the determinant."
+            )
+        if self.values.bound is not None:
             return "The rates that satisfy the conditions on the coordinates are unique."
         return (
             "The rates are not unique, since there are more coordinates than components of the "
             "angular velocity; we choose the smallest."
         )
 
-    def rates(self, frame: Frame, matrix: RingMatrix, inverse: Inverse | None) -> Found | None:
-        if inverse is None:
-            return None
-        above, below = inverse
-        given = self.values.argument(f"omega_{frame.name}")
-        rates = above @ given
-        proof = self.prove.vanishes(
-            matrix @ rates - given.scale(below),
-            claims.solves(frame.matrix, self._inverse_symbol(frame), frame.omega),
-            divided_by=below,
-        )
-        form = applied_form(
-            self.prove, self.model.vector, above, below, RATES, to=(frame.omega, given)
-        )
-        return Found(
-            self.present.matrix(rates, below),
-            "It takes a given angular velocity to the rates, which can then be integrated.",
-            (proof,) if form is None else (proof, form.proof),
-            form,
-        )
 
-    def angular_acceleration_space(self) -> Found:
-        space = self.values.omega_space.dt()
-        claim = claims.is_operator(ALPHA, claims.rate_of_whole(claims.spin_of(ROTATION)))
-        return Found(
-            self.present.matrix(space),
-            "The angular acceleration is the time derivative of the angular velocity.",
-            (self.prove.vanishes(self.values.spin.dt() - hat(space), claim),),
-        )
-
-    def angular_acceleration_body(self) -> Found:
-        values = self.values
-        body = values.omega_body.dt()
-        residual = values.R @ body - values.omega_space.dt()
-        claim = claims.rotates(ROTATION, ALPHA_BODY, ALPHA)
-        return Found(
-            self.present.matrix(body),
-            "In the body frame it is enough to differentiate the components of Ω′, since "
-            "Ω × Ω vanishes.",
-            (self.prove.vanishes(residual, claim),),
-        )
-
-    def _matrix(
-        self,
-        matrix: RingMatrix,
-        because: str,
-        *proofs: Proof,
-        symbol: Formula,
-        below: PolyElement | None = None,
-    ) -> Found:
-        """A matrix over `below`, also as a function of the vector if it is one."""
-        over = self.values.ring.one if below is None else below
-        form = matrix_form(self.prove, self.model.vector, matrix, over, symbol)
-        proved = proofs if form is None else (*proofs, form.proof)
-        return Found(self.present.matrix(matrix, below), because, proved, form)
-
-    def _vector(self, frame: Frame, omega: RingMatrix, because: str, proof: Proof) -> Found:
-        form = vector_form(self.prove, self.model.vector, omega, frame.omega)
-        proofs = (proof,) if form is None else (proof, form.proof)
-        return Found(self.present.matrix(omega), because, proofs, form)
-
-    @property
-    def _shown_symbol(self) -> Formula:
-        return COSINES if self.model.passive else ROTATION
-
-    def _shown(self, matrix: RingMatrix) -> RingMatrix:
-        return matrix.T if self.model.passive else matrix
-
-    @property
-    def _shown_spin(self) -> RingMatrix:
-        return self.values.spin_of_transpose if self.model.passive else self.values.spin
-
-    def _inverse_symbol(self, frame: Frame) -> Formula:
-        return frame.inverse if len(self.model.coordinates) == 3 else frame.right_inverse
-
-
-_STEPS: Mapping[str, Callable[[_Kinematics], Found | None]] = MappingProxyType(
-    {
-        "rotation_matrix": _Kinematics.rotation_matrix,
-        "rotation_rate": _Kinematics.rotation_rate,
-        "spin_matrix": _Kinematics.spin_matrix,
-        "angular_velocity_space": _Kinematics.angular_velocity_space,
-        "angular_velocity_body": _Kinematics.angular_velocity_body,
-        "rate_matrix_space": lambda work: work.rate_matrix(
-            SPACE, work.values.rate_matrix_space, work.values.omega_space
-        ),
-        "inverse_rate_matrix_space": lambda work: work.inverse(
-            SPACE, work.values.rate_matrix_space, work.values.inverse_space
-        ),
-        "rates_from_angular_velocity_space": lambda work: work.rates(
-            SPACE, work.values.rate_matrix_space, work.values.inverse_space
-        ),
-        "rate_matrix_body": lambda work: work.rate_matrix(
-            BODY, work.values.rate_matrix_body, work.values.omega_body
-        ),
-        "inverse_rate_matrix_body": lambda work: work.inverse(
-            BODY, work.values.rate_matrix_body, work.values.inverse_body
-        ),
-        "rates_from_angular_velocity_body": lambda work: work.rates(
-            BODY, work.values.rate_matrix_body, work.values.inverse_body
-        ),
-        "angular_acceleration_space": _Kinematics.angular_acceleration_space,
-        "angular_acceleration_body": _Kinematics.angular_acceleration_body,
-    }
-)
+_COMPONENTS = "The components of Ω are the entries (3,2), (1,3) and (2,1) of this skew matrix."
+_WORDS = {
+    "rotation_rate": "The chain rule gives the time derivative of each entry.",
+    "spin_matrix": "Multiplying the derivative by the transpose gives a skew matrix.",
+    "angular_velocity_space": _COMPONENTS,
+    "angular_velocity_body": "Multiplying by Rᵀ gives the components along the axes of the body.",
+    "rates_from_angular_velocity": "It takes a given angular velocity to the rates, which can then "
+    "be integrated.",
+    "angular_acceleration_space": "The angular acceleration is the time derivative of the angular "
+    "velocity.",
+    "angular_acceleration_body": "In the body frame it is enough to differentiate the components "
+    "of Ω′, since Ω × Ω vanishes.",
+}
+_PASSIVE_WORDS = {
+    "spin_matrix": "Multiplying the derivative by the transpose gives a skew matrix, and it is the "
+    "operator of −Ω′, not of Ω.",
+    "angular_velocity_space": "The derivative of the transpose times the matrix is the operator of "
+    f"Ω, as the transpose is R. {_COMPONENTS}",
+    "angular_velocity_body": "Multiplying by A gives the components along the axes of the body.",
+}

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
-from types import MappingProxyType
 from typing import Any
 
 import sympy as sp
@@ -15,6 +14,7 @@ from rigidsym.algebra.real_values import RealValues
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Bracket, Formula, Symbol
 from rigidsym.mechanics.derivation import Definition, Found, Proof, Singularities
+from rigidsym.mechanics.kinematics.derive import FRAMES, IS_OPERATOR, Kinematics, kind_and_frame
 from rigidsym.mechanics.kinematics.recursion import OrthogonalRows, Recursion
 from rigidsym.mechanics.kinematics.recursion_proofs import (
     Encoded,
@@ -22,19 +22,10 @@ from rigidsym.mechanics.kinematics.recursion_proofs import (
     residuals,
     rows_residuals,
 )
-from rigidsym.mechanics.prove import Prover, identity
+from rigidsym.mechanics.prove import Prover, consequence, identity
 from rigidsym.mechanics.quantities import claims
 from rigidsym.mechanics.quantities.arguments import arguments_of
-from rigidsym.mechanics.quantities.kinematics import (
-    ALPHA,
-    ALPHA_BODY,
-    BODY,
-    COSINES,
-    RATES,
-    ROTATION,
-    SPACE,
-    Frame,
-)
+from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import hat
 
@@ -62,24 +53,29 @@ def _composed(model: RotationModel) -> int:
     return sum(45 if turn.components else 18 for turn in model.turns[2:]) + 4
 
 
-class TurnByTurn:
+class TurnByTurn(Kinematics):
     """The steps of one derivation, each in the names of the recursions."""
 
     def __init__(self, model: RotationModel) -> None:
-        self.model = model
+        super().__init__(model)
         self.recursion = Recursion(model)
-        self._given = {
-            argument.name.removeprefix("omega_"): argument.symbols
-            for argument in arguments_of(model)
-            if argument.name.startswith("omega_")
-        }
+        self._given = {a.name: a.symbols for a in arguments_of(model)}
+        self._proved: dict[str, list[Proof]] = {}  # of the laws of the turns
+        self._made: dict[str, OrthogonalRows] = {}
 
-    def steps(self, only: Collection[str] = ()) -> Iterator[tuple[str, Found]]:
-        """(name, what was found) of the quantities that are wanted and that the model has."""
-        self.rotation_matrix()  # all else rests on its being a rotation
-        for name, find in _STEPS.items():
-            if (not only or name in only) and (found := find(self)) is not None:
-                yield name, found
+    def find(self, name: str) -> Found | None:
+        expression = self._expression(name)
+        if expression is None:
+            return None
+        words, recursion = _WORDS[kind_and_frame(name)[0] if name not in _WORDS else name]
+        if self.model.passive and name in _PASSIVE_WORDS:
+            words, recursion = _PASSIVE_WORDS[name]
+        return Found(
+            sp.ImmutableMatrix(expression),
+            words,
+            tuple(self.proofs(name)),
+            recursion=self._columns(name) if recursion is None else self._formula(name, recursion),
+        )
 
     def definitions(self, expressions: Sequence[sp.Basic]) -> tuple[Definition, ...]:
         """The definitions that the expressions rest on, in order."""
@@ -90,147 +86,35 @@ class TurnByTurn:
                 needed |= known[symbol].expression.free_symbols & known.keys()
         return tuple(d for s, d in known.items() if s in needed)
 
-    # The steps
-
-    def rotation_matrix(self) -> Found:
-        symbol = COSINES if self.model.passive else ROTATION
-        return Found(
-            self._shown(self.recursion.partial[-1]),
-            "Turn k has the matrix Tₖ, the axis nₖ and the angle θₖ; the turns are multiplied one "
-            "after the other, from left to right"
-            + (", and the product is transposed." if self.model.passive else "."),
-            (
-                self._holds(claims.orthogonal(symbol), *_TURNS),
-                self._holds(claims.proper(symbol), *_TURNS),
-            ),
-            recursion=formula(
-                r"#1, \quad \mathbf{P}_k = \mathbf{P}_{k-1}\,\mathbf{T}_k",
-                self._shown_formula(formula(rf"\mathbf{{P}}_{{{self.recursion.count}}}")),
-            ),
-        )
-
-    def rotation_rate(self) -> Found:
-        symbol = COSINES if self.model.passive else ROTATION
-        spin = hat(self.recursion.omega_space[0])
-        return Found(
-            self._shown(spin * self.recursion.partial[-1]),
-            "The derivative is C(Ω) R" + (", transposed." if self.model.passive else "."),
-            (self._holds(claims.stays_orthogonal(symbol), *_SPACE), self._is_operator()),
-            recursion=self._shown_formula(formula(r"\mathbf{C}(#1)\,#2", SPACE.omega, ROTATION)),
-        )
-
-    def spin_matrix(self) -> Found:
-        if self.model.passive:
-            spin, symbol = -hat(self.recursion.omega_body[-1]), claims.spin_of(COSINES)
-            operator = self._holds(claims.is_operator(BODY.omega, symbol, "-"), *_BODY)
-            because = "The derivative times the transpose is the operator of −Ω′, not of Ω."
-        else:
-            spin, symbol = hat(self.recursion.omega_space[0]), claims.spin_of(ROTATION)
-            operator = self._is_operator()
-            because = "The derivative times the transpose is the operator of Ω."
-        skew = self._holds(claims.skew(symbol), *(_BODY if self.model.passive else _SPACE))
-        shown = formula(r"-\mathbf{C}(#1)", BODY.omega)
-        if not self.model.passive:
-            shown = formula(r"\mathbf{C}(#1)", SPACE.omega)
-        return Found(spin, because, (skew, operator), recursion=shown)
-
-    def _is_operator(self) -> Proof:
-        return self._holds(claims.is_operator(SPACE.omega, claims.spin_of(ROTATION)), *_SPACE)
-
-    def angular_velocity_space(self) -> Found:
-        return Found(
-            self.recursion.omega_space[0],
-            "Each turn adds its rate about its own axis, and turns what the later turns add.",
-            (self._is_operator(),),
-            recursion=formula(
-                r"\mathbf{u}_1, \quad "
-                r"\mathbf{u}_k = \dot{\theta}_k\,\mathbf{n}_k + \mathbf{T}_k\,\mathbf{u}_{k+1}"
-            ),
-        )
-
-    def angular_velocity_body(self) -> Found:
-        claim = claims.rotates(ROTATION, BODY.omega, SPACE.omega)
-        return Found(
-            self.recursion.omega_body[-1],
-            "Seen from the body each turn moves what the turns before it have added.",
-            (self._holds(claim, *_SPACE, *_BODY),),
-            recursion=formula(
-                rf"\mathbf{{w}}_{{{self.recursion.count}}}, \quad \mathbf{{w}}_k = "
-                r"\dot{\theta}_k\,\mathbf{n}_k + \mathbf{T}_k^{\mathsf T}\,\mathbf{w}_{k-1}"
-            ),
-        )
-
-    def rate_matrix(self, frame: Frame) -> Found:
-        law = f"axes_{frame.name}"
-        claim = claims.maps_rates(frame.matrix, RATES, frame.omega)
-        return Found(
-            self._rate_matrix(frame),
-            "The columns of the rate matrix are the axes of the turns.",
-            (self._holds(claim, *(_SPACE if frame is SPACE else _BODY), law),),
-            recursion=self._columns(frame),
-        )
-
-    def inverse(self, frame: Frame) -> Found | None:
+    def _expression(self, name: str) -> sp.MatrixBase | None:
+        """The quantity in the names of the recursions; None if the model does not have it."""
+        r, (kind, frame) = self.recursion, kind_and_frame(name)
+        is_in_space, passive = frame == "space", self.model.passive
+        match kind:
+            case "rotation_matrix" | "rotation_rate":
+                matrix = r.partial[-1]
+                if kind == "rotation_rate":
+                    matrix = hat(r.omega_space[0]) * matrix
+                return matrix.T if passive else matrix
+            case "spin_matrix":
+                return -hat(r.omega_body[-1]) if passive else hat(r.omega_space[0])
+            case "angular_velocity":
+                return r.omega_space[0] if is_in_space else r.omega_body[-1]
+            case "angular_acceleration":
+                return r.alpha_space[0] if is_in_space else r.alpha_body[-1]
+            case "rate_matrix":
+                return r.rate_matrix(r.axes_space if is_in_space else r.axes_body)
         rows = self._rows(frame)
         if rows is None:
             return None
-        units = sp.eye(3)
-        columns = [
-            self.recursion.least_rates(f"{frame.name}_{k + 1}", rows, units.col(k))
-            for k in range(3)
-        ]
-        return Found(
-            sp.ImmutableMatrix(sp.Matrix.hstack(*columns)),
-            "q̇ is not unique, since there are more coordinates than dimensions; we choose the "
-            "solution of least norm.",
-            self._inverts(rows, claims.inverse_of(frame.matrix, self._inverse_symbol(frame))),
-            recursion=formula(
-                r"#2\left(#1\,#2\right)^{-1}", frame.matrix, claims.transpose_of(frame.matrix)
-            ),
-        )
-
-    def rates(self, frame: Frame) -> Found | None:
-        rows = self._rows(frame)
-        if rows is None:
-            return None
-        claim = claims.solves(frame.matrix, self._inverse_symbol(frame), frame.omega)
-        return Found(
-            self.recursion.least_rates(frame.name, rows, self._given[frame.name]),
-            "The right inverse is applied to a given angular velocity.",
-            self._inverts(rows, claim),
-            recursion=formula(r"#1\,#2", self._inverse_symbol(frame), frame.omega),
-        )
-
-    def acceleration(self, frame: Frame) -> Found:
-        recursion = self.recursion
-        if frame is SPACE:
-            claim = claims.is_operator(ALPHA, claims.rate_of_whole(claims.spin_of(ROTATION)))
-            return Found(
-                recursion.alpha_space[0],
-                "The recursion of the angular velocity is differentiated.",
-                (self._holds(claim, *_SPACE, "alpha_space"), self._is_operator()),
-                recursion=formula(
-                    r"\dot{\mathbf{u}}_1, \quad "
-                    r"\dot{\mathbf{u}}_k = \ddot{\theta}_k\,\mathbf{n}_k + "
-                    r"\dot{\theta}_k\,\mathbf{n}_k\times\mathbf{u}_k + "
-                    r"\mathbf{T}_k\,\dot{\mathbf{u}}_{k+1}"
-                ),
-            )
-        claim = claims.rotates(ROTATION, ALPHA_BODY, ALPHA)
-        return Found(
-            recursion.alpha_body[-1],
-            "The recursion of its body components is differentiated.",
-            (self._holds(claim, *_SPACE, *_BODY, "alpha_space", "alpha_body"),),
-            recursion=formula(
-                rf"\dot{{\mathbf{{w}}}}_{{{recursion.count}}}, \quad \dot{{\mathbf{{w}}}}_k = "
-                r"\ddot{\theta}_k\,\mathbf{n}_k - \dot{\theta}_k\,\mathbf{n}_k\times\mathbf{w}_k + "
-                r"\mathbf{T}_k^{\mathsf T}\,\dot{\mathbf{w}}_{k-1}"
-            ),
-        )
+        if kind == "rates_from_angular_velocity":
+            return r.least_rates(frame, rows, self._given[f"omega_{frame}"])
+        units = ((f"{frame}_{k + 1}", sp.eye(3).col(k)) for k in range(3))
+        return sp.Matrix.hstack(*(r.least_rates(label, rows, unit) for label, unit in units))
 
     def singularities(self) -> Singularities:
         """The determinant of W Wᵀ, in its names; where it vanishes is not solved for."""
-        rows = self._rows(SPACE)
+        rows = self._rows("space")
         determinant = sp.Mul(*rows.squares) if rows else None
         return Singularities(
             rank=3 if rows else min(2, len(self.model.coordinates)),
@@ -241,50 +125,85 @@ class TurnByTurn:
             is_solved=False,
         )
 
-    # Parts of the steps
+    # The recursions as they are printed
 
-    def _shown(self, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-        return sp.ImmutableMatrix(matrix.T if self.model.passive else matrix)
+    def _formula(self, name: str, recursion: str) -> Formula:
+        """#1: W, Ω, ..., what the quantity is made of; #2: its transpose or the right inverse."""
+        _, frame = kind_and_frame(name)
+        symbols = FRAMES.get(frame, SPACE)
+        parts = {
+            "rotation_rate": (SPACE.omega, ROTATION),
+            "spin_matrix": (BODY.omega if self.model.passive else SPACE.omega,),
+            f"inverse_rate_matrix_{frame}": (symbols.matrix, claims.transpose_of(symbols.matrix)),
+            f"rates_from_angular_velocity_{frame}": (self.inverse_symbol(symbols), symbols.omega),
+        }
+        whole = formula(recursion.replace("LAST", str(self.recursion.count)), *parts.get(name, ()))
+        if name == "rotation_matrix":
+            partial = formula(rf"\mathbf{{P}}_{{{self.recursion.count}}}")
+            return formula(r"#1, \quad #2", self._shown(partial), whole)
+        return self._shown(whole) if name == "rotation_rate" else whole
 
-    def _shown_formula(self, matrix: Formula) -> Formula:
+    def _shown(self, matrix: Formula) -> Formula:
         if not self.model.passive:
             return matrix
-        whole = matrix if isinstance(matrix, Symbol) else Bracket(matrix)
-        return claims.transpose_of(whole)
+        return claims.transpose_of(matrix if isinstance(matrix, Symbol) else Bracket(matrix))
 
-    def _columns(self, frame: Frame) -> Formula | None:
+    def _columns(self, name: str) -> Formula | None:
         """(n₁, P₁ n₂, P₂ n₃, ...); None if an angle is not one coordinate by itself."""
         if tuple(self.recursion.angles) != self.model.coordinates:
             return None
         last = self.recursion.count
         columns = [r"\mathbf{n}_1", r"\mathbf{P}_1\,\mathbf{n}_2", r"\ldots"]
         columns.append(rf"\mathbf{{P}}_{{{last - 1}}}\,\mathbf{{n}}_{{{last}}}")
-        if frame is BODY:
+        if name == "rate_matrix_body":
             columns = [r"\mathbf{B}_2^{\mathsf T}\,\mathbf{n}_1", r"\ldots"]
             columns += [rf"\mathbf{{B}}_{{{last}}}^{{\mathsf T}}\,\mathbf{{n}}_{{{last - 1}}}"]
             columns += [rf"\mathbf{{n}}_{{{last}}}"]
-        after = r"" if frame is SPACE else r", \quad \mathbf{B}_k = \mathbf{T}_k\,\mathbf{B}_{k+1}"
+        after = (
+            r""
+            if name == "rate_matrix_space"
+            else r", \quad \mathbf{B}_k = \mathbf{T}_k\,\mathbf{B}_{k+1}"
+        )
         row = " & ".join(columns)
         return formula(rf"\begin{{pmatrix}} {row} \end{{pmatrix}}{after}")
 
-    def _inverse_symbol(self, frame: Frame) -> Formula:
-        return frame.inverse if len(self.model.coordinates) == 3 else frame.right_inverse
+    # Proofs
 
-    def _rate_matrix(self, frame: Frame) -> sp.ImmutableMatrix:
-        recursion = self.recursion
-        axes = recursion.axes_space if frame is SPACE else recursion.axes_body
-        return recursion.rate_matrix(axes)
+    def proofs(self, name: str) -> Iterator[Proof]:
+        """The proofs of a quantity; where C(Ω) is printed, also that it is dR/dt Rᵀ."""
+        kind, frame = kind_and_frame(name)
+        is_operator = name in ("rotation_rate", "spin_matrix", "angular_acceleration_space")
+        extra = is_operator and not (name == "spin_matrix" and self.model.passive)
+        for law, claim in (*self.laws[name], *((IS_OPERATOR,) if extra else ())):
+            if kind in ("inverse_rate_matrix", "rates_from_angular_velocity"):
+                yield self._inverts(frame, claim)
+            else:
+                yield consequence([p for part in _RESTS_ON[law] for p in self._holds(part)], claim)
 
-    def _rows(self, frame: Frame) -> OrthogonalRows | None:
+    def _inverts(self, frame: str, claim: Formula) -> Proof:
+        """W Uᵀ D⁻¹ L⁻¹ = G L⁻ᵀ D⁻¹ L⁻¹, which is 1 if G = L D Lᵀ."""
+        rows = self._made[frame]
+        columns = self._vanish(rows_residuals(self.recursion, rows), claim)
+        gram, product = gram_of_rows()
+        return consequence([*columns, identity(gram - product, claim, self.model.name)], claim)
+
+    def _holds(self, law: str) -> list[Proof]:
+        """The proofs of a law for every turn."""
+        if law not in self._proved:
+            self._proved[law] = self._vanish(residuals(self.recursion, law), formula(_LAWS[law]))
+        return self._proved[law]
+
+    def _vanish(self, parts: Iterable[Encoded], claim: Formula) -> list[Proof]:
+        return [Prover(self.model, codec).vanishes(residual, claim) for codec, residual in parts]
+
+    # Where the rates fail
+
+    def _rows(self, frame: str) -> OrthogonalRows | None:
         """The rate matrix in orthogonal rows; None where W has not rank 3 anywhere we look."""
-        if frame.name not in self._made and self._is_regular:
-            made = self.recursion.orthogonal_rows(frame.name, self._rate_matrix(frame))
-            self._made[frame.name] = made
-        return self._made.get(frame.name)
-
-    @cached_property
-    def _made(self) -> dict[str, OrthogonalRows]:
-        return {}
+        if frame not in self._made and self._is_regular:
+            matrix = self._expression(f"rate_matrix_{frame}")
+            self._made[frame] = self.recursion.orthogonal_rows(frame, matrix)
+        return self._made.get(frame)
 
     @cached_property
     def _is_regular(self) -> bool:
@@ -309,51 +228,77 @@ class TurnByTurn:
         (a, b, c), (_, d, e), (_, _, f) = gram.tolist()
         return a * (d * f - e * e) - b * (b * f - e * c) + c * (b * e - d * c)
 
-    def _inverts(self, rows: OrthogonalRows, claim: Formula) -> tuple[Proof, ...]:
-        """W Uᵀ D⁻¹ L⁻¹ = G L⁻ᵀ D⁻¹ L⁻¹, which is 1 if G = L D Lᵀ."""
-        gram, product = gram_of_rows()
-        columns = self._proved(list(rows_residuals(self.recursion, rows)), claim)
-        if not columns.is_exact:
-            return (columns,)
-        return (identity(gram - product, claim, self.model.name),)
 
-    def _holds(self, claim: Formula, *laws: str) -> Proof:
-        """The proof of a claim from laws that hold for every turn."""
-        return self._proved([part for law in laws for part in self._residuals(law)], claim)
-
-    def _residuals(self, law: str) -> list[Encoded]:
-        if law not in self._by_law:
-            self._by_law[law] = list(residuals(self.recursion, law))
-        return self._by_law[law]
-
-    @cached_property
-    def _by_law(self) -> dict[str, list[Encoded]]:
-        return {}
-
-    def _proved(self, parts: Sequence[Encoded], claim: Formula) -> Proof:
-        """Exact where all parts are; else the first that is not."""
-        proofs = [Prover(self.model, codec).vanishes(residual, claim) for codec, residual in parts]
-        return next((proof for proof in proofs if not proof.is_exact), proofs[-1])
-
-
+_LAWS = {  # of every turn, in the names of the recursions
+    "turns": r"\mathbf{T}_k\,\mathbf{T}_k^{\mathsf T} = \mathbf{1}",
+    "product": r"\mathbf{P}_k = \mathbf{P}_{k-1}\,\mathbf{T}_k",
+    "axes_space": r"\mathbf{a}_k = \mathbf{P}_{k-1}\,\mathbf{n}_k",
+    "axes_body": r"\mathbf{B}_k = \mathbf{T}_k\,\mathbf{B}_{k+1}",
+    "omega_space": r"\mathbf{u}_k = \dot{\theta}_k\,\mathbf{n}_k + \mathbf{T}_k\,\mathbf{u}_{k+1}",
+    "omega_body": r"\mathbf{w}_k = \dot{\theta}_k\,\mathbf{n}_k + "
+    r"\mathbf{T}_k^{\mathsf T}\,\mathbf{w}_{k-1}",
+    "alpha_space": r"\dot{\mathbf{u}}_k = \ddot{\theta}_k\,\mathbf{n}_k + "
+    r"\dot{\theta}_k\,\mathbf{n}_k\times\mathbf{u}_k + \mathbf{T}_k\,\dot{\mathbf{u}}_{k+1}",
+    "alpha_body": r"\dot{\mathbf{w}}_k = \ddot{\theta}_k\,\mathbf{n}_k - "
+    r"\dot{\theta}_k\,\mathbf{n}_k\times\mathbf{w}_k + "
+    r"\mathbf{T}_k^{\mathsf T}\,\dot{\mathbf{w}}_{k-1}",
+}
 _TURNS = ("turns", "product")
 _SPACE = (*_TURNS, "omega_space")
 _BODY = (*_TURNS, "omega_body")
+_RESTS_ON = {  # the laws of the turns that a law of the product follows from
+    "orthogonal": _TURNS,
+    "proper": _TURNS,
+    "skew": (*_SPACE, "omega_body"),
+    "passive_operator": _BODY,
+    "angular_velocity_space": _SPACE,
+    "angular_velocity_body": (*_SPACE, "omega_body"),
+    "rate_matrix_space": (*_SPACE, "axes_space"),
+    "rate_matrix_body": (*_BODY, "axes_body"),
+    "angular_acceleration_space": (*_SPACE, "alpha_space"),
+    "angular_acceleration_body": (*_SPACE, "omega_body", "alpha_space", "alpha_body"),
+}
 
-_STEPS: Mapping[str, Callable[[TurnByTurn], Found | None]] = MappingProxyType(
-    {
-        "rotation_matrix": TurnByTurn.rotation_matrix,
-        "rotation_rate": TurnByTurn.rotation_rate,
-        "spin_matrix": TurnByTurn.spin_matrix,
-        "angular_velocity_space": TurnByTurn.angular_velocity_space,
-        "angular_velocity_body": TurnByTurn.angular_velocity_body,
-        "rate_matrix_space": lambda work: work.rate_matrix(SPACE),
-        "inverse_rate_matrix_space": lambda work: work.inverse(SPACE),
-        "rates_from_angular_velocity_space": lambda work: work.rates(SPACE),
-        "rate_matrix_body": lambda work: work.rate_matrix(BODY),
-        "inverse_rate_matrix_body": lambda work: work.inverse(BODY),
-        "rates_from_angular_velocity_body": lambda work: work.rates(BODY),
-        "angular_acceleration_space": lambda work: work.acceleration(SPACE),
-        "angular_acceleration_body": lambda work: work.acceleration(BODY),
-    }
+_TURNING = (
+    "Turn k has the matrix Tₖ, the axis nₖ and the angle θₖ; the turns are multiplied one after "
+    "the other, from left to right"
 )
+_WORDS: dict[str, tuple[str, str | None]] = {  # how it follows, and the recursion that is shown
+    "rotation_matrix": (f"{_TURNING}.", _LAWS["product"]),
+    "rotation_rate": ("The derivative is C(Ω) R.", r"\mathbf{C}(#1)\,#2"),
+    "spin_matrix": ("The derivative times the transpose is the operator of Ω.", r"\mathbf{C}(#1)"),
+    "angular_velocity_space": (
+        "Each turn adds its rate about its own axis, and turns what the later turns add.",
+        rf"\mathbf{{u}}_1, \quad {_LAWS['omega_space']}",
+    ),
+    "angular_velocity_body": (
+        "Seen from the body each turn moves what the turns before it have added.",
+        rf"\mathbf{{w}}_{{LAST}}, \quad {_LAWS['omega_body']}",
+    ),
+    "rate_matrix": ("The columns of the rate matrix are the axes of the turns.", None),
+    "inverse_rate_matrix": (
+        "q̇ is not unique, since there are more coordinates than dimensions; we choose the "
+        "solution of least norm.",
+        r"#2\left(#1\,#2\right)^{-1}",
+    ),
+    "rates_from_angular_velocity": (
+        "The right inverse is applied to a given angular velocity.",
+        r"#1\,#2",
+    ),
+    "angular_acceleration_space": (
+        "The recursion of the angular velocity is differentiated.",
+        rf"\dot{{\mathbf{{u}}}}_1, \quad {_LAWS['alpha_space']}",
+    ),
+    "angular_acceleration_body": (
+        "The recursion of its body components is differentiated.",
+        rf"\dot{{\mathbf{{w}}}}_{{LAST}}, \quad {_LAWS['alpha_body']}",
+    ),
+}
+_PASSIVE_WORDS: dict[str, tuple[str, str | None]] = {
+    "rotation_matrix": (f"{_TURNING}, and the product is transposed.", _LAWS["product"]),
+    "rotation_rate": ("The derivative is C(Ω) R, transposed.", r"\mathbf{C}(#1)\,#2"),
+    "spin_matrix": (
+        "The derivative times the transpose is the operator of −Ω′, not of Ω.",
+        r"-\mathbf{C}(#1)",
+    ),
+}

@@ -119,6 +119,17 @@ class Values:
         entries = self._entry_rates(lambda skew: self.R @ skew)
         return entries or right_inverse(self.rate_matrix_body, self.bound)
 
+    # The same, by the name of the frame: "space" or "body"
+
+    def omega(self, frame: str) -> RingMatrix:
+        return self.omega_space if frame == "space" else self.omega_body
+
+    def rate_matrix(self, frame: str) -> RingMatrix:
+        return self.rate_matrix_space if frame == "space" else self.rate_matrix_body
+
+    def inverse(self, frame: str) -> Inverse | None:
+        return self.inverse_space if frame == "space" else self.inverse_body
+
     def _entry_rates(self, rate_of: Callable[[RingMatrix], RingMatrix]) -> Inverse | None:
         """The columns dR/dt of unit angular velocities, where the coordinates are R's entries."""
         if tuple(self.model.matrix) != self.model.coordinates:
