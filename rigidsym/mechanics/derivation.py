@@ -219,7 +219,7 @@ class Place:
 
     coordinate: sp.Expr
     value: sp.Expr  # of an angle in (−period/2, period/2]; of a length the least, above zero
-    period: sp.Expr  # 2π, or a multiple of it where parts of the angle are turned by
+    period: sp.Expr  # 2π, a multiple of it where parts of the angle are turned by, or π
     is_length: bool = False
 
 
@@ -233,7 +233,7 @@ class Singularity:
     places: tuple[Place, ...]  # all at once; none if the rank is too low everywhere
     rank: int
     lost_axis_space: sp.ImmutableMatrix | None  # no q̇ gives Ω along this direction; (3, 1)
-    lost_axis_body: sp.ImmutableMatrix | None  # the same direction in body components
+    lost_axis_body: sp.ImmutableMatrix | None  # its line in body components
     null_rates: sp.ImmutableMatrix  # columns that span the q̇ with Ω = 0, (n, k)
     reachable_axis: sp.ImmutableMatrix | None = None  # of all Ω, if the rank is 1; (3, 1)
 

@@ -39,6 +39,7 @@ from rigidsym.mechanics.quantities.dynamics import (
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import QUANTITY_NAMES, quantities
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES, OF_BODY_ALONE
+from rigidsym.mechanics.singularities.chains import planes_of_axes
 from rigidsym.mechanics.singularities.derive import singularities_of
 from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.distribution import Distribution
@@ -116,10 +117,15 @@ def derive(
 
 
 def _singularities(values: Values, turns: TurnByTurn | None) -> Singularities:
-    """Where the rates fail; of many turns only what vanishes there."""
-    if turns is None or len(values.model.turns) <= _STUDIED:
+    """Where the rates fail; of many turns as far as that is easily told."""
+    if turns is None:
         return singularities_of(values)
-    return turns.singularities()
+    margin = turns.singularities()
+    found = planes_of_axes(values.model, margin.minors) if margin.rank == 3 else None
+    is_easy = len(values.model.turns) <= _STUDIED and not any(
+        turn.components for turn in values.model.turns
+    )
+    return found or (singularities_of(values) if is_easy else margin)
 
 
 def _resting_on(

@@ -187,7 +187,7 @@ def test_a_long_chain_is_shown_in_vector_form():
     assert "R = P₁₂, Pₖ = Pₖ₋₁ Tₖ" in shown["rotation_matrix"]
     assert "Ω = u₁, uₖ = θ̇ₖ nₖ + Tₖ uₖ₊₁" in shown["angular_velocity_space"]
     assert "W = (n₁, P₁ n₂, …, P₁₁ n₁₂)" in shown["rate_matrix_space"]
-    assert not motion.singularities.is_solved
+    assert motion.singularities.is_solved
 
 
 def test_a_body_on_a_long_chain_has_the_energy_and_momentum_of_the_expanded_rotation():
@@ -203,3 +203,52 @@ def test_a_body_on_a_long_chain_has_the_energy_and_momentum_of_the_expanded_rota
     assert tuple(map(encode, motion.angular_momentum_rotation)) == momentum
     turned = values.R @ inertia @ values.R.T
     assert tuple(map(encode, motion.inertia_tensor_space)) == turned.entries
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "z(a) y(b) z(c) x(d) z(e)",
+        "z(a) x(b) y(c) z(d) x(e) y(f) z(g)",
+        "z(a) [0,1,8](b) z(c) [0,1,8](d) z(e)",
+    ],
+)
+def test_a_long_chain_is_singular_where_all_axes_lie_in_one_plane_and_not_nearby(text):
+    motion = rs.derive(rs.rotation_from(text))
+    found, coordinates = motion.singularities, motion.model.coordinates
+    (point,) = found.points
+    assert found.is_solved
+    assert [place.coordinate for place in point.places] == [*coordinates[1:-1]]
+    generator = random.Random(3)
+    for shifted in (None, *point.places):
+        free = {q: mp.mpf(generator.randint(-300, 300)) / 100 for q in coordinates}
+        half = {p.coordinate: generator.choice((0, 1)) * mp.pi for p in point.places}
+        fixed = {p.coordinate: p.value / sp.pi * mp.pi + half[p.coordinate] for p in point.places}
+        free |= {q: mp.mpf(value) for q, value in fixed.items()}
+        if shifted is not None:
+            free[shifted.coordinate] += mp.mpf("0.3")
+
+        def number(matrix, at=free):
+            return mp.matrix([[value_of(e, at) for e in row] for row in matrix.tolist()])
+
+        columns, turned = [], mp.eye(3)
+        for turn in motion.model.turns:
+            direction = [value_of(sp.sympify(e), {}) for e in turn.direction]
+            columns.append(turned * mp.matrix(direction))
+            turned = turned * axis_turn(direction, free[turn.angle])
+        rates = mp.matrix(3, len(columns))
+        for place, column in enumerate(columns):
+            rates[:, place] = column
+        if shifted is None:
+            assert mp.norm(number(point.lost_axis_space).T * rates) < TOLERANCE
+            assert mp.norm(number(point.lost_axis_body).T * (turned.T * rates)) < TOLERANCE
+            assert mp.norm(rates * number(point.null_rates)) < TOLERANCE
+        else:
+            assert mp.det(rates * rates.T) > 1e-9
+
+
+def test_a_chain_whose_neighbours_may_share_an_axis_says_that_its_singularities_are_open():
+    model = rs.rotation_from("z(a) z(b) x(c) y(d) z(e) x(f)")
+    found = rs.derive(model, ["rate_matrix_space"]).singularities
+    assert not found.is_solved
+    assert found.points == ()

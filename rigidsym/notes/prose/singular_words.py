@@ -98,7 +98,7 @@ def _zeros(found: Singularities, letters: Letters) -> Text:
             "They fail where the axes of all turns lie in one plane; for so many turns these "
             "orientations are not listed. The function singularity_margin is 0 there.",
         )
-    if found.determinant is None:
+    if found.determinant is None and not found.minors:
         return ("The rates follow without any divisor, so that there is no singular orientation.",)
     points = [point for point in found.points if point.places]
     if points:
@@ -109,6 +109,8 @@ def _zeros(found: Singularities, letters: Letters) -> Text:
         return ("The body does not turn, whatever the rates are.",)
     if not found.is_solved:
         return ("Its zeros have no closed form here and were not determined.",)
+    if found.determinant is None:
+        return ("The axes of all turns never lie in one plane, so there is no singularity.",)
     unless = ", unless the constants make it zero" if _has_constants(found.determinant) else ""
     if found.rank == 3:
         return (f"It never vanishes{unless}, so this parametrisation has no singularity.",)
@@ -134,18 +136,19 @@ def _where(
     for place in (place for point in points for place in point.places):
         values.setdefault(place.coordinate, {})[place.value] = None
     only = "only " if found.is_solved else ""
+    what = "It vanishes" if found.determinant else "The axes of all turns lie in one plane"
     is_grid = len(points) == prod(map(len, values.values()))
     if len(values) == 1 or not is_grid:
         multiples = _multiples(values, letters) if found.is_solved else ()
         if multiples:
             return multiples, ()
         at = listed([_at(point, letters) for point in points])
-        return (f"It vanishes {only}at ", *at), _period(points, letters)
+        return (f"{what} {only}at ", *at), _period(points, letters)
     choices: list[Text] = [
         (formula_of(coordinate, letters), " is ", *listed(_markups(several, letters), " or "))
         for coordinate, several in values.items()
     ]
-    return (f"It vanishes {only}where ", *listed(choices)), _period(points, letters)
+    return (f"{what} {only}where ", *listed(choices)), _period(points, letters)
 
 
 def _multiples(values: Mapping[sp.Expr, Iterable[sp.Expr]], letters: Letters) -> Text:
@@ -184,9 +187,9 @@ def _period(points: Sequence[Singularity], letters: Letters) -> Text:
     periods = {p.coordinate: p.period for point in points for p in point.places if not p.is_length}
     if not periods:
         return ()
+    if len(set(periods.values())) == 1:
+        return words(", modulo {}", formula_of(*set(periods.values()), letters))
     longer = {q: period for q, period in periods.items() if period != _WHOLE_TURN}
-    if not longer:
-        return words(", modulo {}", formula_of(_WHOLE_TURN, letters))
     multiples: list[Text] = [
         words("{} for {}", formula_of(period, letters), formula_of(q, letters))
         for q, period in longer.items()
