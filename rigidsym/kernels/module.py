@@ -41,8 +41,9 @@ class KernelModule:
     def load(self) -> ModuleType:
         """The functions as a Python module, without writing the files.
 
-        A compiled module is kept in the user's cache folder (XDG_CACHE_HOME), so that each source
-        is compiled once. Raises MissingTool or MissingExtra if a tool or package is not installed.
+        They are kept in the user's cache folder (XDG_CACHE_HOME), so that each source is compiled
+        once, and other processes can unpickle the functions. Raises MissingTool or MissingExtra
+        if a tool or package is not installed.
         """
         return printer(self.target).load(self.name, self.files)
 

@@ -6,7 +6,10 @@ digits, of the very floats that the functions are given.
 
 from __future__ import annotations
 
+import json
+import os
 import pickle
+import subprocess
 import sys
 
 import numpy as np
@@ -27,6 +30,7 @@ from helpers.target_modules import (
 from helpers.witness import mp
 from rigidsym.commands.list import inventory
 from rigidsym.errors import MissingExtra, RigidsymError
+from rigidsym.kernels import loaded
 from rigidsym.kernels.targets import TARGETS
 
 ARRAYS = ("numpy", "c", "numba")
@@ -172,6 +176,34 @@ def test_scalar_twins_agree_with_arrays(target):
                 np.abs(np.array(scalar) - batch).max()
                 <= MOST * EPS[np.float64] * np.abs(batch).max()
             ), name
+
+
+@pytest.mark.parametrize("target", PRESENT)
+def test_functions_of_loaded_kernels_are_unpickled_by_another_process(target, tmp_path):
+    """As the workers of process pools do, which start without the module."""
+    function = module("ZXZ", target).rotation_matrix
+    assert pickle.loads(pickle.dumps(function)) is function
+    (tmp_path / "function").write_bytes(pickle.dumps(function))
+    code = (
+        "import pickle; function = pickle.load(open('function', 'rb'))\n"
+        "print(function([0.0, 0.0, 0.0]).tolist())"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert json.loads(done.stdout) == np.eye(3).tolist()
+
+
+def test_the_cache_keeps_the_packages_that_were_used_last(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(loaded, "_KEPT", 2)
+    folder = tmp_path / "rigidsym" / "kernels"
+    for place in range(3):
+        loaded.load("one", {"one.py": f"value = {place}"})
+        for package in folder.glob("kernels_*"):
+            os.utime(package, (0, package.stat().st_mtime - 60))
+    assert len(list(folder.iterdir())) == 2
+    assert sorted(path.read_text()[-1] for path in folder.glob("*/one.py")) == ["1", "2"]
 
 
 @pytest.mark.parametrize("target", TARGETS)

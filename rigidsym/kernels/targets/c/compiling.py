@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
 import os
 import platform
 import shutil
@@ -11,13 +10,11 @@ import sys
 import sysconfig
 import tempfile
 from collections.abc import Mapping
-from contextlib import suppress
-from hashlib import sha256
-from importlib import import_module, invalidate_caches
 from pathlib import Path
 from types import ModuleType
 
 from rigidsym.errors import CheckError, MissingTool, ToolFailed
+from rigidsym.kernels.loaded import load
 
 COMPILERS = ("cc", "gcc", "clang")
 TIMEOUT = 300.0  # seconds
@@ -65,44 +62,19 @@ def build(source: Path, *, portable: bool = False) -> Path:
 
 
 def load_built(name: str, files: Mapping[str, str]) -> ModuleType:
-    """The module of some files, compiled once a machine and kept in the user's cache folder.
-
-    If that folder cannot be written, the module is built in one that goes away with the process.
-    """
-    try:
-        home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "rigidsym" / "c"
-        home.mkdir(parents=True, exist_ok=True)
-        draft = Path(tempfile.mkdtemp(dir=home, prefix="."))
-    except (OSError, RuntimeError):  # no permission, or no home
-        draft = Path(tempfile.mkdtemp(prefix="rigidsym-"))
-        atexit.register(shutil.rmtree, draft, ignore_errors=True)
-        return imported(_built_in(draft, name, files))
-    kept = home / _key(files)
-    try:
-        if not kept.is_dir():
-            _built_in(draft, name, files)
-            with suppress(OSError):  # another process was faster, with the same content
-                draft.rename(kept)
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
-    return imported(kept / f"{name}_c.py")
-
-
-def _built_in(folder: Path, name: str, files: Mapping[str, str]) -> Path:
-    for file, text in files.items():
-        (folder / file).write_text(text, encoding="utf-8")
-    return build(folder / f"{name}.c")
-
-
-def _key(files: Mapping[str, str]) -> str:
-    """The name of the folder of a build: a digest of all that it depends on."""
+    """The module of some files, compiled once a machine and kept in the user's cache folder."""
     import numpy as np
 
     program = Path(compiler())
-    state = program.stat()
-    parts = [*files.items(), _FLAGS, _OF_THIS_PROCESSOR, str(program), state.st_mtime_ns]
-    parts += [np.__version__, sysconfig.get_config_var("EXT_SUFFIX"), sys.version, _processor()]
-    return sha256(repr(parts).encode()).hexdigest()[:32]
+    machine = sysconfig.get_config_var("EXT_SUFFIX"), sys.version, _processor()
+    depends = _FLAGS, _OF_THIS_PROCESSOR, str(program), program.stat().st_mtime_ns, *machine
+    return load(
+        f"{name}_c",
+        files,
+        lambda folder: build(folder / f"{name}.c"),
+        *depends,
+        np.__version__,
+    )
 
 
 def _processor() -> str:
@@ -112,18 +84,6 @@ def _processor() -> str:
     except OSError:
         return platform.processor()
     return next((line for line in lines if line.startswith(("flags", "Features"))), "")
-
-
-def imported(module: Path) -> ModuleType:
-    """A built module, of which nothing stays in `sys.modules`."""
-    invalidate_caches()
-    sys.path.insert(0, str(module.parent))
-    try:
-        return import_module(module.stem)
-    finally:
-        sys.path.remove(str(module.parent))
-        for name in (module.stem, f"_{module.stem}"):
-            sys.modules.pop(name, None)
 
 
 def compiler() -> str:

@@ -6,8 +6,10 @@ from collections.abc import Iterator, Mapping
 from types import ModuleType
 
 from rigidsym.errors import MissingExtra
+from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program, last_order
 from rigidsym.kernels.lowering.wrap_lines import narrowed
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.kernels.targets.text import python, remarks
 from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.python_layout import WIDTH, bracketed, docstring, exploded
@@ -52,11 +54,9 @@ def render(program: Program) -> dict[str, str]:
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
     """The module itself; raises MissingExtra if JAX is not installed."""
-    (source,) = files.values()
-    try:
-        return python.module_from(f"{name}_jax", source)
-    except ModuleNotFoundError as error:
-        raise MissingExtra("the target jax", "jax") from error
+    if TARGETS["jax"].missing:
+        raise MissingExtra("the target jax", "jax")
+    return loaded.load(f"{name}_jax", files)
 
 
 def _imports(*, has_parts: bool, has_series: bool) -> str:

@@ -7,6 +7,7 @@ from types import ModuleType
 from typing import Any
 
 from rigidsym.errors import MissingExtra
+from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import (
     FUNCTIONS,
     Call,
@@ -18,7 +19,6 @@ from rigidsym.kernels.ir import (
 )
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.kernels.targets.numpy import printer as numpy
-from rigidsym.kernels.targets.text import python
 from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.precision import DOUBLE
 
@@ -50,8 +50,7 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
     """The module itself; raises MissingExtra without Numba."""
     if TARGETS["numba"].missing:
         raise MissingExtra("a module that Numba compiles", "numba")
-    (source,) = files.values()
-    return python.module_from(f"{name}_numba", source)
+    return loaded.load(f"{name}_numba", files)
 
 
 def _compiled(kernel: Kernel) -> dict[str, Any]:

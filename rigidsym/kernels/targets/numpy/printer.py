@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from types import ModuleType
 
+from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import FUNCTIONS, Call, Kernel, Name, Program, functions_of, last_order
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.numpy.unwrap import unwrap_text
@@ -43,9 +44,8 @@ def render(program: Program) -> dict[str, str]:
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
-    """The module itself; it is not entered in `sys.modules`."""
-    (source,) = files.values()
-    return python.module_from(name, source)
+    """The module itself."""
+    return loaded.load(name, files)
 
 
 def module_text(

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib.abc import ExecutionLoader
-from importlib.util import module_from_spec, spec_from_loader
-from types import ModuleType
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import (
@@ -37,25 +34,6 @@ from rigidsym.system import resources
 _UNWELCOME = ("l", "O", "I")  # linters refuse these names
 RESERVED = frozenset({*FUNCTIONS, *_UNWELCOME, "nan", "max", "min"})
 ARGUMENTS = "Arguments, with the components on the last axis, in radians and SI units:"
-
-
-def module_from(name: str, source: str) -> ModuleType:
-    """A Python module from its text; it is not entered in `sys.modules`."""
-
-    class Source(ExecutionLoader):
-        def get_source(self, fullname: str) -> str:  # noqa: ARG002  (the loader's interface)
-            return source
-
-        def get_filename(self, fullname: str) -> str:
-            return f"<rigidsym>/{fullname}.py"
-
-    loader = Source()
-    spec = spec_from_loader(name, loader)
-    if spec is None:
-        raise ImportError(f"{name} has no specification", name=name)
-    module = module_from_spec(spec)
-    loader.exec_module(module)
-    return module
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,0 +1,94 @@
+"""Kernels that are loaded, as modules that other processes can import: pools pickle by name.
+
+Each set of files is a package of this one, named by a digest of its content, in the user's cache
+folder (XDG_CACHE_HOME). Without such a folder it is in one that goes away with the process.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from hashlib import sha256
+from importlib import import_module, invalidate_caches
+from pathlib import Path
+from types import ModuleType
+
+_KEPT = 200  # packages in the cache folder; those unused for the longest time go
+_DAY = 86400.0  # seconds, after which a draft belongs to a process that was killed
+
+
+def load(
+    main: str,
+    files: Mapping[str, str],
+    build: Callable[[Path], object] | None = None,
+    *depends: object,
+) -> ModuleType:
+    """The module `main` among some files.
+
+    `build` makes of the folder with the files what else is needed, and `depends` is all that the
+    outcome depends on beside the files.
+    """
+    digest = sha256(repr([*files.items(), *depends]).encode()).hexdigest()
+    package = f"kernels_{digest[:32]}"
+    kept = _home() / package
+    if not kept.is_dir():
+        draft = Path(tempfile.mkdtemp(dir=kept.parent, prefix="."))
+        try:
+            for name, text in {"__init__.py": "", **files}.items():
+                (draft / name).write_text(text, encoding="utf-8")
+            if build is not None:
+                build(draft)
+            with suppress(OSError):  # another process was faster, with the same content
+                draft.rename(kept)
+                _prune(kept.parent)
+        finally:
+            shutil.rmtree(draft, ignore_errors=True)
+    with suppress(OSError):
+        os.utime(kept)  # it was used now
+    invalidate_caches()
+    return import_module(f"{__name__}.{package}.{main}")
+
+
+def _home() -> Path:
+    """The folder of the packages, where Python finds them."""
+    home = _cache()
+    if str(home) not in __path__:
+        __path__.append(str(home))
+    return home
+
+
+def _cache() -> Path:
+    try:
+        cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        home = cache / "rigidsym" / "kernels"
+        home.mkdir(parents=True, exist_ok=True)
+        Path(tempfile.mkdtemp(dir=home, prefix=".")).rmdir()  # it can be written
+    except (OSError, RuntimeError):  # no permission, or no home
+        if not _OWN:
+            _OWN.append(Path(tempfile.mkdtemp(prefix="rigidsym-")))
+            atexit.register(shutil.rmtree, _OWN[0], ignore_errors=True)
+        return _OWN[0]
+    return home
+
+
+def _prune(home: Path) -> None:
+    """Remove the packages that were not used for the longest time, and drafts a day old."""
+    used: dict[Path, float] = {}
+    for folder in home.iterdir():
+        with suppress(OSError):  # another process was faster
+            used[folder] = folder.stat().st_mtime
+    drafts = {folder for folder in used if folder.name.startswith(".")}
+    kept = sorted(used.keys() - drafts, key=used.__getitem__)
+    old = [folder for folder in drafts if used[folder] < time.time() - _DAY]
+    for folder in (*kept[:-_KEPT], *old):
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+_OWN: list[Path] = []  # the folder of this process, if there is no other
+__path__: list[str] = []
+_home()
