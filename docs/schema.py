@@ -104,6 +104,12 @@ def _rotation() -> Schema:
             "matrix": listed("R itself: three rows of three expressions", texts("a row"), 3),
             "coordinates": texts("the names in `matrix` that move"),
             "constraints": texts("expressions in the coordinates of `matrix` that are zero"),
+            "example": {
+                "type": "object",
+                "description": "exact values of coordinates and constants of `matrix`, by name, "
+                "for which the constraints hold, in case none are found",
+                "additionalProperties": NUMBER,
+            },
             "passive": flag("present Rᵀ, from space to body components"),
         },
     )

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.errors import ModelError
+from rigidsym.errors import ModelError, offer
 from rigidsym.models.rotation import Citation, RotationModel
-from rigidsym.models.so3 import symbolic
+from rigidsym.models.so3 import TIME, symbolic
 
 GIVEN = "given by the user"  # the source of a rotation without another
 
@@ -23,11 +25,15 @@ def given(
     constraints: Sequence[sp.Expr] = (),
     source: str = GIVEN,
     passive: bool = False,
+    example: Mapping[sp.Expr | str, Any] = MappingProxyType({}),
 ) -> RotationModel:
     """Your own R(q), 3x3, in functions of time; it is proved to be a rotation when derived.
 
     Without `coordinates` they are the functions of time in the matrix, in alphabetical order.
-    Raises ModelError for a matrix that is not 3x3 or has no coordinate.
+    `example` holds exact values of coordinates and constants, by name, that satisfy the
+    constraints, in case none are found: {"a": sp.Rational(3, 5)}.
+    Raises ModelError for a matrix that is not 3x3 or has no coordinate, and for an example that
+    is none.
     """
     try:
         entries = [symbolic(entry, f"{name}: an entry") for entry in sp.flatten(matrix)]
@@ -46,4 +52,29 @@ def given(
         units=("",) * len(used),
         source=Citation(text=source),
         passive=passive,
+        example=_example(name, example, (*used, *_symbols(matrix, constraints))),
     )
+
+
+def _symbols(matrix: sp.MatrixBase, constraints: Sequence[sp.Expr]) -> set[sp.Expr]:
+    whole = sp.Matrix([*matrix, *constraints])
+    return (whole.free_symbols | whole.atoms(AppliedUndef)) - {TIME}
+
+
+def _example(
+    model: str, given: Mapping[sp.Expr | str, Any], known: Iterable[sp.Expr]
+) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
+    """(symbol, value) pairs from values by name; raises ModelError for what is neither."""
+    named = {str(symbol.func if symbol.is_Function else symbol): symbol for symbol in known}
+    found = []
+    for key, value in given.items():
+        name = str(key.func if isinstance(key, AppliedUndef) else key)
+        exact = symbolic(value, f"{model}: the example of {name}")
+        if name not in named:
+            raise ModelError(f"{model}: no {name} for an example; {offer(name, named)}")
+        if not exact.is_number or exact.has(sp.Float) or exact.is_real is False:
+            raise ModelError(
+                f"{model}: the example of {name}: expected an exact number, got {exact}"
+            )
+        found.append((named[name], exact))
+    return tuple(found)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
+from types import MappingProxyType
 from typing import Any
 
 import sympy as sp
@@ -85,10 +86,12 @@ def rotation_given(
     coordinates: Sequence[str],
     constraints: Sequence[str] = (),
     passive: bool = False,
+    example: Mapping[str, str] = MappingProxyType({}),
 ) -> RotationModel:
     """Your own R(q): nine expressions by rows, in the coordinates; other names are constants.
 
-    `constraints` are expressions that vanish for all time. Raises ModelError or ExpressionError.
+    `constraints` are expressions that vanish for all time, `example` values by name for which
+    they do. Raises ModelError or ExpressionError.
     """
     if len(rows) != 3 or any(len(row) != 3 for row in rows):
         raise ModelError("a rotation matrix has three rows of three expressions")
@@ -104,9 +107,10 @@ def rotation_given(
         coordinates=tuple(functions.values()),
         constraints=tuple(entries[9:]),
         passive=passive,
+        example={check_name(key): parse_expression(text, {}) for key, text in example.items()},
     )
     asked = {"matrix": [list(row) for row in rows], "coordinates": list(functions)}
-    asked |= {"constraints": list(constraints), "passive": passive}
+    asked |= {"constraints": list(constraints), "passive": passive, "example": dict(example)}
     return replace(model, request={key: value for key, value in asked.items() if value})
 
 

@@ -10,10 +10,11 @@ from rigidsym.models.rotation_text import faults_in, rotation_from, rotation_giv
 from rigidsym.spec.derivation_spec import repeated
 from rigidsym.spec.tables import Table
 from rigidsym.spec.toml_lines import Path as Place
+from rigidsym.text.expression import parse_expression
 from rigidsym.text.names import check_name
 
 _OF_SEQUENCES = ("sequence", "angles", "constants", "scalar_last")
-_OF_MATRICES = ("coordinates", "constraints")
+_OF_MATRICES = ("coordinates", "constraints", "example")
 KEYS = (*_OF_SEQUENCES, "matrix", *_OF_MATRICES, "passive")
 A_SEQUENCE = 'a sequence such as "ZXZ", or a list of sequences'
 _THREE_NAMES = 'a list of three names such as ["phi", "theta", "psi"]'
@@ -63,6 +64,11 @@ def _read_matrix(table: Table, name: str) -> list[RotationModel]:
     coordinates = _read_names(table, "coordinates", _NAMES)
     if table.value("coordinates") is None:
         table.mistyped(None, _NAMES, "coordinates")
+    point = table.table("example")
+    example = {key: _number(point, key) for key in point.data} if point else {}
+    for key, text in example.items():
+        with table.noting("example", key):
+            parse_expression(text, {})
     constraints = [*table.texts("constraints", "a list of expressions that are zero").values()]
     if not coordinates:
         return []
@@ -77,9 +83,16 @@ def _read_matrix(table: Table, name: str) -> list[RotationModel]:
                 coordinates=coordinates,
                 constraints=constraints,
                 passive=is_passive,
+                example=example,
             )
         ]
     return []
+
+
+def _number(table: Table, key: str) -> str:
+    """The text of a number, which may be written as one."""
+    value = table.value(key)
+    return str(value) if isinstance(value, int | float) else table.text(key) or "0"
 
 
 def _read_sequences(table: Table) -> dict[Place, str]:

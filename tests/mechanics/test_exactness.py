@@ -138,6 +138,28 @@ def test_an_example_of_the_user_is_where_the_search_starts():
     assert abs(found.numbers([x])(x) - 40) < 1e-3
 
 
+PINCHED = x**4 - 2 * x**2 * y + y**2 + (x - 3) ** 2  # zero only for x = 3, y = 9
+
+
+def test_a_point_that_no_search_finds_is_given_by_the_user():
+    with pytest.raises(ModelError, match="no real values were found"):
+        rs.derive(
+            rs.given(sp.Matrix(ABOUT_Z), name="sample", constraints=(PINCHED,)),
+            only="rotation_matrix",
+        )
+    known = rs.given(
+        sp.Matrix(ABOUT_Z), name="sample", constraints=(PINCHED,), example={"x": 3, y: 9}
+    )
+    assert rs.derive(known, only="rotation_matrix").is_proved
+    assert dict(known.example) == {x: 3, y: 9}
+
+
+@pytest.mark.parametrize("example", [{"z": 1}, {"x": 0.5}, {"x": sp.I}, {"x": y}, {"x": "3"}])
+def test_an_example_is_of_exact_real_numbers(example):
+    with pytest.raises(ModelError):
+        rs.given(sp.Matrix(ABOUT_Z), name="sample", constraints=(PINCHED,), example=example)
+
+
 # Matrices that are real nowhere, or at a point only.
 
 

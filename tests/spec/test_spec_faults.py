@@ -329,3 +329,34 @@ def test_faults_of_dynamics_are_placed():
         "line 4: dynamics.potential: column 4: expected a number, a name or (, found the end",
         "line 5: dynamics.forces: a force on chi, which is none of phi, theta, psi",
     ]
+
+
+PINCHED = """\
+[rotation]
+matrix = [["cos(phi)", "-sin(phi)", "0"], ["sin(phi)", "cos(phi)", "0"], ["0", "0", "1"]]
+coordinates = ["phi"]
+constraints = ["(b - a**2)**2 + (a - 3)**2"]
+example = { a = 3, b = "9" }
+"""
+
+
+def test_a_point_of_constraints_is_read_and_kept():
+    spec = read(PINCHED)
+    (model,) = spec.models
+    assert {str(name): value for name, value in model.example} == {"a": 3, "b": 9}
+    again = read_record(spec.to_data())
+    assert again.models == spec.models
+
+
+@pytest.mark.parametrize(
+    ("example", "fault"),
+    [
+        ("{ c = 1 }", "rotation.matrix: top: no c for an example"),
+        ('{ a = "b" }', "rotation.example.a: unknown name 'b'"),
+        ("{ a = inf }", "rotation.example.a: unknown name 'inf'"),
+        ("{ a = [] }", "rotation.example.a: expected a text in quotes, got a list"),
+        ("3", "rotation.example: expected a table [rotation.example], got the number 3"),
+    ],
+)
+def test_a_wrong_point_is_named(example, fault):
+    assert fault in "\n".join(faults(PINCHED.replace('{ a = 3, b = "9" }', example)))
