@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import cycle
 from math import degrees, lcm, pi
@@ -12,7 +12,9 @@ import sympy as sp
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Derivation
+from rigidsym.models.body import RigidBody
 from rigidsym.models.rotation import RotationModel
+from rigidsym.notes.figure.body_mesh import lengths_of
 from rigidsym.notes.prose.words import unit_in_words
 
 _DEGREE = pi / 180
@@ -22,6 +24,9 @@ _SCALAR = 1.68  # beside a vector: the quaternion of about 65°, once it is a un
 _MATRIX = (0.5, -0.7, 0.5, 0.8, 0.6, 0.1, -0.4, 0.3, 0.8)  # by rows, not far from a rotation
 _RATES = (0.4, 0.25, 0.7)
 _ANGLE_RATES = (40.0, 25.0, 60.0, 20.0, 35.0)  # degrees per second
+_FLOW_RATES = (30.0, 0.0, 720.0)
+_MOMENTS = (1.0, 0.6, 0.8)  # each is less than the sum of the others
+_GRAVITY = sp.Symbol("g")
 _ANGLE = 40.0  # degrees, where no figure says better
 
 
@@ -55,15 +60,25 @@ class Group:
 
 
 def groups_of(
-    derivation: Derivation, letters: Letters, shown: dict[sp.Expr, float]
+    derivation: Derivation,
+    letters: Letters,
+    shown: dict[sp.Expr, float],
+    starts: Mapping[sp.Symbol, float],
+    *,
+    flows: bool = False,
 ) -> tuple[Group, ...]:
-    """The groups of sliders; `shown` are angles in radians that make a clear figure."""
+    """The groups of sliders; `shown` are angles in radians that make a clear figure.
+
+    `starts` are the initial values of the constants of a body; a motion that `flows` by its
+    equations starts with a fast spin.
+    """
     model = derivation.model
     made = {argument.name: argument for argument in derivation.arguments}
+    periods = [period_of(q, model) for q in model.coordinates]
     found = {
         "q": _coordinates(made["q"], model, shown),
-        "q_dot": _rates(made["q_dot"], [period_of(q, model) for q in model.coordinates]),
-        "parameters": _constants(made.get("parameters"), model),
+        "q_dot": _rates(made["q_dot"], periods, flows=flows),
+        "parameters": _constants(made.get("parameters"), model, starts),
     }
     groups = {
         kind: tuple(_named(each, made[kind], letters) for each in found[kind]) for kind in found
@@ -101,24 +116,43 @@ def _reach(unit: str, model: RotationModel) -> float:
     return 1.0 if model.constraints or model.pullback else 3.0
 
 
-def _rates(argument: Argument, periods: Sequence[float]) -> Iterator[Control]:
+def _rates(argument: Argument, periods: Sequence[float], *, flows: bool) -> Iterator[Control]:
+    of_angles = _FLOW_RATES if flows else _ANGLE_RATES
     for place, (unit, period) in enumerate(zip(argument.units, periods, strict=True)):
         if period:
-            start = _ANGLE_RATES[place % len(_ANGLE_RATES)]
-            control = _control(argument, place, start, 0.0, 180.0)
+            start = of_angles[place % len(of_angles)]
+            control = _control(argument, place, start, 0.0, 1440.0 if flows else 180.0)
             yield replace(control, unit="°/s", step=1.0, factor=_DEGREE)
         else:
             start = _RATES[place % len(_RATES)]
             yield _control(argument, place, start, 0.0, 3.0 if unit == "rad/s" else 2.0)
 
 
-def _constants(argument: Argument | None, model: RotationModel) -> Iterator[Control]:
+def _constants(
+    argument: Argument | None, model: RotationModel, starts: Mapping[sp.Symbol, float]
+) -> Iterator[Control]:
     if argument is None:
         return
-    for place, symbol in enumerate(model.constants):
-        period = period_of(symbol, model)
-        start = 30.0 if period else _VECTOR[place % len(_VECTOR)]
-        yield _control(argument, place, start, period, 1.0)
+    for place, symbol in enumerate(argument.symbols):
+        if symbol in model.constants:
+            period = period_of(symbol, model)
+            start = 30.0 if period else _VECTOR[place % len(_VECTOR)]
+            yield _control(argument, place, start, period, 1.0)
+        elif symbol in starts:
+            reach = max(2.0, 2 * starts[symbol])
+            control = _control(argument, place, starts[symbol], 0.0, reach)
+            yield replace(control, low=reach / 100)
+
+
+def starts_of(body: RigidBody | None) -> dict[sp.Symbol, float]:
+    """Initial values of the constants of a body: their own, or those of a body that is possible."""
+    if body is None:
+        return {}
+    values = {p.symbol: p.value for p in body.parameters}
+    lengths = lengths_of(body.distribution, values) if body.distribution is not None else None
+    moments = dict(zip(dict.fromkeys(body.inertia.diagonal()), _MOMENTS, strict=False))
+    chosen = {_GRAVITY: 9.81} | moments | {s: float(x) for s, x in (lengths or {}).items()}
+    return {s: chosen.get(s, 1.0) if value is None else value for s, value in values.items()}
 
 
 def _control(argument: Argument, place: int, start: float, period: float, reach: float) -> Control:

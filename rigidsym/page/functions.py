@@ -11,7 +11,7 @@ from rigidsym.formula.tree import NOTHING, Symbol
 from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets.javascript import printer as javascript
-from rigidsym.mechanics.derivation import Derivation, Quantity, Step
+from rigidsym.mechanics.derivation import Derivation, FirstIntegral, Quantity, Step
 from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
@@ -19,6 +19,7 @@ from rigidsym.page.stage import has_turns
 
 SHOWN = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
 TURNS = "turns"
+FLOW = ("state_derivative", "first_integrals")
 CONDITIONS = ("conditions", "condition_slopes")
 
 _WITH_A_MARGIN = "rate_matrix_space"
@@ -31,11 +32,24 @@ class Functions:
 
     derivation: Derivation  # of the quantities shown
     kernels: tuple[Kernel, ...]
+    integrals: tuple[FirstIntegral, ...] = ()  # of the equations of motion
 
     @property
     def steps(self) -> tuple[Step, ...]:
         """The steps of the quantities shown."""
         return tuple(step for step in self.derivation.steps if step.quantity.name in SHOWN)
+
+    @property
+    def constants(self) -> tuple[sp.Symbol, ...]:
+        """The constants in the order of the functions."""
+        found = [a.symbols for a in self.derivation.arguments if a.name == "parameters"]
+        return tuple(found[0]) if found else ()
+
+    @property
+    def symbols(self) -> set[sp.Basic]:
+        """What the functions depend on."""
+        steps = self.derivation.steps
+        return {symbol for step in steps for symbol in step.expression.free_symbols}
 
     @property
     def source(self) -> str:
@@ -47,15 +61,28 @@ class Functions:
         return {k.name: tuple(argument.name for argument in k.arguments) for k in self.kernels}
 
 
-def functions_of(model: RotationModel) -> Functions:
-    """All functions that the page of a model evaluates."""
-    derivation = derivation_of(model, (*SHOWN, _WITH_A_MARGIN))
-    steps = (replace(step, number=0) for step in (*derivation.steps, *_more(derivation)))
-    program = lower(replace(derivation, steps=tuple(steps)), javascript.RESERVED)
+def functions_of(derivation: Derivation) -> Functions:
+    """All functions that the page of a derivation evaluates."""
+    shown = derivation_of(derivation.model, (*SHOWN, _WITH_A_MARGIN))
+    whole = {argument.name: argument for argument in (*shown.arguments, *derivation.arguments)}
+    flow = _flow(derivation)
+    steps = tuple(replace(step, number=0) for step in (*shown.steps, *_more(shown), *flow))
+    shown = replace(shown, arguments=tuple(whole.values()), steps=steps, functions=())
+    program = lower(shown, javascript.RESERVED)
     return Functions(
-        derivation=derivation,
+        derivation=shown,
         kernels=tuple(k for k in program.kernels if k.name != _WITH_A_MARGIN),
+        integrals=derivation.first_integrals if flow else (),
     )
+
+
+def _flow(derivation: Derivation) -> tuple[Step, ...]:
+    """The equations of motion and what they conserve, where the state is coordinates and rates."""
+    if not derivation.functions:
+        return ()
+    q, q_dot, y = (derivation.argument(name).symbols for name in ("q", "q_dot", "y"))
+    is_plain = y == (*q, *q_dot)
+    return tuple(f for f in derivation.functions if is_plain and f.quantity.name in FLOW)
 
 
 def _more(derivation: Derivation) -> Iterator[Step]:

@@ -24,16 +24,16 @@ from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
 from rigidsym.notes.prose.singular_words import singular
 from rigidsym.notes.prose.turn_words import sum_of_turns
 from rigidsym.notes.prose.words import unit_in_words
-from rigidsym.page.controls import Control, groups_of
+from rigidsym.page.controls import Control, groups_of, starts_of
 from rigidsym.page.copies import LANGUAGES, copies_of
 from rigidsym.page.functions import Functions, functions_of
-from rigidsym.page.shapes import SHAPES, as_data
+from rigidsym.page.shapes import SHAPES, as_data, on_its_tip
 from rigidsym.page.stage import has_turns, label, shown_angles, stage_of
 from rigidsym.system import resources
 
 TEMPLATE = "page/page.html.jinja"
 # in the order of their imports
-MODULES = ("vectors", "scene", "body", "drawing", "state", "main", "sharing")
+MODULES = ("vectors", "scene", "body", "drawing", "state", "flow", "main", "sharing")
 MOST_BYTES = 400_000
 
 _FIGURE = "The axes of space and of the body, in the orientation given by the sliders"
@@ -54,22 +54,27 @@ _EXPORT = re.compile(r"^export (?=\w)", re.MULTILINE)
 
 def print_page(derivation: Derivation, document: Document) -> str:
     """The page of a derivation and its note; the same input gives the same bytes."""
-    functions = functions_of(derivation.model)
+    functions = functions_of(derivation)
+    starts = starts_of(derivation.body)
     copies = copies_of(derivation, document)
     printer = PagePrinter(document, copied=copies)
     groups = groups_of(
         functions.derivation,
         document.letters,
         shown_angles(derivation.model, document.letters),
+        {symbol: start for symbol, start in starts.items() if symbol in functions.symbols},
+        flows=bool(functions.integrals),
     )
     controls = [control for group in groups for control in group.controls]
     stage = stage_of(derivation.model, document.letters)
     in_degrees = any(control.unit == "°" for control in controls)
     shapes = {name: shape() for name, shape in SHAPES.items()}
+    if derivation.forces is not None and derivation.forces.potential != 0:
+        shapes["top"] = on_its_tip(shapes["top"])
     own = own_shape(derivation.body)
     shapes |= {"own": own} if own else {}
     body = "own" if own else _body(derivation.model)
-    choices = _choices(derivation.model, document)
+    choices = _choices(derivation.model, document, flows=bool(functions.integrals))
     data = {
         "name": derivation.name,
         "scene": stage,
@@ -77,6 +82,7 @@ def print_page(derivation: Derivation, document: Document) -> str:
         "body": body,
         "shown": [name for name, _, is_shown in choices if is_shown],
         "controls": [_data(control) for control in controls],
+        "parameters": [starts.get(symbol, 0.0) for symbol in functions.constants],
         "inputs": functions.arguments,
         "in_degrees": in_degrees,
         "passive": derivation.model.passive,
@@ -101,6 +107,7 @@ def print_page(derivation: Derivation, document: Document) -> str:
             for group in groups
         ],
         values=[_value(step, printer, in_degrees=in_degrees) for step in functions.steps],
+        integrals=[printer.span(integral.symbol) for integral in functions.integrals],
         pole=_pole(functions),
         stage=stage,
         bodies=[(name, _NAMES.get(name, name.capitalize()), name == body) for name in shapes],
@@ -156,11 +163,13 @@ def _body(model: RotationModel) -> str:
     return "aircraft" if axes in (["z", "y", "x"], ["x", "y", "z"]) else "book"
 
 
-def _choices(model: RotationModel, document: Document) -> list[tuple[str, str, bool]]:
-    """Name, label and initial state of what can be shown in the figure."""
+def _choices(
+    model: RotationModel, document: Document, *, flows: bool
+) -> list[tuple[str, str, bool]]:
+    """Name, label and initial state of what can be shown in the figure; little of a motion."""
     omega = escape(label(document.letters.notation.applied(SPACE.omega)))
     return [
-        (name, text.format(omega), is_shown)
+        (name, text.format(omega), is_shown and not (flows and name != "trace"))
         for name, (text, is_shown) in _SHOWN.items()
         if name not in _OF_TURNS or (has_turns(model) and len(model.turns) > 1)
     ]

@@ -54,6 +54,14 @@ def top() -> Shape:
     return _revolved([*cone, (0.3, 0.15), (0.07, 0.17), (0.06, 0.62), (0.0, 0.64)], 32, color)
 
 
+def on_its_tip(shape: Shape) -> Shape:
+    """The shape moved along z′ until its lowest point is the origin."""
+    lowest = min(z for face in shape for _, _, z in face.corners)
+    return tuple(
+        Face(tuple((x, y, z - lowest) for x, y, z in face.corners), face.color) for face in shape
+    )
+
+
 def aircraft() -> Shape:
     """An aeroplane: nose along x′, left wing along y′, fin along z′."""
     profile = [(0.0, -0.95), (0.05, -0.9), (0.13, -0.2), (0.13, 0.6), (0.06, 0.9), (0.0, 0.97)]

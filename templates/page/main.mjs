@@ -5,6 +5,7 @@ import { STANDARD, dot, length, minus, scaled, within } from "./vectors.mjs";
 import { posed, wholeTurn } from "./scene.mjs";
 import { cameraAt, draw } from "./drawing.mjs";
 import { bind, evaluated, settle, state } from "./state.mjs";
+import { LAST, begin, goTo } from "./flow.mjs";
 
 const { controls, scene } = page;
 export const at = (id) => document.getElementById(id);
@@ -12,7 +13,7 @@ const group = at("figure").querySelector("g");
 const count = scene.turns.length;
 const DEGREE = Math.PI / 180;
 const MOST_TRACE = 1500; // points
-const view = { shown: new Set(), done: count, trace: [] };
+const view = { shown: new Set(), done: count, trace: [], time: 0 };
 let busy = null; // the field that is being typed in
 let warned = ""; // what the warning says
 
@@ -99,6 +100,7 @@ export function show() {
   showNumbers("rotation_matrix", matrix);
   showNumbers("angular_velocity_space", omega, factor);
   showNumbers("angular_velocity_body", evaluated("angular_velocity_body"), factor);
+  if (kernels.first_integrals) showNumbers("first_integrals", evaluated("first_integrals").map((value) => [value]));
   const isLocked = showMargin();
   const columns = [0, 1, 2].map((k) => matrix.map((row) => row[k]));
   const body = page.passive ? matrix : columns;
@@ -169,10 +171,24 @@ function recall() {
 
 // --- controls
 
+/** The state is where a motion starts. */
+function restart() {
+  view.time = 0;
+  view.trace = [];
+  showTime();
+  begin();
+}
+
+function showTime() {
+  at("time").value = view.time;
+  at("clock").textContent = `${view.time.toFixed(2)} s`;
+}
+
 function set({ kind, place, factor }, value) {
   if (!Number.isFinite(value)) return;
   state[kind][place] = value * factor;
   bind(`${kind}-${place}`);
+  restart();
   show();
   rest();
 }
@@ -243,17 +259,21 @@ const calm = matchMedia("(prefers-reduced-motion: reduce)");
 let last = null; // the time of the last frame in milliseconds; null if nothing moves
 let stepping = null; // how many turns are shown, while they are made one by one
 
-/** Advance by some seconds; false if a coordinate has come to its end. */
-function advance(seconds) {
+/** Go to a time; false if it is the last, or a coordinate has come to its end. */
+function reach(time) {
+  view.time = Math.max(0, Math.min(LAST, time));
+  const goes = goTo(view.time);
   const ends = inputsOf("q");
   state.q = state.q.map((value, k) => {
-    const moved = value + seconds * state.q_dot[k];
     const { period, factor } = ends[k];
-    return period ? moved - period * factor * Math.round(moved / (period * factor)) : moved;
+    return period ? value - period * factor * Math.round(value / (period * factor)) : value;
   });
-  settle();
-  return ends.every(({ place, period, factor, high }) => period || Math.abs(state.q[place] / factor) <= high);
+  showTime();
+  const isIn = ({ place, period, factor, high }) => period || Math.abs(state.q[place] / factor) <= high;
+  return goes && view.time < LAST && ends.every(isIn);
 }
+
+const advance = (seconds) => reach(view.time + seconds);
 
 function frame(time) {
   if (last === null) return;
@@ -286,8 +306,16 @@ function start() {
   requestAnimationFrame(frame);
 }
 
+at("time").addEventListener("input", change(() => {
+  pause();
+  setDone(count);
+  if (at("time").valueAsNumber < view.time) view.trace = [];
+  reach(at("time").valueAsNumber);
+}));
+
 at("play").addEventListener("click", () => {
   const wasPlaying = last !== null;
+  if (view.time >= LAST) restart();
   if (wasPlaying) pause();
   setDone(count);
   if (calm.matches) change(() => advance(0.1 * Number(at("speed").value)))();
@@ -313,9 +341,9 @@ at("reset").addEventListener("click", () => {
   at("body").value = page.body;
   at("speed").value = "1";
   setShown(page.shown);
-  view.trace = [];
   setDone(count);
   settle();
+  restart();
   show();
 });
 
@@ -324,10 +352,12 @@ recall();
 pause();
 clearTimeout(resting);
 settle();
+restart();
 show();
 addEventListener("hashchange", () => {
   recall();
   settle();
+  restart();
   show();
 });
 document.documentElement.classList.add("scripted");

@@ -2,10 +2,12 @@
 
 import { kernels, page } from "./generated.mjs";
 
-export const state = { q: [], q_dot: [], parameters: [] };
-for (const { kind, start, factor } of page.controls) state[kind].push(start * factor);
+export const state = { q: [], q_dot: [], parameters: [...page.parameters] };
+for (const { kind, place, start, factor } of page.controls) state[kind][place] = start * factor;
 
-export const evaluated = (name) => kernels[name](...page.inputs[name].map((input) => state[input]));
+/** The vectors that functions take: those of the state, and y, which holds coordinates and rates. */
+const given = (input) => (input === "y" ? [...state.q, ...state.q_dot] : state[input]);
+export const evaluated = (name) => kernels[name](...page.inputs[name].map(given));
 
 /** x with A x = b, by elimination with pivots; A is small and regular. */
 function solved(a, b) {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN
 from rigidsym.page.print_page import MOST_BYTES
-from rigidsym.pipeline import output_of, read_spec
+from rigidsym.pipeline import motion_of as motion_of_spec, output_of, read_file, read_spec
 
 DRAWN = ("ZXZ", "YZY", "xyz", "z(phi) x(theta) z(psi) y(delta)", "axis_angle")
 LIVE = ("ZXZ", "zyx", *OTHERS)
@@ -214,6 +215,7 @@ def test_everything_is_reached_by_the_tab_key_and_seen(tab, tmp_path):
         "play",
         "reset",
         "speed",
+        "time",
         "turns",
         "q-0",
         "q-0-number",
@@ -565,3 +567,56 @@ def test_the_board_fills_the_screen(tab, tmp_path):
     tab.wait_for("document.getElementById('full').textContent === 'Leave full screen'")
     tab.click("#full")
     tab.wait_for("document.fullscreenElement === null")
+
+
+# --- time
+
+GO_TO = """
+(time) => {
+  const slider = document.getElementById("time");
+  slider.value = time;
+  slider.dispatchEvent(new Event("input"));
+}
+"""
+
+
+def test_the_slider_of_time_goes_to_any_moment_and_back(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    before = tab.run(STATE)
+    tab.run(f"({GO_TO})(1.5)")
+    after = tab.run(STATE)
+    assert tab.run("document.getElementById('clock').textContent") == "1.50 s"
+    for k in range(3):
+        moved = after[f"q-{k}"] - before[f"q-{k}"] - 1.5 * before[f"q_dot-{k}"]
+        assert abs((moved + np.pi) % (2 * np.pi) - np.pi) < 1e-12
+    tab.run(f"({GO_TO})(0)")
+    assert tab.run(STATE) == before
+
+
+def test_a_motion_is_integrated_in_the_page_as_by_simulate(tab, tmp_path):
+    motion = motion_of_file("heavy_symmetric_top")
+    opened(tab, motion.page(), tmp_path)
+    before = tab.run(STATE)
+    integrals = tab.run(INTEGRALS)
+    tab.run(f"({GO_TO})(4)")
+    after = tab.run(STATE)
+    np.testing.assert_allclose(tab.run(INTEGRALS), integrals, rtol=1e-6)
+    names = ("phi", "theta", "psi")
+    initial = {name: before[f"q-{k}"] for k, name in enumerate(names)}
+    initial |= {f"{name}_dot": before[f"q_dot-{k}"] for k, name in enumerate(names)}
+    constants = dict(zip(("A", "C", "g", "l", "m"), (1.0, 0.6, 9.81, 1.0, 1.0), strict=True))
+    expected = motion.simulate(initial, {"M": 1.0, **constants}, 4.0, samples=3)
+    found = [after[f"q_dot-{k}"] for k in range(3)]
+    np.testing.assert_allclose(found, expected.q_dot[-1], rtol=1e-5)
+    assert tab.complaints == []
+
+
+INTEGRALS = """
+[...document.querySelectorAll("#first_integrals-value data")].map((cell) => Number(cell.value))
+"""
+
+
+@cache
+def motion_of_file(name: str) -> rs.Motion:
+    (spec,) = read_file(name).singles()
+    return motion_of_spec(spec)
