@@ -1,0 +1,151 @@
+"""Every error that a user can meet is provoked here; each has an exit code and a remedy."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from pathlib import Path
+from time import sleep
+
+import pytest
+import sympy as sp
+from click.testing import CliRunner
+
+import rigidsym as rs
+from rigidsym import errors
+from rigidsym.commands.cli import commands
+from rigidsym.mechanics.mass import derive as mass
+from rigidsym.mechanics.prove import Prover
+from rigidsym.notes.formats.pdf import typeset
+from rigidsym.system import cluster
+from rigidsym.system.limits import time_limit
+
+KNOWN = [
+    each
+    for each in vars(errors).values()
+    if inspect.isclass(each) and issubclass(each, errors.RigidsymError)
+]
+WRONG = '[rotation]\nsequence = "ZXX"\n'
+phi = sp.Function("phi")(sp.Symbol("t"))
+
+
+def said(*words: str) -> None:
+    """A command, whose error is raised."""
+    done = CliRunner().invoke(commands, words, standalone_mode=False)
+    assert done.exception is not None, done.output
+    raise done.exception
+
+
+def late(_: pytest.MonkeyPatch) -> None:
+    with time_limit(0.01):
+        sleep(9)
+
+
+def not_in_the_ring(_: pytest.MonkeyPatch) -> None:
+    rs.derive(rs.given(sp.diag(1, 1, sp.gamma(phi)), name="own"))
+
+
+def false_claim(patch: pytest.MonkeyPatch) -> None:
+    right = mass._moved
+    patch.setattr(mass, "_moved", lambda m, by: 2 * right(m, by))
+    rs.derive("ZXZ", ["inertia_tensor_point"], body=rs.solid("cone"))
+
+
+def defect(patch: pytest.MonkeyPatch) -> None:
+    patch.setattr(Prover, "_reduces_to_zero", lambda *_: True)
+    rs.derive(rs.given(sp.diag(sp.cos(phi), 1, 1), name="own"))
+
+
+def no_tex(patch: pytest.MonkeyPatch) -> None:
+    patch.setenv("PATH", str(Path.cwd()))
+    typeset("x")
+
+
+def failing_tex(patch: pytest.MonkeyPatch) -> None:
+    Path("latexmk").write_text("#!/bin/sh\nexit 1\n")
+    Path("latexmk").chmod(0o755)
+    Path("pdflatex").symlink_to("latexmk")
+    patch.setenv("PATH", f"{Path.cwd()}:/bin:/usr/bin")
+    typeset("x")
+
+
+def no_extra(patch: pytest.MonkeyPatch) -> None:
+    patch.setitem(sys.modules, "trimesh", None)
+    Path("a.stl").write_text("solid")
+    said("inertia", "a.stl", "--density", "1")
+
+
+def no_cluster(patch: pytest.MonkeyPatch) -> None:
+    patch.setattr(cluster, "PATIENCE", 0.2)
+    Path("a.csv").write_text("phi,theta,psi\n1,2,3\n")
+    words = ("--only", "rotation_matrix", "--scheduler", "localhost:1", "--out", "r.csv")
+    said("eval", "ZXZ", "a.csv", *words)
+
+
+def broken_template(_: pytest.MonkeyPatch) -> None:
+    Path("own").mkdir()
+    Path("own/note.html.jinja").write_text("{{ nothing }}")
+    said("derive", "ZXZ", "--only", "rotation_matrix", "--templates", "own")
+
+
+def edited(_: pytest.MonkeyPatch) -> None:
+    words = ("derive", "ZXZ", "--only", "rotation_matrix", "--quiet")
+    written = Path(CliRunner().invoke(commands, words).output.splitlines()[0])
+    written.write_text(written.read_text() + "# mine\n")
+    said(*words)
+
+
+def bad_file(_: pytest.MonkeyPatch) -> None:
+    Path("a.toml").write_text(WRONG)
+    said("run", "a.toml")
+
+
+def bad_data(_: pytest.MonkeyPatch) -> None:
+    Path("a.csv").write_text("phi,theta,psi\n1,2,three\n")
+    said("eval", "ZXZ", "a.csv", "--only", "rotation_matrix", "--out", "r.csv")
+
+
+def no_record(_: pytest.MonkeyPatch) -> None:
+    Path("empty").mkdir()
+    said("check", "empty")
+
+
+PROVOKED = {
+    errors.LimitReached: late,
+    errors.AlgebraError: not_in_the_ring,
+    errors.ModelError: lambda _: said("derive", "ZXX"),
+    errors.NotARotation: lambda _: rs.derive(rs.given(sp.diag(sp.cos(phi), 1, 1), name="own")),
+    errors.BodyError: lambda _: rs.solid("sphere", radius=-1),
+    errors.DerivationError: false_claim,
+    errors.Defect: defect,
+    errors.QuantityError: lambda _: said("derive", "ZXZ", "--only", "weight"),
+    errors.ExpressionError: lambda _: said("derive", "z(phi"),
+    errors.SpecError: bad_file,
+    errors.MissingTool: no_tex,
+    errors.MissingExtra: no_extra,
+    errors.ClusterError: no_cluster,
+    errors.TemplateFault: broken_template,
+    errors.ToolFailed: failing_tex,
+    errors.DataError: bad_data,
+    errors.RequestError: lambda _: said("derive", "ZXZ", "--timeout", "nan"),
+    errors.KernelError: lambda _: said("derive", "ZXZ", "--target", "fortran"),
+    errors.EditedFiles: edited,
+    errors.CheckError: no_record,
+}
+
+
+@pytest.mark.parametrize("kind", PROVOKED, ids=lambda kind: kind.__name__)
+def test_each_error_is_provoked(kind, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(kind) as caught:
+        PROVOKED[kind](monkeypatch)
+    assert caught.type is kind
+    assert str(caught.value)
+
+
+def test_no_error_is_left_out():
+    assert set(KNOWN) == {errors.RigidsymError, *PROVOKED}
+    for kind in PROVOKED:
+        assert kind.exit_code in (1, 2, 3, 4)
+        assert kind.remedy.endswith(".")
+        assert kind.remedy != errors.RigidsymError.remedy
