@@ -1,3 +1,4 @@
-"""The version of the package, in a file of its own so that reading it imports nothing else."""
+"""What generated files say of their origin; reading the version imports nothing else."""
 
 __version__ = "0.1.0"
+OWNERSHIP = "This file belongs to whoever generated it, without conditions."  # in every file

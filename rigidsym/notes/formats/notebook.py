@@ -8,9 +8,13 @@ from typing import Any
 from rigidsym.errors import MissingExtra
 from rigidsym.notes.document.document import CodeBlock, Document
 from rigidsym.notes.formats.markdown import parts
+from rigidsym.version import OWNERSHIP
 
 ENDING = "ipynb"
-_KERNEL = {"display_name": "Python 3", "language": "python", "name": "python3"}
+_METADATA = {
+    "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+    "rigidsym": {"ownership": OWNERSHIP},
+}
 
 
 def render(document: Document) -> str:
@@ -20,7 +24,7 @@ def render(document: Document) -> str:
     """
     nbformat = _nbformat()
     cells = [_cell(nbformat, part, place) for place, part in enumerate(parts(document), start=1)]
-    notebook = nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": _KERNEL})
+    notebook = nbformat.v4.new_notebook(cells=cells, metadata=_METADATA)
     nbformat.validate(notebook)
     return str(nbformat.writes(notebook)) + "\n"
 

@@ -22,7 +22,7 @@ from rigidsym.mechanics.derivation import (
     Step,
     VectorForm,
 )
-from rigidsym.version import __version__
+from rigidsym.version import OWNERSHIP, __version__
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -47,6 +47,7 @@ def record(
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,
         "generator": f"rigidsym {__version__}",
+        "ownership": OWNERSHIP,
         "name": derivation.name,
         "title": derivation.title,
         "presentation": "passive" if derivation.model.passive else "active",
