@@ -37,7 +37,7 @@ class MathmlPen(SheetPen):
             parts, texts = inline_parts(piece), inline_parts(spoken)
         is_tall = piece.height > Height.FLAT
         written = [math(p, t, is_tall=is_tall) for p, t in zip(parts, texts, strict=True)]
-        return Inline(tuple(written), is_tall)
+        return Inline(tuple(written), is_tall, piece.width)
 
     def spelt_symbol(self, symbol: Symbol, index: str | None) -> str:
         text = _letters(symbol)

@@ -48,6 +48,7 @@ class Inline(NamedTuple):
 
     parts: tuple[str, ...]
     is_tall: bool
+    width: float  # ems
 
 
 class SheetPen(Pen):
@@ -77,7 +78,9 @@ class SheetPen(Pen):
     def inline(self, formulas: Iterable[Formula]) -> dict[Formula, Inline]:
         """Each formula as it stands among words."""
         pieces = ((formula, self.write(formula)) for formula in formulas)
-        return {formula: Inline((p.text,), p.height > Height.FLAT) for formula, p in pieces}
+        return {
+            formula: Inline((p.text,), p.height > Height.FLAT, p.width) for formula, p in pieces
+        }
 
     def symbol(self, node: Symbol) -> Piece:
         index = None

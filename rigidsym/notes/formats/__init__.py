@@ -19,7 +19,13 @@ from rigidsym.errors import ModelError
 if TYPE_CHECKING:
     from rigidsym.notes.document.document import Document
 
-_SHIPPED = {"tex": "latex", "html": "html", "md": "markdown", "ipynb": "notebook"}
+_SHIPPED = {
+    "tex": "latex",
+    "fragment.tex": "fragment",
+    "html": "html",
+    "md": "markdown",
+    "ipynb": "notebook",
+}
 
 
 class _Module(Protocol):

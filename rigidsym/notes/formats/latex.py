@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
-from math import ceil
-
 from rigidsym.formula.display import PAGE, Rows, display, pack
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.sheet_pen import Inline
@@ -14,10 +10,12 @@ from rigidsym.notes.document.document import (
     CodeBlock,
     Document,
     Equation,
+    EquationReference,
     EquationRow,
     Figure,
     NoteTable,
     Paragraph,
+    Span,
     Text,
     plain,
 )
@@ -44,26 +42,31 @@ _TALL = 30  # lines of text, of about fifty on a page: more than these may part
 
 def render(document: Document) -> str:
     """The note as a LaTeX file; the same document gives the same bytes."""
+    return rendered(TEMPLATE, document)
+
+
+def rendered(template: str, document: Document) -> str:
+    """A template with the parts of the note in it."""
     printer = _LatexPrinter(document)
-    template = resources.environment(**_DELIMITERS).get_template(TEMPLATE)
-    return template.render(
-        title=escape(document.title),
-        subtitle=escape(document.subtitle),
-        sections=[
-            {"title": escape(section.title), "body": printer.body(section)}
-            for section in document.sections
-            if not section.on_own_page
-        ],
-        sheets=[
-            {"title": escape(section.title), "body": printer.body(section)}
-            for section in document.sections
-            if section.on_own_page
-        ],
-        metadata=metadata(document),
-        sources=[
-            {"key": printer.key(place), "text": escape(source)}
-            for place, source in enumerate(document.sources, start=1)
-        ],
+    written = [
+        (section.on_own_page, {"title": escape(section.title), "body": printer.body(section)})
+        for section in document.sections
+    ]
+    return (
+        resources.environment(**_DELIMITERS)
+        .get_template(template)
+        .render(
+            title=escape(document.title),
+            subtitle=escape(document.subtitle),
+            byline="",
+            sections=[section for is_sheet, section in written if not is_sheet],
+            sheets=[section for is_sheet, section in written if is_sheet],
+            metadata=metadata(document),
+            sources=[
+                {"key": printer.key(place), "text": escape(source)}
+                for place, source in enumerate(document.sources, start=1)
+            ],
+        )
     )
 
 
@@ -105,28 +108,35 @@ class _LatexPrinter(NotePrinter):
         shown = display(equation, self.document.letters, width, self.pen)
         announced = self.text(announcement(equation, shown.done))
         lines = [announced] if announced else []
-        if shown.rows and shown.rows.height > _TALL:
+        if shown.rows is not None and shown.rows.height > _TALL:
             lines += self._over_pages(equation, shown.rows)
         else:
             lines += self._at_once(equation, shown.text)
-        if equation.number:
-            said = " ".join(f"{claim}." for claim in self.claims(equation))
-            function = self._typed(equation.function) if equation.function else ""
-            lines.append(rf"\remark{{{said}}}{{{function}}}")
+        said = " ".join(f"{claim}." for claim in self.claims(equation))
+        function = self._typed(equation.function) if equation.function else ""
+        if said or function:
+            lines = ["{\\followed", *lines, "}", rf"\remark{{{said}}}{{{function}}}"]
         return "\n".join(lines)
 
     def _at_once(self, equation: Equation, inside: str) -> list[str]:
         if not equation.number:
             return [f"\\[\n{inside}\n\\]"]
-        begin = f"\\begin{{resultof}}{{{equation.number}}}{{{self._label(equation.label)}}}"
-        return [begin, inside, r"\end{resultof}"]
+        begin = rf"\begin{{resultof}}{{{self._label(equation.label)}}}"
+        return [*self._from(equation.number), begin, inside, r"\end{resultof}"]
+
+    def _from(self, number: int) -> list[str]:
+        """TeX counts the equations; where the numbers of a theory leave some out, so does TeX."""
+        numbers = (equation.number or 0 for equation in self.document.equations)
+        before = max((n for n in numbers if n < number), default=0)
+        is_next = number == before + 1
+        return [] if is_next else [rf"\setcounter{{equation}}{{{number - 1}}}"]
 
     def _over_pages(self, equation: Equation, rows: Rows) -> list[str]:
         """Lines between which a page may end, which a box would keep together."""
         environment = "align*" if rows.are_aligned else "gather*"
-        label = self._label(equation.label)
-        number = [rf"\tag{{{equation.number}}}\label{{{label}}}"] if equation.number else []
+        number = [rf"\numbered{{{self._label(equation.label)}}}"] if equation.number else []
         return [
+            *(self._from(equation.number) if equation.number else []),
             rf"{{\freely\begin{{{environment}}}",
             rows.joined(self.pen),
             *number,
@@ -135,41 +145,34 @@ class _LatexPrinter(NotePrinter):
 
     def claim(self, claim: Formula) -> str:
         """A formula in a line of its own height; fractions in small type would be hard to read."""
-        (text,), is_tall = self.inline(claim)
+        (text,), is_tall, _ = self.inline(claim)
         return rf"$\displaystyle {text}$" if is_tall else f"${text}$"
 
     def notetable(self, table: NoteTable) -> str:
-        return "\n".join(map(self._table, self._paged(table)))
-
-    def _paged(self, table: NoteTable) -> Iterator[NoteTable]:
-        """The table, or its parts; those after the first say in the caption that they go on."""
-        heights = [max(map(self._height, row)) for row in table.rows]
-        room = sum(heights) / max(1, ceil(sum(heights) / _ROWS))  # parts of about one height
-        part: list[tuple[Text, ...]] = []
-        used, caption = 0, table.caption
-        for row, height in zip(table.rows, heights, strict=True):
-            if part and used >= room:
-                yield replace(table, caption=caption, rows=tuple(part))
-                part, used, caption = [], 0, f"{table.caption}, continued"
-            part.append(row)
-            used += height
-        yield replace(table, caption=caption, rows=tuple(part))
-
-    def _height(self, cell: Text) -> int:
-        """In lines: a fraction is as high as two."""
-        if any(isinstance(span, Formula) and self.inline(span).is_tall for span in cell):
-            return 2
-        words = any(isinstance(span, str) and " " in span for span in cell)
-        return ceil(len(plain(cell)) / _WORDS) or 1 if words else 1
-
-    def _table(self, table: NoteTable) -> str:
-        head, *rows = (
-            " & ".join(map(self._cell, row)) + r" \\" for row in (table.head, *table.rows)
-        )
+        head, *rows = (list(map(self._cell, row)) for row in (table.head, *table.rows))
         # l for a column of one line a cell, T for the one of words
         columns = "".join("T" if k == table.of_words else "l" for k in range(len(table.head)))
-        begin = rf"\begin{{ruled}}{{{columns}}}{{{escape(table.caption)}}}"
-        return "\n".join([begin, head, r"\midrule", *rows, r"\end{ruled}"])
+        if len(rows) >= _MANY and 2 * self._width(table) + _GAP <= _LINE / _SMALL:  # in two halves
+            half = -(-len(rows) // 2)
+            rows += [[""] * len(head)] * (2 * half - len(rows))
+            rows = [[*left, *right] for left, right in zip(rows[:half], rows[half:], strict=True)]
+            head, columns = head * 2, rf"{columns}@{{\hspace{{{_GAP}em}}}}{columns}"
+        lines = [" & ".join(row) + r" \\" for row in (head, *rows)]
+        begin = rf"\begin{{ruled}}{{{columns}}}{{{len(head)}}}{{{escape(table.caption)}}}"
+        return "\n".join([begin, f"{{{lines[0]}}}", *lines[1:], r"\end{ruled}"])
+
+    def _width(self, table: NoteTable) -> float:
+        """About how wide a table is, in ems."""
+        columns = zip(table.head, *table.rows, strict=True)
+        return sum(_COLUMN_GAP + max(map(self._width_of_cell, column)) for column in columns)
+
+    def _width_of_cell(self, cell: Text) -> float:
+        return sum(map(self._width_of_span, cell))
+
+    def _width_of_span(self, span: Span) -> float:
+        if isinstance(span, Formula):
+            return self.inline(span).width
+        return _LETTER * (4 if isinstance(span, EquationReference) else len(plain((span,))))
 
     def _cell(self, text: Text) -> str:
         return "".join(self._tall(s) if isinstance(s, Formula) else self.span(s) for s in text)
@@ -211,5 +214,8 @@ class _LatexPrinter(NotePrinter):
         return f"{self.document.name}:{label}"
 
 
-_ROWS = 40  # on a page, beside a heading
-_WORDS = 44  # letters of a column of words
+_MANY = 8  # rows of a narrow table that are set in two halves
+_GAP = 3  # ems between them
+_SMALL = 0.9  # size of a table
+_COLUMN_GAP = 1.1  # ems
+_LETTER = 0.5  # ems

@@ -18,6 +18,7 @@ from rigidsym.notes.document.document import (
 from rigidsym.notes.formula.derivation_letters import RESIDUAL
 from rigidsym.notes.prose.prose import proofs_in_words
 
+EXACT: Text = ("exact",)
 Claim = tuple[str, Proof]  # the label of an equation, and what was claimed there
 
 
@@ -37,7 +38,7 @@ def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[NoteBlock]:
 
 
 def _status(proof: Proof) -> Text:
-    return ("exact",) if proof.is_exact else (Strong("unproved"),)
+    return EXACT if proof.is_exact else (Strong("unproved"),)
 
 
 def _left_over(proof: Proof) -> Iterator[NoteBlock]:

@@ -5,14 +5,28 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rigidsym.errors import ModelError
-from rigidsym.notes.document.document import Document, Equation, NoteBlock, Paragraph, Section
+from rigidsym.formula.display import PAGE, display
+from rigidsym.formula.letters import TIME, Letters
+from rigidsym.formula.tree import PLUS, Differential, Fraction, Rate, joined, row
+from rigidsym.notes.document.document import (
+    Document,
+    Equation,
+    NoteBlock,
+    NoteTable,
+    Paragraph,
+    Section,
+)
+from rigidsym.notes.sections.claims_table import EXACT
 from rigidsym.notes.sections.compose import FUNCTIONS, IDENTITIES, SYMBOLS
 from rigidsym.notes.sections.summary import TITLE as SUMMARY
 
 STYLES = ("lecture", "paper", "audit")  # the default first
 APPENDIX = "Appendix: identities verified"
 
-_LEFT_OUT = {"lecture": (FUNCTIONS,), "paper": (FUNCTIONS, IDENTITIES, SYMBOLS, SUMMARY)}
+_LEFT_OUT = {
+    "lecture": (FUNCTIONS, SYMBOLS, SUMMARY),
+    "paper": (FUNCTIONS, SYMBOLS, SUMMARY, IDENTITIES),
+}
 _VERIFIED = {
     "lecture": "Each numbered equation has been verified exactly, as listed in the appendix.",
     "paper": "Each numbered equation has been verified exactly.",
@@ -29,8 +43,13 @@ def in_style(document: Document, style: str, *, is_short: bool = False) -> Docum
         raise ModelError(f"style is {', '.join(STYLES[:-1])} or {STYLES[-1]}, and not {style!r}")
     if style == "audit":
         return document
+    letters = document.letters
     left_out = _LEFT_OUT["paper" if is_short else style]
-    kept = [section for section in document.sections if section.title not in left_out]
+    kept = [
+        replace(section, blocks=tuple(_by_the_chain_rule(b, letters) for b in section.blocks))
+        for section in document.sections
+        if section.title not in left_out
+    ]
     identities = [replace(s, title=APPENDIX) for s in kept if s.title == IDENTITIES]
     others = [section for section in kept if section.title != IDENTITIES]
     if all(not equation.unproved for equation in document.equations):
@@ -45,5 +64,26 @@ def _plain(section: Section) -> Section:
 
 
 def _without_proofs(block: NoteBlock) -> NoteBlock:
-    """An equation without the identities that were verified and without its function."""
-    return replace(block, proved=(), function="") if isinstance(block, Equation) else block
+    """Without the identities that were verified, the functions, and a column of nothing new."""
+    if isinstance(block, Equation):
+        return replace(block, proved=(), function="")
+    if isinstance(block, NoteTable) and block.rows and all(r[-1] == EXACT for r in block.rows):
+        rows = tuple(row[:-1] for row in block.rows)
+        return replace(block, head=block.head[:-1], rows=rows)
+    return block
+
+
+def _by_the_chain_rule(block: NoteBlock, letters: Letters) -> NoteBlock:
+    """dR/dt = φ̇ ∂R/∂φ + ..., in place of nine long entries."""
+    if not isinstance(block, Equation) or block.label != "rotation_rate" or block.matrix is None:
+        return block
+    if not display(block, letters, PAGE).done:
+        return block
+    coordinates = [q for q, (order, k) in letters.places.items() if order == 0 and k >= 0]
+    matrix = block.sides[0].of if isinstance(block.sides[0], Rate) else block.sides[0]
+    above = row(Differential("∂"), matrix)
+    terms = [
+        row(letters.name(q.diff(TIME)), Fraction(above, row(Differential("∂"), letters.name(q))))
+        for q in coordinates
+    ]
+    return replace(block, sides=(*block.sides[:1], joined(terms, PLUS)), matrix=None, entries=())
