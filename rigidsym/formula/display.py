@@ -15,9 +15,9 @@ import sympy as sp
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Line, break_lines
-from rigidsym.formula.scalars import formula_of, matrix_of
+from rigidsym.formula.scalars import factored, formula_of, matrix_of
 from rigidsym.formula.sheet_pen import Aligned, SheetPen
-from rigidsym.formula.tree import EQUALS, Formula, Matrix, equal
+from rigidsym.formula.tree import EQUALS, Formula, Matrix, equal, row
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.formula.widths import EQUAL, QUAD
 
@@ -170,7 +170,7 @@ class _Setter:
         rows = matrix_of(equation.matrix, self.letters)
         if not sides:
             return self._definitions(equation.entries, [value for (value,) in rows], width)
-        full = Matrix(tuple(map(tuple, rows)))
+        full = self._whole(equation.matrix)
         for form in self._forms(sides, full, self.pen):
             if form.width <= width:
                 return form
@@ -181,10 +181,16 @@ class _Setter:
         lines, needed = self._listing(equation.entries, [e for row in rows for e in row], width)
         return self._below(Rows(tuple(lines)), needed, "listed")
 
+    def _whole(self, matrix: sp.ImmutableMatrix) -> Formula:
+        """The matrix, behind a fraction that all its entries hold."""
+        factor, rest = factored(matrix)
+        whole = Matrix(tuple(map(tuple, matrix_of(rest, self.letters))))
+        return whole if factor == 1 else row(formula_of(factor, self.letters), whole)
+
     def _below(self, rows: Rows, width: float, done: Done = "") -> Display:
         return Display(rows.written(self.pen), width, done, rows)
 
-    def _forms(self, sides: Sequence[Formula], matrix: Matrix, pen: SheetPen) -> Iterator[Display]:
+    def _forms(self, sides: Sequence[Formula], matrix: Formula, pen: SheetPen) -> Iterator[Display]:
         """The equation on one line, and broken before its last equals sign."""
         whole = pen.write(equal(*sides, matrix))
         yield Display(whole.text, whole.width)

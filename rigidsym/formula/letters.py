@@ -108,7 +108,7 @@ class Letters:
 
 Key = tuple[object, ...]
 
-FUNCTIONS = {sp.sin: "sin", sp.cos: "cos", sp.tan: "tan", sp.cot: "cot"}
+FUNCTIONS = {sp.sin: "sin", sp.cos: "cos", sp.tan: "tan", sp.cot: "cot", sp.atan: "arctan"}
 _FUNCTION_ORDER = {function: place for place, function in enumerate(FUNCTIONS)}
 
 

@@ -61,7 +61,36 @@ _BOUND = {
 @lru_cache(maxsize=8192)
 def formula_of(expression: sp.Expr, letters: Letters) -> Formula:
     """The expression as a tree; raises AlgebraError for a node without a printed form."""
-    return _ScalarWalk(letters).expression(letters.shortened(expression))
+    return _ScalarWalk(letters).expression(signs_outside(letters.shortened(expression)))
+
+
+@lru_cache(maxsize=8192)
+def signs_outside(node: sp.Expr) -> sp.Expr:
+    """The same with −a (b + c) for a (−b − c): the sign of a sum of negative terms before it."""
+    if not node.args or not node.has(sp.Add) or is_application(node) or node.is_Derivative:
+        return node
+    parts = [signs_outside(part) for part in node.args]
+    if node.is_Mul:
+        flipped = [part for part in parts if part.is_Add and all(map(is_negative, part.args))]
+        kept = [-part if part in flipped else part for part in parts]
+        if flipped and len(parts) > 1:
+            return sp.Mul(*kept) if len(flipped) % 2 == 0 else sp.Mul(-1, *kept)
+    return node.func(*parts)
+
+
+def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
+    """A fraction that is in all entries, such as ½ or 2/(n² + w²), and the matrix behind it."""
+    entries = [entry for entry in matrix if entry != 0]
+    below = {sp.fraction(entry)[1].as_coeff_Mul()[1] for entry in entries}
+    if len(entries) < 2 or len(below) > 1:
+        return sp.S.One, matrix
+    (divisor,) = below
+    contents = [(entry * divisor).as_content_primitive() for entry in matrix]
+    number = sp.gcd_list([content for content, rest in contents if rest != 0])
+    if divisor == 1 and number.is_Integer:
+        return sp.S.One, matrix
+    rest = [content / number * primitive for content, primitive in contents]
+    return number / divisor, sp.ImmutableMatrix(*matrix.shape, rest)
 
 
 def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> list[list[Formula]]:

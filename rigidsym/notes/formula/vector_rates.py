@@ -34,8 +34,14 @@ def rate_of_form(form: VectorForm, rate_of_length: sp.Symbol) -> VectorForm:
     found: dict[Formula, sp.Expr] = {}
     for coefficient, vector in _terms(form, rate_of_length):
         found[vector] = found.get(vector, 0) + coefficient
-    terms = tuple(VectorTerm(sp.together(c), vector) for vector, c in found.items() if c != 0)
+    terms = tuple(VectorTerm(_collected(c), vector) for vector, c in found.items() if c != 0)
     return VectorForm(terms=terms, components=form.components, length=form.length, proof=form.proof)
+
+
+def _collected(coefficient: sp.Expr) -> sp.Expr:
+    """As one fraction, with equal terms above its line added up: −3n + n (1 − cos n)."""
+    above, below = sp.fraction(sp.together(coefficient))
+    return sp.factor_terms(sp.expand(above)) / below
 
 
 def _terms(form: VectorForm, rate_of_length: sp.Symbol) -> Iterator[tuple[sp.Expr, Formula]]:
