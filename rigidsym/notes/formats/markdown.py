@@ -23,8 +23,9 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Section,
     Text,
+    cleaned,
 )
-from rigidsym.notes.formats.printer import NotePrinter, cleaned
+from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.notes.prose.prose import announcement
 from rigidsym.version import OWNERSHIP
 

@@ -5,7 +5,6 @@ A subclass has a method for each kind of block and of span, named after it, and 
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Callable, Iterator
 from typing import ClassVar
 
@@ -86,18 +85,3 @@ class NotePrinter:
         return self.text(
             (Strong(f"Figure {number}."), " ", *figure.caption, " ", *figure.description)
         )
-
-
-def cleaned(text: str) -> str:
-    """The text with a blank in place of each character that is not printed, or ends a line."""
-    if text.isprintable() and text.isascii():
-        return text
-    return "".join(" " if _is_hidden(c) else c for c in unicodedata.normalize("NFC", text))
-
-
-def _is_hidden(character: str) -> bool:
-    """Controls, formats such as a change of direction, surrogates, unassigned; line separators."""
-    return unicodedata.category(character)[0] == "C" or unicodedata.category(character) in (
-        "Zl",
-        "Zp",
-    )
