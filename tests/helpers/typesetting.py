@@ -6,6 +6,7 @@ import re
 
 from rigidsym.notes.document.document import Document
 from rigidsym.notes.formats.latex import render as print_latex
+from rigidsym.notes.formats.pdf import typeset
 
 BEGIN, END = r"\begin{document}", r"\end{document}"
 
@@ -20,9 +21,17 @@ def bound_together(notes: list[str]) -> str:
 UNPACKED = r"\pdfcompresslevel=0 \pdfobjcompresslevel=0 "
 
 
+def pages_of(latex: str) -> int:
+    """The number of pages of a document that compiles without a warning."""
+    made = typeset(latex.replace("{article}", "{article}" + UNPACKED))
+    assert made.warnings == ()
+    return len(re.findall(rb"/Type\s*/Page\b(?!s)", made.pdf))
+
+
 def sheet_of(document: Document) -> str:
     """The summary of a note, with the numbers of equations but not the equations."""
     whole = print_latex(document)
     before, rest = whole.split(r"\begin{document}")
-    body = rest.split(r"\end{thebibliography}")[1]
+    start, end = rest.index(r"\ifcsname"), rest.index("\n\\fi\n") + len("\n\\fi\n")
+    body = rest[start:end] + rest.split(r"\end{thebibliography}")[1]
     return f"{before}\\begin{{document}}{re.sub(r'.eqref{[^}]*}', '(99)', body)}"

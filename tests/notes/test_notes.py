@@ -351,7 +351,7 @@ def _said(motion: rs.Motion) -> str:
 
 def _symbols(motion: rs.Motion) -> dict[str, tuple[str, str]]:
     """Meaning and unit by symbol, in plain text."""
-    (section,) = (s for s in motion.note().document.sections if s.title == "Symbols")
+    (section,) = (s for s in motion.note(style="audit").document.sections if s.title == "Symbols")
     (table,) = section.blocks
     assert isinstance(table, NoteTable)
     return {plain(row[0]): (plain(row[1]), plain(row[2])) for row in table.rows}

@@ -7,7 +7,9 @@ from dataclasses import replace
 import pytest
 
 from helpers.motions import derived
+from helpers.typesetting import pages_of
 from rigidsym.errors import ModelError
+from rigidsym.formula.tree import equal
 from rigidsym.notes.document.document import Equation
 from rigidsym.notes.sections.styles import APPENDIX, STYLES, in_style
 from rigidsym.pipeline import output_of, read_spec
@@ -23,12 +25,24 @@ def titles(document):
 def test_every_numbered_equation_is_in_every_style(style):
     found = in_style(AUDIT, style)
     assert [e.number for e in found.equations] == [e.number for e in AUDIT.equations]
-    assert [e.sides for e in found.equations] == [e.sides for e in AUDIT.equations]
+    assert [e.sides[0] for e in found.equations] == [e.sides[0] for e in AUDIT.equations]
+
+
+@pytest.mark.parametrize("style", ["lecture", "paper"])
+def test_nine_long_entries_are_said_by_the_chain_rule(style):
+    rate = next(e for e in in_style(AUDIT, style).equations if e.label == "rotation_rate")
+    shown = "dR/dt = φ̇ (∂R/∂φ) + θ̇ (∂R/∂θ) + ψ̇ (∂R/∂ψ)"
+    assert (rate.matrix, equal(*rate.sides).text) == (None, shown)
 
 
 def test_an_audit_shows_identities_and_functions_beside_their_equations():
     assert all(e.proved and e.function for e in AUDIT.equations)
     assert "Functions" in titles(AUDIT)
+
+
+@pytest.mark.usefixtures("tex")
+def test_a_lecture_on_three_turns_takes_four_pages():
+    assert pages_of(derived("ZXZ").note().latex()) <= 4
 
 
 def test_a_lecture_ends_with_its_identities():
