@@ -77,6 +77,10 @@ def test_no_file_imports_itself_in_a_circle():
     tuple(TopologicalSorter(HOUSE.imports).static_order())  # raises CycleError, and names them
 
 
+def test_no_two_rooms_or_subfolders_need_each_other():
+    assert circles(HOUSE) == []
+
+
 def test_circles_of_parts_are_seen(tmp_path):
     for name, text in {
         "a/x": "from house.b import y",
