@@ -19,7 +19,11 @@ def files():
 
 
 def test_every_generated_file_says_whose_it_is(files):
-    unsaid = [name for name, text in files.items() if OWNERSHIP not in " ".join(text.replace("*", " ").split())]
+    unsaid = [
+        name
+        for name, text in files.items()
+        if OWNERSHIP not in " ".join(text.replace("*", " ").split())
+    ]
     assert unsaid == []
 
 
