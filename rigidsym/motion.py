@@ -32,6 +32,7 @@ from rigidsym.models.rotation_text import rotation_from
 from rigidsym.system.limits import time_limit
 
 if TYPE_CHECKING:
+    from rigidsym.notes.document.own_text import OwnText
     from rigidsym.notes.note import Note
     from rigidsym.simulation.trajectory import Trajectory
 
@@ -84,13 +85,19 @@ class Motion(Derivation):
         return conversions_of(self.model)
 
     def note(
-        self, *, with_kernels: bool = True, conversions: bool = False, style: str = "lecture"
+        self,
+        *,
+        with_kernels: bool = True,
+        conversions: bool = False,
+        style: str = "lecture",
+        text: OwnText | None = None,
     ) -> Note:
         """The document of the derivation: `.latex()`, `.html()`, `.markdown()`, `.notebook()`.
 
         `style` is "lecture", which explains, "paper", which is terse, or "audit", which shows every
         identity and, with `with_kernels`, the function of the NumPy module beside its equation.
-        `conversions` adds a section on the unit quaternion and the matrix.
+        `conversions` adds a section on the unit quaternion and the matrix; `text` adds sentences,
+        sources and a byline of your own, and leaves parts out.
         """
         from rigidsym.notes.note import note
 
@@ -100,6 +107,7 @@ class Motion(Derivation):
             notation=self.notation,
             conversions=self.conversions if conversions else None,
             style=style,
+            text=text,
         )
 
     def simulate(

@@ -24,6 +24,7 @@ from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.body import RigidBody
 from rigidsym.motion import CHOICES, DEFAULT, QUANTITIES, Motion, Notation, derive
+from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.sections.styles import STYLES
@@ -122,6 +123,7 @@ def vocabulary() -> Vocabulary:
         styles=STYLES,
         notation=Notation,
         choices=CHOICES,
+        text=OwnText,
         derivative=read_request,
     )
 
@@ -177,7 +179,10 @@ def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
 
 def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
     note = motion.note(
-        with_kernels="numpy" in spec.kernels, conversions=spec.conversions, style=spec.style
+        with_kernels="numpy" in spec.kernels,
+        conversions=spec.conversions,
+        style=spec.style,
+        text=cast("OwnText | None", spec.text),
     )
     for ending in FORMATS:
         if ending in spec.note or (ending == "tex" and PDF in spec.note):

@@ -217,6 +217,9 @@ class OutputOptions:
         "function.  [default: lecture]",
     )
     pdf: bool = option("--pdf", is_flag=True, help="Also typeset the note; needs TeX.")
+    fragment: bool = option(
+        "--fragment", is_flag=True, help="Also write the note without a preamble, for \\input."
+    )
     as_json: bool = option("--json", is_flag=True, help="Print the results as JSON.")
     quiet: bool = option("--quiet", is_flag=True, help="Print only the names of the files written.")
     full: bool = option(
@@ -233,10 +236,10 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, SelectionOp
         targets = unique(self.target)
         for target in targets:
             check_target(target)
-        note = tuple(dict.fromkeys((*spec.note, "pdf"))) if self.pdf else spec.note
+        asked = ("pdf",) * self.pdf + ("fragment.tex",) * self.fragment
         return replace(
             self.in_notation(self.selected(spec)),
-            note=note,
+            note=tuple(dict.fromkeys((*spec.note, *asked))),
             kernels=targets or spec.kernels,
             style=self.style or spec.style,
             derivatives=self._derivatives(spec),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from rigidsym.formula.notation import DEFAULT, FRAMES, Notation
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document.document import Document
+from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.sections.compose import Composer
 from rigidsym.notes.sections.styles import in_style
@@ -60,11 +61,13 @@ def note(
     notation: Notation = DEFAULT,
     conversions: Conversions | None = None,
     style: str = "audit",
+    text: OwnText | None = None,
 ) -> Note:
     """The note of a derivation, and of the conversions if they are given, in a style.
 
     `module` is the file name of its kernel module, if there is one; `functions` are the quantities
     that module evaluates, all of them by default. Each equation of an audit names its function.
+    `text` is what its user adds or leaves out; raises ModelError for a name that it has not.
     """
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
@@ -78,7 +81,8 @@ def note(
     document = composer.document
     if notation.frames != FRAMES:
         document = document.changed(lambda text: tuple(map(notation.named, text)))
-    return Note(in_style(document, style, is_short=composer.is_short))
+    document = in_style(document, style, is_short=composer.is_short)
+    return Note(text.applied(document) if text else document)
 
 
 def _composer_of(derivation: Derivation) -> type[Composer]:

@@ -17,15 +17,17 @@ from rigidsym.spec.derivation_spec import Body, DerivationSpec, fault_of_name, f
 from rigidsym.spec.faults import Faults, Source, shortened
 from rigidsym.spec.rotation_table import KEYS, read_rotation
 from rigidsym.spec.tables import MOST_CHARACTERS, Table, read_toml
-from rigidsym.spec.vocabulary import NotationChoice, Vocabulary
+from rigidsym.spec.vocabulary import NotationChoice, TextChoice, Vocabulary
 from rigidsym.system import resources
 
 A_PAIR_OF_FRAMES = 'two names such as ["inertial", "spacecraft"]'
-_OF_BOTH = ("title", "theory", "parameters", "body", "dynamics", "notation")
+_OF_BOTH = ("title", "theory", "parameters", "body", "dynamics", "notation", "text")
 _FILE = (*_OF_BOTH, "rotation", "output")
 _RECORD = (*_OF_BOTH, "name", "rotations")
 _DYNAMICS = ("potential", "forces", "torque", "first_integrals", "parts", "method")
 _FORMER = ("measured",)  # in old records: errors that were printed with the kernels
+_LINES = ("author", "course", "date")
+_SENTENCES = ("before", "after", "sources")
 _OUTPUT = ("quantities", "kernels", "note", "style", "conversions", "derivatives")
 
 
@@ -128,6 +130,7 @@ class _Reader:
             "body": _read_body(table, name, folder),
             **_read_dynamics(table, models),
             "notation": self.notation(table),
+            "text": self.text(table),
             **(self.output(output) if output else {}),
         }
         faults.raise_if_any()
@@ -161,6 +164,21 @@ class _Reader:
             chosen["frames"] = tuple(frames.values())
         with notation.noting("frames"):
             return words.notation(**chosen)
+        return None
+
+    def text(self, table: Table) -> TextChoice | None:
+        """What [text] adds to the note and leaves out."""
+        text = table.table("text")
+        if text is None:
+            return None
+        text.refuse_others((*_LINES, "omit", *_SENTENCES))
+        chosen: dict[str, Any] = {key: text.text(key) or "" for key in _LINES}
+        chosen["omit"] = tuple(text.texts("omit", 'a list such as ["Symbols"]').values())
+        for key in _SENTENCES:
+            if inner := text.table(key):
+                chosen[key] = {name: inner.text(name) or "" for name in inner.data}
+        with table.noting("text"):
+            return self.words.text(**chosen)
         return None
 
     def output(self, table: Table) -> dict[str, Any]:

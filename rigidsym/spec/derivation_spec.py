@@ -14,7 +14,7 @@ from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import request_of, rotation_from
 from rigidsym.spec.faults import Faults, Source, shortened
-from rigidsym.spec.vocabulary import NotationChoice
+from rigidsym.spec.vocabulary import NotationChoice, TextChoice
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _DEVICES = re.compile(r"con|prn|aux|nul|com[1-9]|lpt[1-9]")  # not allowed as file names on Windows
@@ -46,6 +46,7 @@ class DerivationSpec:
     conversions: bool = False  # to and from quaternion and matrix
     derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
     notation: NotationChoice | None = None  # of notes and terminal; None: the default
+    text: TextChoice | None = None  # the user's own, in the note
     source: Source | None = field(default=None, compare=False, repr=False)  # where it was read
 
     def __post_init__(self) -> None:
@@ -83,6 +84,7 @@ class DerivationSpec:
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),
             "notation": self._notation_data(),
+            "text": {k: v for k, v in asdict(self.text).items() if v} if self.text else {},
         }
         return {
             "name": self.name,

@@ -159,6 +159,9 @@ class Document:
     subtitle: str
     letters: Letters
     sections: tuple[Section, ...]
+    author: str = ""
+    byline: tuple[str, ...] = ()  # below the title: author, course, date
+    more_sources: tuple[str, ...] = ()  # listed whether they are cited or not
 
     @property
     def equations(self) -> Iterator[Equation]:
@@ -174,9 +177,10 @@ class Document:
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """The sources that the text cites, each once, in order of appearance."""
+        """The sources that the text cites, each once, in order of appearance; then more."""
         spans = (span for text in self._texts() for span in text)
-        return tuple(dict.fromkeys(s.citation.text for s in spans if isinstance(s, Cited)))
+        cited = (span.citation.text for span in spans if isinstance(span, Cited))
+        return tuple(dict.fromkeys((*cited, *self.more_sources)))
 
     def source_number(self, cited: Cited) -> int:
         """The number of the source that is cited."""

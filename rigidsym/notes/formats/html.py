@@ -56,6 +56,7 @@ def rendered(template: str, printer: HtmlPrinter, **more: object) -> str:
         .render(
             title=escape(document.title),
             subtitle=escape(document.subtitle),
+            byline=escape(" · ".join(document.byline)),
             sections=[
                 {
                     "title": escape(section.title),

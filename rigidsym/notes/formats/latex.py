@@ -59,7 +59,7 @@ def rendered(template: str, document: Document) -> str:
         .render(
             title=escape(document.title),
             subtitle=escape(document.subtitle),
-            byline="",
+            byline=escape(" · ".join(document.byline)),
             sections=[section for is_sheet, section in written if not is_sheet],
             sheets=[section for is_sheet, section in written if is_sheet],
             metadata=metadata(document),
@@ -76,7 +76,7 @@ def metadata(document: Document) -> str:
     said = {
         "Title": document.title,
         "Subject": document.subtitle,
-        "Author": "rigidsym",
+        "Author": document.author or "rigidsym",
         "Creator": f"rigidsym {__version__}",
     }
     return " ".join(f"/{key} <{_utf16(text)}>" for key, text in said.items())

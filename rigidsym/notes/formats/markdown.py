@@ -47,7 +47,8 @@ def render(document: Document) -> str:
 def parts(document: Document) -> Iterator[str | CodeBlock]:
     """The note in pieces, in order: Markdown text, and the programs between."""
     printer = _MarkdownPrinter(document)
-    yield f"# {escape(document.title)}\n\n{escape(document.subtitle)}"
+    lines = (document.subtitle, " · ".join(document.byline))
+    yield "\n\n".join([f"# {escape(document.title)}", *map(escape, filter(None, lines))])
     for section in document.sections:
         yield from printer.section(section)
     yield printer.sources()
