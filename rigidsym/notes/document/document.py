@@ -6,7 +6,6 @@ hold SymPy matrices, so that each printer can break and abbreviate them for its 
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, zip_longest
@@ -84,21 +83,6 @@ def _plain(span: Span) -> str:
             return str(span.citation)
         case EquationReference():
             return span.label
-
-
-def cleaned(text: str) -> str:
-    """The text with a blank in place of each character that is not printed, or ends a line."""
-    if text.isprintable() and text.isascii():
-        return text
-    return "".join(" " if _is_hidden(c) else c for c in unicodedata.normalize("NFC", text))
-
-
-def _is_hidden(character: str) -> bool:
-    """Controls, formats such as a change of direction, surrogates, unassigned; line separators."""
-    return unicodedata.category(character)[0] == "C" or unicodedata.category(character) in (
-        "Zl",
-        "Zp",
-    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator
 from html import escape
 from math import hypot
 
-from rigidsym.notes.document.document import cleaned
 from rigidsym.notes.figure.camera import Point
 from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Stroke
+from rigidsym.notes.sanitize import cleaned
 
 _EM = 18.0  # pixels
 _SCALE = _EM / TYPE_SIZE

@@ -24,12 +24,12 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Section,
     Text,
-    cleaned,
     plain,
 )
 from rigidsym.notes.figure.svg import svg
 from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.notes.prose.prose import announcement
+from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
 
 ENDING = "html"

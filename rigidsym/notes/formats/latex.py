@@ -17,13 +17,13 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Span,
     Text,
-    cleaned,
     plain,
 )
 from rigidsym.notes.figure.tikz import tikz
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.notes.prose.prose import announcement
+from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
 from rigidsym.version import __version__
 

@@ -23,10 +23,10 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Section,
     Text,
-    cleaned,
 )
 from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.notes.prose.prose import announcement
+from rigidsym.notes.sanitize import cleaned
 from rigidsym.version import OWNERSHIP
 
 ENDING = "md"
