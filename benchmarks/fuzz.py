@@ -95,7 +95,7 @@ def _outcome(work: Callable[[], object]) -> tuple[str, str]:
     except LimitReached:
         return "stopped", ""
     except MESSAGES as error:
-        if "\x1b" in str(error) or "\0" in str(error):
+        if isinstance(error, RigidsymError | OSError) and "\x1b" in str(error):
             return "failed", f"control characters in {error!r}"
         return "refused", ""
     except Exception:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pty
 import signal
@@ -12,10 +13,13 @@ from pathlib import Path
 from time import monotonic, sleep
 
 import pytest
+from click.testing import CliRunner
 
 import rigidsym as rs
 from helpers.command import RIGIDSYM, ROOT, call
+from rigidsym.commands.cli import commands
 from rigidsym.errors import LimitReached, RequestError, RigidsymError
+from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.system.limits import memory_limit, time_limit
 
 ENDLESS = """\
@@ -65,6 +69,44 @@ def test_a_time_limit_needs_the_main_thread():
     thread.start()
     thread.join()
     assert caught
+
+
+LONG = " + ".join(f"a*b**{k}" for k in range(60))
+UNBOUNDED = {
+    "roots of roots": '[rotation]\nsequence = "z(sqrt(sqrt(a+b)+c)) x(sqrt(sqrt(d)+1))"',
+    "a sum of many": '[rotation]\nsequence = "z(a+b+c+d+e1+f+g+h+k+l+m) x(a)"',
+    "roots of primes": '[rotation]\nsequence = "z(a*sqrt(2)+a*sqrt(3)+a*sqrt(5)+a*sqrt(7)) x(b)"',
+    "forty turns": f'[rotation]\nsequence = "{" ".join(f"z(a{k})" for k in range(1, 41))}"',
+    "derivatives": '[rotation]\nsequence = "z(a) x(b) y(c) x(d)"\n[body]\nshape = "cone"\n'
+    '[output]\nderivatives = ["kinetic_energy by q"]',
+    "a map of degree 60": '[body]\nshape = "given"\nbounds = [[0, 1], [0, 1], [0, 1]]\n'
+    'place = ["x**20*y**20*z**20", "y", "z"]',
+    "long entries": f'[body]\ninertia = [["{LONG}", "0", "D"], ["0", "C", "0"], ["D", "0", "B"]]',
+}
+
+
+@pytest.mark.parametrize("work", UNBOUNDED)
+def test_work_without_end_is_stopped(tmp_path, monkeypatch, work):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "top.toml").write_text(UNBOUNDED[work])
+    start = monotonic()
+    done = CliRunner().invoke(commands, ["run", "top.toml", "--timeout", "0.2"])
+    assert isinstance(done.exception, LimitReached), done.output
+    assert monotonic() - start < 5
+    assert [path.name for path in tmp_path.iterdir()] == ["top.toml"]
+
+
+@pytest.mark.parametrize(
+    "rotations",
+    [[{"sequence": "z(a) x(b) z(c) x(d) z(e1) x(f) z(g) x(h)"}], [{"sequence": "ZXZ"}] * 20_000],
+    ids=["of eight turns", "of many rotations"],
+)
+def test_a_check_is_stopped_too(tmp_path, rotations):
+    request = {"name": "top", "rotations": rotations, "kernels": [], "note": ["tex"]}
+    record = {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "request": request}
+    (tmp_path / "top.json").write_text(json.dumps(record))
+    done = CliRunner().invoke(commands, ["check", str(tmp_path), "--timeout", "0.2"])
+    assert isinstance(done.exception, LimitReached), done.output
 
 
 def test_memory_is_bounded():

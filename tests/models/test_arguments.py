@@ -53,3 +53,9 @@ def test_an_argument_of_the_wrong_type_is_a_type_error_that_says_what_was_expect
 def test_symbols_may_name_angles():
     named = rs.EulerAngles("ZYX", angles=sp.symbols("a b c"))
     assert named == rs.EulerAngles("ZYX", angles=("a", "b", "c"))
+
+
+def test_numbers_describe_a_solid():
+    ball = rs.solid("sphere", radius=1, mass=2)
+    assert ball.mass == 2
+    assert ball.inertia == sp.diag(*[sp.Rational(4, 5)] * 3)

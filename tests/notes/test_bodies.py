@@ -10,6 +10,7 @@ import sympy as sp
 
 import rigidsym as rs
 from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
+from rigidsym.models.body import given_inertia
 from rigidsym.motion import Motion
 from rigidsym.notes.document.document import Equation, Figure
 from rigidsym.notes.figure.body_drawing import body_drawing
@@ -114,3 +115,17 @@ def test_an_axis_that_is_no_coordinate_axis_is_named_after_its_moment():
 def _area(points: tuple[tuple[float, float], ...]) -> float:
     x, y = np.array(points).T
     return float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2)
+
+
+def test_letters_for_entries_need_no_moments_in_closed_form():
+    """Equal products of inertia leave moments in closed form, which I₁₂ and I₁₃ do not."""
+    product = sp.Symbol("D") * sp.Symbol("M")
+    moment = 2 * sp.Symbol("D")
+    inertia = sp.Matrix(
+        [[moment, -product, -product], [-product, moment, 0], [-product, 0, moment]]
+    )
+    body = given_inertia(inertia, mass=sp.Symbol("M"), allow=True)
+    motion = rs.derive("ZXZ", only=("inertia_tensor", "inertia_ellipsoid"), body=body)
+    shown, moments = in_names(motion)
+    assert [step.quantity.name for step in shown.steps] == [s.quantity.name for s in motion.steps]
+    assert moments == ()

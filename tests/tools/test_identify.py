@@ -394,3 +394,11 @@ def test_lower_precision_is_taken_for_what_it_is(precision):
     lower = {name: np.asarray(part, precision) for name, part in given.items()}
     found_alone(reading, **lower)
     found_alone(reading, **{**given, "angles": lower["angles"]})
+
+
+@pytest.mark.parametrize("part", ["matrix", "quaternion"])
+def test_a_rotation_of_scipy_is_taken(part):
+    angles = [[0.1, 0.2, 0.3], [0.4, -0.5, 0.6]]
+    for given in (angles, angles[0]):
+        found = rs.identify(given, **{part: Rotation.from_euler("ZYX", given)})
+        assert "ZYX" in {answer.reading.sequence for answer in found.answers}

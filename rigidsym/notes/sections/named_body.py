@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from rigidsym.errors import QuantityError
 from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import MINUS, PLUS, Formula, bracketed, joined, row
 from rigidsym.mechanics.derivation import Derivation
@@ -43,9 +44,12 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     wanted = [name for name in of_body if name in present and name not in skipped]
     if given & taken - {str(body.mass)} or not wanted:
         return derivation, ()
-    again = {
-        step.quantity.name: step for step in derive(derivation.model, wanted, body=letters).steps
-    }
+    try:
+        found = derive(derivation.model, wanted, body=letters)
+    except QuantityError:  # moments in closed form, which the letters of their entries do not have
+        wanted = [name for name in wanted if name != "inertia_ellipsoid"]
+        found = derive(derivation.model, wanted, body=letters)
+    again = {step.quantity.name: step for step in found.steps}
     steps = (
         replace(step, expression=again[step.quantity.name].expression)
         if step.quantity.name in wanted
