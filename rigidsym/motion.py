@@ -185,6 +185,7 @@ def derive(
     torque: Sequence[sp.Expr | str] | None = None,
     first_integrals: Mapping[str, sp.Expr | str] | None = None,
     parts: Sequence[Mapping[str, Any]] | None = None,
+    frame_rate: Sequence[sp.Expr | str] | None = None,
     method: str | None = None,
     theory: bool = False,
     timeout: float | None = None,
@@ -198,7 +199,8 @@ def derive(
     motion about a fixed point follow; the inertia tensor is then about that point. The same
     follows from a `torque` in body components. `method` is "lagrange", for free coordinates, or
     "euler", with the state (q, Ω′); `first_integrals` are claims to be proved, by name; `parts`
-    move with the body: {"rotation", "principal_moments"} or {"velocity", "mass"}.
+    move with the body: {"rotation", "principal_moments"} or {"velocity", "mass"}; `frame_rate` is
+    the angular velocity of the frame that R is measured in.
     `theory` adds equations 1 to 16 of the lecture, which hold for every body and rotation.
     `timeout` limits the time, in seconds.
 
@@ -225,7 +227,7 @@ def derive(
         acting = None
         given: dict[str, Any] = {
             **{"potential": potential, "forces": forces, "torque": torque, "method": method},
-            **{"first_integrals": first_integrals, "parts": parts},
+            **{"first_integrals": first_integrals, "parts": parts, "frame_rate": frame_rate},
         }
         moving = {key: value for key, value in given.items() if value is not None}
         if moving:

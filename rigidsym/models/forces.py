@@ -49,6 +49,7 @@ class Forces:
     first_integrals: Mapping[str, sp.Expr] = field(default_factory=lambda: _NONE)  # claimed
     method: str = ""  # one of METHODS; "": Lagrange's where the coordinates are free
     parts: tuple[MovingPart, ...] = ()
+    frame_rate: tuple[sp.Expr, ...] = ()  # rad/s, of the frame of R, constant in it; three or none
 
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
@@ -63,7 +64,7 @@ class Forces:
         return replace(body, parameters=(*body.parameters, *more))
 
     def _given(self) -> Iterator[sp.Expr]:
-        yield from (self.potential, *self.generalised.values(), *self.torque)
+        yield from (self.potential, *self.generalised.values(), *self.torque, *self.frame_rate)
         yield from self.first_integrals.values()
         yield from (e for part in self.parts for e in (*part.velocity, *part.inertia))
 
@@ -76,6 +77,7 @@ def forces_on(
     torque: Sequence[sp.Expr | str] = (),
     first_integrals: Mapping[str, sp.Expr | str] = MappingProxyType({}),
     parts: Sequence[Mapping[str, Any]] = (),
+    frame_rate: Sequence[sp.Expr | str] = (),
     method: str = "",
 ) -> Forces:
     """What acts on a body, by the keys of [dynamics]; texts are read as in a file.
@@ -90,8 +92,9 @@ def forces_on(
     for name in forces:
         if name not in known:
             raise ModelError(f"a force on {name}, which is none of {', '.join(known)}")
-    if len(torque) not in (0, 3):
-        raise ModelError(f"a torque has three components, got {len(torque)}")
+    for what, given in (("torque", torque), ("frame_rate", frame_rate)):
+        if len(given) not in (0, 3):
+            raise ModelError(f"{what}: expected three components, got {len(given)}")
     if method not in ("", *METHODS):
         raise ModelError(f"no method {method!r}; {offer(method, METHODS)}")
     return Forces(
@@ -99,6 +102,7 @@ def forces_on(
         generalised={known[name]: _read(force, names) for name, force in forces.items()},
         torque=tuple(_read(component, names) for component in torque),
         first_integrals={n: _read(value, names) for n, value in first_integrals.items()},
+        frame_rate=tuple(_read(component, names) for component in frame_rate),
         method=method,
         parts=tuple(_part(part, names) for part in parts),
     )

@@ -24,7 +24,7 @@ A_PAIR_OF_FRAMES = 'two names such as ["inertial", "spacecraft"]'
 _OF_BOTH = ("title", "theory", "parameters", "body", "dynamics", "notation", "text")
 _FILE = (*_OF_BOTH, "rotation", "output")
 _RECORD = (*_OF_BOTH, "name", "rotations")
-_DYNAMICS = ("potential", "forces", "torque", "first_integrals", "parts", "method")
+_DYNAMICS = ("potential", "forces", "torque", "first_integrals", "parts", "frame_rate", "method")
 _FORMER = ("measured",)  # in old records: errors that were printed with the kernels
 _LINES = ("author", "course", "date")
 _SENTENCES = ("before", "after", "sources")
@@ -233,8 +233,9 @@ def _dynamics(table: Table) -> Iterator[tuple[str, Any]]:
     for key in ("forces", "first_integrals"):
         if inner := table.table(key):
             yield key, {name: inner.text(name) or "0" for name in inner.data}
-    if torque := table.texts("torque", "three components"):
-        yield "torque", list(torque.values())
+    for key in ("torque", "frame_rate"):
+        if components := _expressions(table, key):
+            yield key, components
     if table.value("parts") is not None:
         parts = table.tables("parts", "a list of tables: [[dynamics.parts]]")
         yield "parts", [dict(_part(part)) for part in parts]
@@ -246,8 +247,19 @@ def _part(table: Table) -> Iterator[tuple[str, Any]]:
         if text := table.text(key):
             yield key, text
     for key in ("principal_moments", "velocity"):
-        if texts := table.texts(key, "three expressions"):
-            yield key, list(texts.values())
+        if components := _expressions(table, key):
+            yield key, components
+
+
+def _expressions(table: Table, key: str) -> list[str]:
+    """A list of texts, of which some may be alike."""
+    value = table.value(key)
+    if value is None:
+        return []
+    if isinstance(value, list) and all(isinstance(text, str) for text in value):
+        return value
+    table.mistyped(value, "a list of three texts in quotes", key)
+    return []
 
 
 def _read_body(table: Table, name: str, folder: Path | None) -> Body | None:

@@ -6,8 +6,9 @@ act on it. What does not depend on a coordinate, or on time, is conserved, and p
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import cached_property
+from collections.abc import Iterator, Sequence
+from functools import cached_property, reduce
+from operator import add
 
 import sympy as sp
 
@@ -15,6 +16,7 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import FirstIntegral, Found
 from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.flow import Flow, StateBlock
@@ -24,6 +26,8 @@ from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.rotation import RotationModel
+
+_NONE = Found(sp.ImmutableMatrix([[0]]), "")  # of a quantity that a system does not have
 
 
 def equations_of_motion(model: RotationModel, body: RigidBody, forces: Forces) -> Flow:
@@ -52,10 +56,32 @@ class LagrangeEquations(Flow):
             StateBlock(work.rates, *work.solved),
         )
 
+    def steps(self, only: Sequence[str]) -> Iterator[tuple[str, Found]]:
+        """What a rolling body has no use for is left out."""
+        for name, found in super().steps([n for n in self.table if not only or n in only]):
+            if found is not _NONE:
+                yield name, found
+
+    def _half(self, *, shifted: bool = True, moved: bool = True) -> sp.Expr:
+        """½ Σ vᵀ I v, or its part in J q̇ or in j only, the squares kept."""
+        found = []
+        for jacobian, shift, inertia, _ in self.work.terms:
+            moving = jacobian @ self.work.q_dot
+            velocity = (moving + shift if shifted else moving) if moved else shift
+            found.append(half_form(self.present, inertia, velocity))
+        return sp.Add(*found)
+
     @cached_property
     def kinetic(self) -> sp.Expr:
-        """T = ½ Ω′ᵀ I′ Ω′, the squares kept."""
-        return half_form(self.present, self.work.inertia, self.work.omega)
+        """T = ½ Σ vᵀ I v."""
+        return self._half()
+
+    @cached_property
+    def whole(self) -> sp.Expr:
+        """E = T + V; in a turning frame Jacobi's integral, T₂ − T₀ + V."""
+        if not self.work.acting.frame_rate:
+            return self.kinetic + self.work.potential
+        return self._half(shifted=False) - self._half(moved=False) + self.work.potential
 
     def _scalar(self, expression: sp.Expr) -> RingMatrix:
         return self.column([expression])
@@ -66,58 +92,124 @@ class LagrangeEquations(Flow):
         work = self.work
         return work.mass_matrix @ work.column(work.accelerations) + work.bias
 
+    @cached_property
+    def _of_lagrange(self) -> RingMatrix:
+        """d/dt ∂T/∂q̇ − ∂T/∂q − (M q̈ + h − ∂V/∂q); not zero if the body rolls."""
+        work = self.work
+        slopes = work.column([sp.diff(self.kinetic, q) for q in work.model.coordinates])
+        turning = work.mass_matrix @ work.column(work.accelerations)
+        return work.momenta.dt() - slopes - turning - work.gyroscopic
+
+    @cached_property
+    def is_holonomic(self) -> bool:
+        return all(part.turns for part in self.work.moving) or self._of_lagrange.is_zero()
+
+    @cached_property
+    def _symbol(self) -> Formula:
+        """Of the kinetic energy: that of the rotation if nothing else moves."""
+        alone = len(self.work.moving) == 1 and not self.work.acting.frame_rate
+        return claims.ROTATIONAL if alone else claims.KINETIC
+
     def potential_energy(self) -> Found:
         return Found(sp.ImmutableMatrix([[self.work.potential]]), "The potential energy is given.")
 
     def lagrangian(self) -> Found:
+        if not self.is_holonomic:
+            return _NONE
         return Found(
             sp.ImmutableMatrix([[self.kinetic - self.work.potential]]),
-            "One point is fixed, so that all kinetic energy belongs to the rotation about it.",
+            "One point is fixed, so that all kinetic energy belongs to the rotation about it."
+            if self._symbol is claims.ROTATIONAL
+            else "The kinetic energies of all parts add up.",
+            definition=claims.difference(self._symbol, claims.POTENTIAL),
         )
 
     def energy(self) -> Found:
         return Found(
-            sp.ImmutableMatrix([[self.kinetic + self.work.potential]]),
-            "The energy changes at the power of the generalised forces.",
+            sp.ImmutableMatrix([[self.whole]]),
+            "The energy changes at the power of the generalised forces."
+            if not self.work.acting.frame_rate
+            else "In a turning frame the energy is replaced by Jacobi's integral.",
             (self.prove.vanishes(self._energy_rate, claims.ENERGY_RATE),),
+            definition=claims.total(self._symbol, is_jacobi=bool(self.work.acting.frame_rate)),
         )
 
     @cached_property
     def _energy_rate(self) -> RingMatrix:
         """dE/dt − q̇·(M q̈ + h)."""
-        work = self.work
-        whole = self._scalar(self.kinetic + work.potential)
-        return whole.dt() - work.q_dot.T @ self._left_side
+        return self._scalar(self.whole).dt() - self.work.q_dot.T @ self._left_side
 
     def generalised_momenta(self) -> Found:
+        if not self.is_holonomic:
+            return _NONE
         slopes = self.work.column([sp.diff(self.kinetic, rate) for rate in self.work.rates])
         residual = slopes - self.work.momenta
         return Found(
             self.present.matrix(self.work.momenta),
             "The generalised momenta are the derivatives of the kinetic energy by the rates.",
-            (self.prove.vanishes(residual, claims.MOMENTA_ARE_SLOPES),),
+            (self.prove.vanishes(residual, claims.momenta_are_slopes(self._symbol)),),
+            definition=None if self._symbol is claims.ROTATIONAL else claims.slopes(self._symbol),
         )
 
     def mass_matrix(self) -> Found:
         work = self.work
         twice = work.q_dot.T @ work.mass_matrix @ work.q_dot
-        residual = twice - self._scalar(2 * self.kinetic)
+        residual = twice - self._scalar(2 * self._half(shifted=False))
+        is_whole = not work.acting.frame_rate
         return Found(
             self.present.matrix(work.mass_matrix),
-            "The kinetic energy is a quadratic form in the rates.",
-            (self.prove.vanishes(residual, claims.TWICE_ENERGY),),
+            "The kinetic energy is a quadratic form in the rates."
+            if is_whole
+            else "The part of the kinetic energy that is quadratic in the rates.",
+            (self.prove.vanishes(residual, claims.twice_energy(self._symbol, is_whole=is_whole)),),
+            definition=None if self._symbol is claims.ROTATIONAL else claims.SUM_OF_PARTS,
+        )
+
+    def coriolis_matrix(self) -> Found:
+        """By Christoffel's symbols of M."""
+        work = self.work
+        if not self.is_holonomic or work.acting.frame_rate:
+            return _NONE
+        q = work.model.coordinates
+        mass = self.present.matrix(work.mass_matrix)
+        places = range(len(q))
+        half = work.ring.one / 2
+        slope = {
+            k: encoded(self.codec, mass.applyfunc(lambda e, k=k: sp.diff(e, q[k]))) for k in places
+        }
+        rows = [
+            [
+                work.ring.dot(
+                    (slope[k][i, j] + slope[j][i, k] - slope[i][j, k], half * work.q_dot[k, 0])
+                    for k in places
+                )
+                for j in places
+            ]
+            for i in places
+        ]
+        matrix = RingMatrix.of(work.ring, rows)
+        skew = work.mass_matrix.dt() - matrix - matrix
+        of_bias = matrix @ work.q_dot - work.gyroscopic
+        return Found(
+            self.present.matrix(matrix),
+            "Christoffel's symbols of the mass matrix give the terms that are quadratic in the "
+            "rates.",
+            (
+                self.prove.vanishes(of_bias, claims.CORIOLIS),
+                self.prove.vanishes(skew + skew.T, claims.SKEW),
+            ),
         )
 
     def bias_vector(self) -> Found:
         work = self.work
-        slopes = work.column([sp.diff(self.kinetic, q) for q in work.model.coordinates])
-        turning = work.W @ work.column(work.accelerations)
-        euler = work.W.T @ (work.inertia @ turning + work.gyroscopic)
-        residual = work.momenta.dt() - slopes - euler
+        claim = claims.lagrange_is_euler(self._symbol)
         return Found(
             self.present.matrix(work.bias),
-            "What remains of Lagrange's equations without the accelerations and the forces.",
-            (self.prove.vanishes(residual, claims.LAGRANGE_IS_EULER),),
+            "What remains of Lagrange's equations without the accelerations and the forces."
+            if self.is_holonomic
+            else "The constraint forces do no work on motions that the rolling allows; so says "
+            "d'Alembert's principle.",
+            (self.prove.vanishes(self._of_lagrange, claim),) if self.is_holonomic else (),
         )
 
     def accelerations(self) -> Found:
@@ -133,23 +225,56 @@ class LagrangeEquations(Flow):
     def hamiltonian(self) -> Found:
         """H(q, p), with the momenta as inputs in a ring of their own."""
         work = self.work
-        momenta = self.arguments["momenta"].symbols
-        held = [*work.rate_matrix, *work.body.inertia, sp.Rational(1, 2), work.potential, *momenta]
-        codec = codec_for([entry for entry in held if entry != 0], order=0)
-        rates, inertia = (encoded(codec, m) for m in (work.rate_matrix, work.body.inertia))
-        own = rates.T @ inertia @ rates
-        p = RingMatrix.column(codec.ring, map(codec.encode, momenta))
-        twice = p.T @ own.adjugate() @ p
-        half = presenter_for(codec).matrix(twice, codec.encode(sp.Integer(2)) * own.det())
+        if not self.is_holonomic or work.acting.frame_rate:
+            return _NONE
         residual = work.momenta.T @ work.mass_matrix.adjugate() @ work.momenta
         residual -= self._scalar(2 * self.kinetic).scale(work.mass_matrix.det())
         proof = self.prove.vanishes(
             residual, claims.HAMILTONIAN_IS_ENERGY, divided_by=work.mass_matrix.det()
         )
         return Found(
-            sp.ImmutableMatrix([[half[0] + work.potential]]),
+            sp.ImmutableMatrix([[self._in_momenta(self.arguments["momenta"].symbols)]]),
             "The Hamiltonian is the energy in terms of the momenta.",
             (proof,),
+        )
+
+    def _in_momenta(self, momenta: Sequence[sp.Expr]) -> sp.Expr:
+        """½ pᵀ M⁻¹ p + V."""
+        work = self.work
+        held = [e for part in work.moving for m in (part.jacobian, part.inertia) for e in m]
+        held += [sp.Rational(1, 2), work.potential, *momenta]
+        codec = codec_for([entry for entry in held if entry != 0], order=0)
+        own = reduce(
+            add,
+            (
+                encoded(codec, part.jacobian).T
+                @ encoded(codec, part.inertia)
+                @ encoded(codec, part.jacobian)
+                for part in work.moving
+            ),
+        )
+        p = RingMatrix.column(codec.ring, map(codec.encode, momenta))
+        twice = p.T @ own.adjugate() @ p
+        half = presenter_for(codec).matrix(twice, codec.encode(sp.Integer(2)) * own.det())
+        return half[0] + work.potential
+
+    def effective_potential(self) -> Found:
+        """H with the only momentum that changes put to 0, if all the others are constant."""
+        momenta = self.arguments["momenta"].symbols
+        constant = {integral.name for integral in self.own_integrals()}
+        names = [q.func.__name__ for q in self.model.coordinates]
+        moving = [k for k, name in enumerate(names) if f"momentum_{name}" not in constant]
+        if not self.is_holonomic or len(moving) != 1 or self.work.acting.frame_rate:
+            return _NONE
+        (k,) = moving
+        mass = self.work.mass_matrix
+        if any(mass[k, j] for j in range(len(names)) if j != k):
+            return _NONE  # p_k = 0 does not mean that coordinate k is at rest
+        at_rest = [sp.S.Zero if j == k else p for j, p in enumerate(momenta)]
+        return Found(
+            sp.ImmutableMatrix([[self._in_momenta(at_rest)]]),
+            f"All momenta but one are constant, so that {names[k]} moves as in one dimension, in "
+            "an effective potential.",
         )
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
@@ -164,9 +289,11 @@ class LagrangeEquations(Flow):
             yield FirstIntegral(
                 name="energy",
                 symbol=claims.ENERGY,
-                expression=self.kinetic + work.potential,
+                expression=self.whole,
                 proof=self.prove.vanishes(self._energy_rate, claims.is_constant(claims.ENERGY)),
             )
+        if not self.is_holonomic:
+            return
         momenta = self.present.matrix(work.momenta)
         for k, q in enumerate(work.model.coordinates):
             if work.forces[k] == 0 and not sp.diff(work.potential, q):

@@ -1,48 +1,53 @@
-"""Lagrange's equations of a body that turns about a fixed point, over one ring.
+"""Lagrange's equations of bodies that turn about a fixed point, over one ring.
 
-With Ω′ = W′ q̇ the kinetic energy is T = ½ Ω′ᵀ I′ Ω′, and the equations of motion are
+Each moving part has a velocity v = J q̇ + j and an inertia I: of a body v is its angular velocity
+Ω′ and J its rate matrix W′, of a particle its velocity in space. With T = ½ Σ vᵀ I v,
 
-    d/dt ∂T/∂q̇ − ∂T/∂q = W′ᵀ (I′ dΩ′/dt + Ω′ × I′ Ω′)          the left side is Lagrange's, the
-    M q̈ + h = Q,  M = W′ᵀ I′ W′,                                right side Euler's
-    h = W′ᵀ (I′ dW′/dt q̇ + Ω′ × I′ Ω′) + ∂V/∂q
+    d/dt ∂T/∂q̇ − ∂T/∂q = Σ Jᵀ (I dv/dt + v × I v)      the cross product for bodies only,
+    M q̈ + h = Q,  M = Σ Jᵀ I J,
+    h = Σ Jᵀ (I (dJ/dt q̇ + dj/dt) + v × I v) + ∂V/∂q
 
-The first line is proved in the ring; the others follow from it.
+The first line is proved in the ring; the others follow from it. It fails for velocities that no
+coordinates have (rolling); the other lines are then those of d'Alembert's principle. j is what a
+turning frame of reference adds.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Iterator, Sequence
+from functools import cached_property, reduce
+from operator import add
+from typing import NamedTuple
 
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.matrix import RingMatrix, cross
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import ModelError
-from rigidsym.mechanics.kinematics.workspace import Inverse, Values, encoded, right_inverse
+from rigidsym.mechanics.dynamics.flow import turned
+from rigidsym.mechanics.kinematics.workspace import Inverse, Values, encoded
 from rigidsym.models.body import RigidBody
-from rigidsym.models.forces import Forces
+from rigidsym.models.forces import OMEGA_BODY, Forces, MovingPart
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
 
 
-def is_free(model: RotationModel) -> bool:
-    """Whether there are three coordinates that nothing binds."""
-    return not model.constraints and model.pullback is None and len(model.coordinates) == 3
+class Moving(NamedTuple):
+    """One moving part: v = J q̇ + j, and its inertia."""
+
+    jacobian: sp.ImmutableMatrix  # J, (3, n)
+    shift: sp.ImmutableMatrix  # j, (3, 1)
+    inertia: sp.ImmutableMatrix  # (3, 3)
+    turns: bool  # a body, else a particle
 
 
 class Lagrange:
-    """T, V, p, M, h and the accelerations of one rotation, one body and one potential."""
+    """T, V, p, M, h and the accelerations of one rotation, its body, and what moves with it."""
 
-    def __init__(
-        self,
-        model: RotationModel,
-        body: RigidBody,
-        forces: Forces,
-    ) -> None:
+    def __init__(self, model: RotationModel, body: RigidBody, forces: Forces) -> None:
         if not is_free(model):
             raise ModelError(
-                f"{model.name}: Lagrange's equations need three free coordinates, such as the "
+                f"{model.name}: Lagrange's equations need free coordinates, such as the "
                 "Euler angles; expected such a rotation, or Euler's equations"
             )
         fixed = dict.fromkeys(model.coordinates, sp.S.Zero)
@@ -50,30 +55,68 @@ class Lagrange:
             raise ModelError(f"{model.name}: the potential {forces.potential} depends on t")
         self.model, self.body, self.acting = model, body, forces
         self.potential = forces.potential
-        self.rotation = Values(model)
         self.rates = [sp.diff(q, TIME) for q in model.coordinates]
         self.accelerations = [sp.diff(q, TIME, 2) for q in model.coordinates]
-        self.forces = [forces.generalised.get(q, sp.S.Zero) for q in model.coordinates]
+        self.moving = tuple(self._moving())
+        main = self.moving[0]
+        omega = main.jacobian * sp.Matrix(self.rates) + main.shift
+        torque = sp.Matrix(forces.torque or [0, 0, 0])
+        acting = main.jacobian.T * torque.xreplace(dict(zip(OMEGA_BODY, omega, strict=True)))
+        self.forces = [
+            forces.generalised.get(q, sp.S.Zero) + part
+            for q, part in zip(model.coordinates, acting, strict=True)
+        ]
         self.gradient = [sp.diff(self.potential, q) for q in model.coordinates]
-        decode = self.rotation.codec.decode
-        matrix = self.rotation.rate_matrix_body
-        self.rate_matrix = sp.ImmutableMatrix(3, 3, [decode(e) for e in matrix.entries])
-        held = [*self.rate_matrix, *body.inertia, sp.Rational(1, 2), self.potential]
+        held = [e for part in self.moving for m in part[:3] for e in m]
+        held += [*omega, sp.Rational(1, 2), self.potential]
         held += [*self.gradient, *self.forces, *self.rates, *self.accelerations]
         held += [*forces.first_integrals.values()]
         self.codec = codec_for([entry for entry in held if entry != 0])
         self.ring = self.codec.ring
 
+    def _moving(self) -> Iterator[Moving]:
+        """The body itself first."""
+        yield self._turning(self.model, self.body.inertia)
+        for part in self.acting.parts:
+            if part.rotation is not None:
+                yield self._turning(part.rotation, sp.ImmutableMatrix(sp.diag(*part.inertia)))
+            else:
+                yield self._particle(part)
+
+    def _turning(self, model: RotationModel, inertia: sp.ImmutableMatrix) -> Moving:
+        """A body that turns so; its rate matrix has a column for each coordinate of all."""
+        values = Values(model)
+        decode, own = values.codec.decode, values.rate_matrix_body
+        entries = sp.Matrix(*own.shape, [decode(e) for e in own.entries])
+        columns = [
+            entries.col(model.coordinates.index(q)) if q in model.coordinates else sp.zeros(3, 1)
+            for q in self.model.coordinates
+        ]
+        frame = sp.Matrix(self.acting.frame_rate or [0, 0, 0])
+        shift = sp.ImmutableMatrix(model.matrix.T * frame)
+        return Moving(sp.ImmutableMatrix.hstack(*columns), shift, inertia, turns=True)
+
+    def _particle(self, part: MovingPart) -> Moving:
+        velocity = sp.ImmutableMatrix(part.velocity)
+        jacobian = sp.ImmutableMatrix(
+            [[sp.diff(entry, rate) for rate in self.rates] for entry in velocity]
+        )
+        at_rest = velocity.xreplace(dict.fromkeys(self.rates, sp.S.Zero))
+        if jacobian.has(*self.rates) or any(at_rest):
+            raise ModelError(f"the velocity {', '.join(map(str, velocity))} is not linear in rates")
+        zero = sp.ImmutableMatrix.zeros(3, 1)
+        return Moving(jacobian, zero, sp.ImmutableMatrix(sp.diag(*part.inertia)), turns=False)
+
     def column(self, entries: Sequence[sp.Expr]) -> RingMatrix:
         return RingMatrix.column(self.ring, map(self.codec.encode, entries))
 
     @cached_property
-    def W(self) -> RingMatrix:
-        return encoded(self.codec, self.rate_matrix)
-
-    @cached_property
-    def inertia(self) -> RingMatrix:
-        return encoded(self.codec, self.body.inertia)
+    def terms(self) -> tuple[tuple[RingMatrix, RingMatrix, RingMatrix, bool], ...]:
+        """J, j, I of each moving part over the ring, and whether it turns."""
+        return tuple(
+            (*(encoded(self.codec, m) for m in part[:3]), part.turns)  # type: ignore[misc]
+            for part in self.moving
+        )
 
     @cached_property
     def q_dot(self) -> RingMatrix:
@@ -81,32 +124,31 @@ class Lagrange:
 
     @cached_property
     def omega(self) -> RingMatrix:
-        return self.W @ self.q_dot
-
-    @cached_property
-    def momentum_body(self) -> RingMatrix:
-        """I′ Ω′."""
-        return self.inertia @ self.omega
+        """Ω′ of the body."""
+        jacobian, shift, _, _ = self.terms[0]
+        return jacobian @ self.q_dot + shift
 
     @cached_property
     def momenta(self) -> RingMatrix:
-        """p = ∂T/∂q̇ = W′ᵀ I′ Ω′."""
-        return self.W.T @ self.momentum_body
+        """p = ∂T/∂q̇ = Σ Jᵀ I v."""
+        return reduce(add, (j.T @ (i @ (j @ self.q_dot + s)) for j, s, i, _ in self.terms))
 
     @cached_property
     def mass_matrix(self) -> RingMatrix:
-        return self.W.T @ self.inertia @ self.W
+        return reduce(add, (j.T @ i @ j for j, _, i, _ in self.terms))
 
     @cached_property
     def gyroscopic(self) -> RingMatrix:
-        """I′ dW′/dt q̇ + Ω′ × I′ Ω′, what the body's own turning asks of the torque."""
-        turning = self.inertia @ (self.W.dt() @ self.q_dot)
-        turned = cross(self.ring, self.omega.entries, self.momentum_body.entries)
-        return turning + RingMatrix.column(self.ring, turned)
+        """Σ Jᵀ (I (dJ/dt q̇ + dj/dt) + v × I v)"""
+        parts = []
+        for j, s, i, turns in self.terms:
+            inner = i @ (j.dt() @ self.q_dot + s.dt())
+            parts.append(j.T @ (inner + turned(i, j @ self.q_dot + s) if turns else inner))
+        return reduce(add, parts)
 
     @cached_property
     def bias(self) -> RingMatrix:
-        return self.W.T @ self.gyroscopic + self.column(self.gradient)
+        return self.gyroscopic + self.column(self.gradient)
 
     @cached_property
     def solved(self) -> Inverse:
@@ -114,8 +156,12 @@ class Lagrange:
 
         Raises ModelError if the mass matrix has no inverse.
         """
-        inverse = right_inverse(self.mass_matrix, None)
-        if inverse is None:
+        below = self.mass_matrix.det()
+        if not below:
             raise ModelError(f"{self.model.name}: the mass matrix has no inverse")
-        above, below = inverse
-        return above @ (self.column(self.forces) - self.bias), below
+        return self.mass_matrix.adjugate() @ (self.column(self.forces) - self.bias), below
+
+
+def is_free(model: RotationModel) -> bool:
+    """Whether nothing binds the coordinates."""
+    return not model.constraints and model.pullback is None

@@ -16,6 +16,8 @@ LAGRANGIAN = formula("L")
 ENERGY = formula("E")
 MOMENTA = formula(r"\mathbf{p}")
 MASS_MATRIX = formula(r"\mathbf{M}")
+CORIOLIS_MATRIX = formula(r"\mathbf{C}")
+KINETIC = formula("T")
 BIAS = formula(r"\mathbf{h}")
 ACCELERATIONS = formula(r"\ddot{\mathbf{q}}")
 FORCES = formula(r"\mathbf{Q}")
@@ -30,6 +32,14 @@ _SOURCES = {
     ),
     "Goldstein 5.5": Citation(
         text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)", section="section 5.5"
+    ),
+    "Goldstein 5.7": Citation(
+        text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)", section="section 5.7"
+    ),
+    "Murray 4.3": Citation(
+        text="R. Murray, Z. Li, S. Sastry, A Mathematical Introduction to Robotic Manipulation "
+        "(1994)",
+        section="section 4.3",
     ),
     "Goldstein 8.1": Citation(
         text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)", section="section 8.1"
@@ -50,10 +60,14 @@ DYNAMICS_QUANTITIES = read_table(
         mass matrix
     bias_vector                       vector  N m       q q_dot             Goldstein 1.4
         gyroscopic and potential terms of the equations of motion
+    coriolis_matrix                   matrix  kg m^2/s  q q_dot             Murray 4.3
+        Coriolis matrix
     accelerations                     vector  rad/s^2   q q_dot             Goldstein 1.4
         second derivatives of the coordinates
     hamiltonian                       scalar  J         q momenta           Goldstein 8.1
         Hamiltonian
+    effective_potential               scalar  J         q momenta           Goldstein 5.7
+        effective potential of the coordinate that is not ignorable
     angular_acceleration_from_torque  vector  rad/s^2   omega_body torque   Goldstein 5.5
         angular acceleration from the torque, body components (Euler's equations)
     """,
@@ -70,6 +84,8 @@ DYNAMICS_QUANTITIES = read_table(
             formula("#1#2#3", transpose_of(_RATE_MATRIX), INERTIA, _RATE_MATRIX),
         ),
         "bias_vector": (BIAS,),
+        "coriolis_matrix": (CORIOLIS_MATRIX,),
+        "effective_potential": (formula("V_{\\mathrm{eff}}"),),
         "accelerations": (
             ACCELERATIONS,
             formula(r"#1^{-1}\left(#2 - #3\right)", MASS_MATRIX, FORCES, BIAS),
@@ -130,13 +146,59 @@ FLOW_QUANTITIES = read_table(
 
 # Claims.
 
-MOMENTA_ARE_SLOPES = formula(r"#1 = \frac{\partial #2}{\partial #3}", *(MOMENTA, ROTATIONAL, RATES))
-LAGRANGE_IS_EULER = formula(
-    r"\frac{d}{dt}\frac{\partial #1}{\partial #2} - \frac{\partial #1}{\partial\mathbf{q}}"
-    r" = #3\left(#4\,#5 + #6\times#4\,#6\right)",
-    *(ROTATIONAL, RATES, transpose_of(_RATE_MATRIX), INERTIA, ALPHA_BODY, BODY.omega),
+
+def momenta_are_slopes(kinetic: Formula) -> Formula:
+    return formula("#1 = #2", MOMENTA, slopes(kinetic))
+
+
+def slopes(kinetic: Formula) -> Formula:
+    return formula(r"\frac{\partial #1}{\partial #2}", kinetic, RATES)
+
+
+def lagrange_is_euler(kinetic: Formula) -> Formula:
+    """With E_R the right side is Euler's; else M q̈ + h − ∂V/∂q."""
+    left = formula(
+        r"\frac{d}{dt}\frac{\partial #1}{\partial #2} - \frac{\partial #1}{\partial\mathbf{q}}",
+        *(kinetic, RATES),
+    )
+    if kinetic is ROTATIONAL:
+        return formula(
+            r"#1 = #2\left(#3\,#4 + #5\times#3\,#5\right)",
+            *(left, transpose_of(_RATE_MATRIX), INERTIA, ALPHA_BODY, BODY.omega),
+        )
+    return formula(
+        r"#1 = #2#3 + #4 - \frac{\partial #5}{\partial\mathbf{q}}",
+        *(left, MASS_MATRIX, ACCELERATIONS, BIAS, POTENTIAL),
+    )
+
+
+def twice_energy(kinetic: Formula, *, is_whole: bool) -> Formula:
+    """Of the part T₂ that is quadratic in the rates, if the energy has others."""
+    symbol = kinetic if is_whole else formula("#1_2", kinetic)
+    return formula("#1#2#3 = 2#4", transpose_of(RATES), MASS_MATRIX, RATES, symbol)
+
+
+def difference(one: Formula, other: Formula) -> Formula:
+    return formula(_MINUS, one, other)
+
+
+def total(kinetic: Formula, *, is_jacobi: bool) -> Formula:
+    if is_jacobi:
+        return formula("#1_2 - #1_0 + #2", kinetic, POTENTIAL)
+    return formula(_PLUS, kinetic, POTENTIAL)
+
+
+SUM_OF_PARTS = formula(
+    r"\sum #1#2#3", *map(formula, (r"\mathbf{J}^T", r"\mathbf{I}", r"\mathbf{J}"))
 )
-TWICE_ENERGY = formula("#1#2#3 = 2#4", transpose_of(RATES), MASS_MATRIX, RATES, ROTATIONAL)
+CORIOLIS = formula(
+    r"#1#2 = #3 - \frac{\partial #4}{\partial\mathbf{q}}",
+    *(CORIOLIS_MATRIX, RATES, BIAS, POTENTIAL),
+)
+SKEW = formula(
+    r"\left(\dot{#1} - 2#2\right) + \left(\dot{#1} - 2#2\right)^T = 0",
+    *(MASS_MATRIX, CORIOLIS_MATRIX),
+)
 EQUATIONS = formula("#1#2 + #3 = #4", MASS_MATRIX, ACCELERATIONS, BIAS, FORCES)
 ENERGY_RATE = formula(r"\frac{d#1}{dt} = #2\,#3", ENERGY, transpose_of(RATES), FORCES)
 HAMILTONIAN_IS_ENERGY = formula("#1 = #2", HAMILTONIAN, ENERGY)
