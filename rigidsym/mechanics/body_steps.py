@@ -60,6 +60,7 @@ def steps_of_body(
         body=whole,
         functions={n: f for n, f in functions.items() if not only or n in only},
         first_integrals=motion.first_integrals,
+        consequences=tuple(motion.consequences()) if "effective_potential" in found else (),
         table=motion.table,
     )
 

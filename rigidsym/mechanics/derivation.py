@@ -110,6 +110,18 @@ class FirstIntegral:
     proof: Proof
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Consequence:
+    """An equation that follows from the equations of motion, with the words that lead to it."""
+
+    title: str  # of the paragraph; "" if it goes on with the one before
+    text: str  # a sentence, with {} in the positions of the spans
+    spans: tuple[Formula | sp.Expr, ...]
+    left: Formula | sp.Expr
+    value: sp.Expr
+    proofs: tuple[Proof, ...] = ()
+
+
 class StepPrinter(Protocol):
     """Prints the equation of a step."""
 
@@ -139,6 +151,7 @@ class OfBody:
     body: RigidBody | None = None
     functions: Mapping[str, Step] = field(default_factory=dict)  # of the state, for kernels
     first_integrals: tuple[FirstIntegral, ...] = ()
+    consequences: tuple[Consequence, ...] = ()
     table: Mapping[str, Quantity] = field(default_factory=dict)  # of the quantities of motion
 
 
@@ -293,6 +306,7 @@ class Derivation:
     theory: tuple[Statement, ...] = ()  # the equations that the steps rest on, where asked for
     definitions: tuple[Definition, ...] = ()  # intermediate quantities that the steps name
     first_integrals: tuple[FirstIntegral, ...] = ()  # where equations of motion were asked for
+    consequences: tuple[Consequence, ...] = ()  # of the equations of motion
     forces: Forces | None = None  # where equations of motion were asked for
     functions: tuple[Step, ...] = ()  # for kernels only: they repeat what the note has in parts
 
@@ -337,6 +351,7 @@ class Derivation:
         yield from (proof for statement in self.theory for proof in statement.proofs)
         yield from (proof for step in self.steps for proof in step.proofs)
         yield from (integral.proof for integral in self.first_integrals)
+        yield from (proof for found in self.consequences for proof in found.proofs)
 
     @property
     def is_proved(self) -> bool:

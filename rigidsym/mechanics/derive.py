@@ -113,6 +113,7 @@ def derive(
         forces=forces,
         definitions=definitions,
         first_integrals=of_body.first_integrals,
+        consequences=of_body.consequences,
     )
 
 

@@ -17,10 +17,11 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import FirstIntegral, Found
+from rigidsym.mechanics.derivation import Consequence, FirstIntegral, Found
 from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.flow import Flow, StateBlock
 from rigidsym.mechanics.dynamics.lagrange import Lagrange, is_free
+from rigidsym.mechanics.dynamics.reduced import Reduced
 from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.models.body import RigidBody
@@ -258,24 +259,54 @@ class LagrangeEquations(Flow):
         half = presenter_for(codec).matrix(twice, codec.encode(sp.Integer(2)) * own.det())
         return half[0] + work.potential
 
-    def effective_potential(self) -> Found:
-        """H with the only momentum that changes put to 0, if all the others are constant."""
-        momenta = self.arguments["momenta"].symbols
+    @cached_property
+    def _single(self) -> int | None:
+        """The position of the only coordinate that moves if the others are ignorable."""
         constant = {integral.name for integral in self.own_integrals()}
         names = [q.func.__name__ for q in self.model.coordinates]
         moving = [k for k, name in enumerate(names) if f"momentum_{name}" not in constant]
         if not self.is_holonomic or len(moving) != 1 or self.work.acting.frame_rate:
-            return _NONE
+            return None
         (k,) = moving
-        mass = self.work.mass_matrix
-        if any(mass[k, j] for j in range(len(names)) if j != k):
-            return _NONE  # p_k = 0 does not mean that coordinate k is at rest
-        at_rest = [sp.S.Zero if j == k else p for j, p in enumerate(momenta)]
-        return Found(
-            sp.ImmutableMatrix([[self._in_momenta(at_rest)]]),
-            f"All momenta but one are constant, so that {names[k]} moves as in one dimension, in "
-            "an effective potential.",
+        is_apart = not any(self.work.mass_matrix[k, j] for j in range(len(names)) if j != k)
+        return k if is_apart and len(names) > 1 else None  # p_k = 0 means that it is at rest
+
+    @cached_property
+    def _effective(self) -> sp.Expr:
+        momenta = self.arguments["momenta"].symbols
+        return self._in_momenta(
+            [sp.S.Zero if j == self._single else p for j, p in enumerate(momenta)]
         )
+
+    def effective_potential(self) -> Found:
+        """H with the only momentum that changes put to 0, if all the others are constant."""
+        if self._single is None:
+            return _NONE
+        return Found(
+            sp.ImmutableMatrix([[self._effective]]),
+            "All momenta but one are constant. What remains of the Hamiltonian if this one is 0 "
+            "is the effective potential of its coordinate.",
+        )
+
+    def consequences(self) -> Iterator[Consequence]:
+        k = self._single
+        if k is None:
+            return
+        q = self.model.coordinates
+        momenta = self.present.matrix(self.work.momenta)
+        others = [j for j in range(len(q)) if j != k]
+        found = Reduced(
+            name=self.model.name,
+            coordinate=q[k],
+            ignorable=tuple(q[j] for j in others),
+            mass=self.present.matrix(self.work.mass_matrix)[k, k],
+            potential=self._effective,
+            symbols=tuple(self.arguments["momenta"].symbols[j] for j in others),
+            momenta=tuple(momenta[j] for j in others),
+            energy=self.whole,
+            acceleration=self.present.matrix(*self.work.solved)[k],
+        )
+        yield from found.consequences()
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
         """Ω′ = W′ q̇."""

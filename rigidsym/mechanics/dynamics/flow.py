@@ -18,7 +18,13 @@ from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
-from rigidsym.mechanics.derivation import FirstIntegral, Found, Quantity, Step
+from rigidsym.mechanics.derivation import (
+    Consequence,
+    FirstIntegral,
+    Found,
+    Quantity,
+    Step,
+)
 from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import dynamics as claims
@@ -91,6 +97,10 @@ class Flow:
     def own_integrals(self) -> Iterator[FirstIntegral]:
         """The first integrals that this form of the equations looks for."""
         raise NotImplementedError
+
+    def consequences(self) -> Iterator[Consequence]:
+        """What follows of the motion as a whole."""
+        return iter(())
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
         """The value with Ω′ written in the state."""

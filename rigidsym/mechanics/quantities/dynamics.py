@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sympy as sp
+
 from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.quantities.claims import transpose_of
@@ -12,6 +14,7 @@ from rigidsym.mechanics.quantities.table import read_table
 from rigidsym.models.rotation import Citation
 
 POTENTIAL = formula("V")
+EFFECTIVE = formula(r"V_{\mathrm{eff}}")
 LAGRANGIAN = formula("L")
 ENERGY = formula("E")
 MOMENTA = formula(r"\mathbf{p}")
@@ -85,7 +88,7 @@ DYNAMICS_QUANTITIES = read_table(
         ),
         "bias_vector": (BIAS,),
         "coriolis_matrix": (CORIOLIS_MATRIX,),
-        "effective_potential": (formula("V_{\\mathrm{eff}}"),),
+        "effective_potential": (EFFECTIVE,),
         "accelerations": (
             ACCELERATIONS,
             formula(r"#1^{-1}\left(#2 - #3\right)", MASS_MATRIX, FORCES, BIAS),
@@ -209,6 +212,17 @@ MOMENTUM_SQUARED = formula(r"\mathbf{L}^2")
 
 def is_constant(symbol: Formula) -> Formula:
     return formula(r"\frac{d#1}{dt} = 0", symbol)
+
+
+NEAR_UPRIGHT = formula("#1 = #1(0) + k(1 - u) + O((1 - u)^2)", EFFECTIVE)
+
+
+def name_of(coordinate: sp.Expr) -> Formula:
+    return named(coordinate.func.__name__)
+
+
+def momentum_of(coordinate: sp.Expr) -> Formula:
+    return formula("p_{#1}", name_of(coordinate))
 
 
 def integral_symbol(name: str) -> Formula:

@@ -17,7 +17,7 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import equal, indexed, row
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
-from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES
+from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, EULER_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.models.matrices import GIVEN
@@ -51,6 +51,7 @@ from rigidsym.notes.prose.words import OPERATOR, convention, symbols_of, with_so
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
 from rigidsym.notes.sections.fitting import Fitter
+from rigidsym.notes.sections.motion_section import what_follows, what_is_constant, what_moves
 from rigidsym.notes.sections.summary import summary
 from rigidsym.notes.sections.symbol_tables import functions, symbols
 
@@ -175,15 +176,11 @@ class Composer:
 
     def _motion(self) -> Iterator[NoteBlock]:
         """Lagrange's and Euler's equations, and what is constant along every motion."""
-        yield from self._steps(tuple(DYNAMICS_QUANTITIES))
-        integrals = self.derivation.first_integrals
-        if integrals:
-            yield Paragraph(
-                ("These quantities are constant along every motion (first integrals):",)
-            )
-        for integral in integrals:
-            value = formula_of(integral.expression, self.letters)
-            yield Equation(sides=(integral.symbol, value))
+        if self.derivation.forces is not None:
+            yield from what_moves(self.derivation, self.letters)
+            yield from self._steps((*DYNAMICS_QUANTITIES, *EULER_QUANTITIES))
+            yield from what_is_constant(self.derivation, self.letters)
+            yield from what_follows(self.derivation, self.letters)
 
     def _convention(self) -> Iterator[NoteBlock]:
         first, *others = convention(self.derivation, self.letters.notation)

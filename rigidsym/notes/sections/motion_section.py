@@ -1,0 +1,93 @@
+"""The section on motion: what moves, the first integrals, and what follows from them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import sympy as sp
+
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import formula_of
+from rigidsym.formula.tree import Formula
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.models.forces import MovingPart
+from rigidsym.notes.document.document import (
+    Equation,
+    NoteBlock,
+    Paragraph,
+    Strong,
+    Text,
+    said,
+    words,
+)
+
+_BECAUSE = {True: "Their rates vanish by the equations of motion, which is proved.", False: ""}
+
+
+def what_moves(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
+    """Parts that move with the body, the frame, and what takes the place of the rates."""
+    forces = derivation.forces
+    if forces is None:
+        return
+    for part in forces.parts:
+        yield Paragraph(_part(part, letters))
+    if forces.frame_rate:
+        rate = [formula_of(entry, letters) for entry in forces.frame_rate]
+        yield said(
+            "The frame of reference turns with the constant angular velocity ({}, {}, {}).", *rate
+        )
+    if "torque_body" in {step.quantity.name for step in derivation.steps}:
+        yield said(
+            "The state is ({}, {}): the rates of the coordinates follow from the angular velocity, "
+            "and its rate from Euler's equations. They hold for any torque {}.",
+            *(formula(typed) for typed in (r"\mathbf{q}", r"\boldsymbol{\Omega}'", r"\mathbf{N}'")),
+        )
+
+
+def _part(part: MovingPart, letters: Letters) -> Text:
+    entries = [formula_of(entry, letters) for entry in (*part.velocity, *part.inertia)]
+    if part.rotation is None:
+        return words(
+            "A point of mass {} moves with the body, with the velocity ({}, {}, {}) in space.",
+            *(entries[3], *entries[:3]),
+        )
+    turns = [formula_of(turn.angle, letters) for turn in part.rotation.turns]
+    return words(
+        "Another body turns with it by {} only; its principal moments are {}, {} and {}."
+        if len(turns) == 1
+        else f"Another body turns with it by {' and '.join(['{}'] * len(turns))} only; its "
+        "principal moments are {}, {} and {}.",
+        *turns,
+        *entries,
+    )
+
+
+def what_is_constant(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
+    """First integrals."""
+    integrals = derivation.first_integrals
+    if integrals:
+        is_proved = all(integral.proof.is_exact for integral in integrals)
+        yield said(
+            f"The first integrals are constant along every motion. {_BECAUSE[is_proved]}".strip()
+        )
+    for integral in integrals:
+        yield Equation(sides=(integral.symbol, formula_of(integral.expression, letters)))
+
+
+def what_follows(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
+    """The motion as a whole: effective potential, steady motions, exact solutions."""
+
+    def printed(span: Formula | sp.Expr) -> Formula:
+        return span if isinstance(span, Formula) else formula_of(span, letters)
+
+    for found in derivation.consequences:
+        head = (Strong(f"{found.title}."), " ") if found.title else ()
+        yield Paragraph((*head, *words(found.text, *map(printed, found.spans))))
+        claims = [proof.claim for proof in found.proofs]
+        exact = all(proof.is_exact for proof in found.proofs)
+        yield Equation(
+            sides=(printed(found.left), formula_of(found.value, letters)),
+            proved=tuple(claims) if exact else (),
+            unproved=() if exact else tuple(claims),
+        )
