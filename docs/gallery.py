@@ -47,6 +47,13 @@ FILES = (
     "free_symmetric_body",
     "heavy_symmetric_top",
     "heavy_asymmetric_body",
+    "free_body",
+    "gyroscope",
+    "dual_spin_satellite",
+    "gravity_gradient_satellite",
+    "kovalevskaya_top",
+    "quadcopter_attitude",
+    "rolling_disc",
 )
 KEYS = {  # the formula of an entry, if it is not that of its kind
     "lecture": "rotational_energy",
@@ -54,6 +61,13 @@ KEYS = {  # the formula of an entry, if it is not that of its kind
     "free_symmetric_body": "angular_momentum_rotation",
     "heavy_symmetric_top": "lagrangian",
     "heavy_asymmetric_body": "lagrangian",
+    "free_body": "energy",
+    "gyroscope": "energy",
+    "dual_spin_satellite": "energy",
+    "gravity_gradient_satellite": "energy",
+    "kovalevskaya_top": "energy",
+    "quadcopter_attitude": "mass_matrix",
+    "rolling_disc": "energy",
 }
 _FORMULA = re.compile(r"<math.*?</math>", re.DOTALL)
 _FIGURE = re.compile(r"<svg.*?</svg>", re.DOTALL)

@@ -70,10 +70,24 @@ def schema() -> Schema:
             "What acts on the body, which turns about a fixed point.",
             {
                 "potential": text('potential energy V(q), in joules: "m*g*l*cos(theta)"'),
-                "forces": {
-                    "type": "object",
-                    "description": "generalised forces by coordinate, which may depend on rates",
-                    "additionalProperties": {"type": "string"},
+                "forces": _by_name("generalised forces by coordinate, which may depend on rates"),
+                "torque": _three("torque in body components, N m, with omega_body_1 and so on"),
+                "frame_rate": _three("angular velocity of the frame of reference, constant in it"),
+                "method": text("form of the equations", "lagrange", "euler"),
+                "first_integrals": _by_name("claims that are proved: what is constant, by name"),
+                "parts": {
+                    "type": "array",
+                    "description": "what moves with the body: rotation and principal_moments of "
+                    "another body about the fixed point, or velocity and mass of a particle",
+                    "items": obj(
+                        "another body or a particle",
+                        {
+                            "rotation": text('its turns: "z(phi) x(theta)"'),
+                            "principal_moments": _three("its moments of inertia"),
+                            "velocity": _three("its velocity in space, linear in the rates"),
+                            "mass": text("its mass"),
+                        },
+                    ),
                 },
             },
         ),
@@ -86,6 +100,18 @@ def schema() -> Schema:
         **obj("A rotation, a body, and what to print.", properties),
         "anyOf": [{"required": ["rotation"]}, {"required": ["body"]}],
     }
+
+
+def _by_name(about: str) -> Schema:
+    return {
+        "type": "object",
+        "description": about,
+        "additionalProperties": {"type": "string"},
+    }
+
+
+def _three(about: str) -> Schema:
+    return listed(about, {"type": "string"}, 3)
 
 
 def _rotation() -> Schema:

@@ -142,7 +142,7 @@ def motion_of(spec: DerivationSpec) -> Motion:
         only=spec.quantities,
         body=body,
         theory=spec.theory,
-        **({} if spec.dynamics is None else {"potential": "0", **spec.dynamics}),
+        **(spec.dynamics or {}),
     )
     notation = cast("Notation | None", spec.notation) or DEFAULT
     return replace(motion, name=spec.name, title=spec.title or motion.title, notation=notation)

@@ -227,9 +227,9 @@ def _read_dynamics(table: Table, models: Sequence[RotationModel]) -> dict[str, A
 
 def _dynamics(table: Table) -> Iterator[tuple[str, Any]]:
     """The keys of [dynamics] that are there, with values of the right type."""
-    for key in ("potential", "method"):
-        if text := table.text(key):
-            yield key, text
+    yield "potential", table.text("potential") or "0"
+    if method := table.text("method"):
+        yield "method", method
     for key in ("forces", "first_integrals"):
         if inner := table.table(key):
             yield key, {name: inner.text(name) or "0" for name in inner.data}

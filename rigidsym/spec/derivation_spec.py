@@ -79,7 +79,7 @@ class DerivationSpec:
         """
         optional: dict[str, Any] = {
             "theory": self.theory,
-            "dynamics": None if self.dynamics is None else {"potential": "0"} | {**self.dynamics},
+            "dynamics": dict(self.dynamics or {}),
             "style": self.style if self.style != "lecture" else "",
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),

@@ -22,7 +22,7 @@ from helpers.witness import agree, evaluate, mp
 from rigidsym.pipeline import motion_of, read
 
 PHI, THETA, PSI, SIGMA = (dynamicsymbols(n) for n in ("phi", "theta", "psi", "sigma"))
-A, B, C, m, g, l, a, n = sp.symbols("A B C m g l a n")
+A, B, C, m, g, l, a, n = sp.symbols("A B C m g l a n")  # noqa: E741
 T = sp.Symbol("t")
 
 

@@ -24,6 +24,7 @@ from rigidsym.mechanics.dynamics.lagrange import Lagrange, is_free
 from rigidsym.mechanics.dynamics.reduced import Reduced
 from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.quantities import dynamics as claims
+from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.rotation import RotationModel
@@ -109,7 +110,7 @@ class LagrangeEquations(Flow):
     def _symbol(self) -> Formula:
         """Of the kinetic energy: that of the rotation if nothing else moves."""
         alone = len(self.work.moving) == 1 and not self.work.acting.frame_rate
-        return claims.ROTATIONAL if alone else claims.KINETIC
+        return ROTATIONAL if alone else claims.KINETIC
 
     def potential_energy(self) -> Found:
         return Found(sp.ImmutableMatrix([[self.work.potential]]), "The potential energy is given.")
@@ -120,7 +121,7 @@ class LagrangeEquations(Flow):
         return Found(
             sp.ImmutableMatrix([[self.kinetic - self.work.potential]]),
             "One point is fixed, so that all kinetic energy belongs to the rotation about it."
-            if self._symbol is claims.ROTATIONAL
+            if self._symbol is ROTATIONAL
             else "The kinetic energies of all parts add up.",
             definition=claims.difference(self._symbol, claims.POTENTIAL),
         )
@@ -149,7 +150,7 @@ class LagrangeEquations(Flow):
             self.present.matrix(self.work.momenta),
             "The generalised momenta are the derivatives of the kinetic energy by the rates.",
             (self.prove.vanishes(residual, claims.momenta_are_slopes(self._symbol)),),
-            definition=None if self._symbol is claims.ROTATIONAL else claims.slopes(self._symbol),
+            definition=None if self._symbol is ROTATIONAL else claims.slopes(self._symbol),
         )
 
     def mass_matrix(self) -> Found:
@@ -163,7 +164,7 @@ class LagrangeEquations(Flow):
             if is_whole
             else "The part of the kinetic energy that is quadratic in the rates.",
             (self.prove.vanishes(residual, claims.twice_energy(self._symbol, is_whole=is_whole)),),
-            definition=None if self._symbol is claims.ROTATIONAL else claims.SUM_OF_PARTS,
+            definition=None if self._symbol is ROTATIONAL else claims.SUM_OF_PARTS,
         )
 
     def coriolis_matrix(self) -> Found:
