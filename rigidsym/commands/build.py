@@ -26,7 +26,7 @@ class BuildOptions(FolderOptions, SelectionOptions, RotationOptions):
     """All options of `build`."""
 
     portable: bool = option(
-        "--portable", is_flag=True, help="Run on any CPU of this architecture; slower."
+        "--portable", is_flag=True, help="Run on any CPU of this architecture."
     )
 
 

@@ -97,6 +97,7 @@ def plain(text: str) -> str:
 
 
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wshadow", "-Wconversion")
+STRICT += ("-Wdouble-promotion",)
 
 
 def row_by_row(target: str, function: Callable[..., Any]) -> Callable[..., np.ndarray]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,13 +11,13 @@ from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.precision import Precision
 from rigidsym.kernels.targets.text.python_layout import bracketed
 
-_CHOICE = {"choice": "{0} ? {1} : {2}", "nan": "NAN"}
+_FORMS = {"choice": "{0} ? {1} : {2}"}
 _PLAIN = frozenset({"sqrt", "abs", "atan2", "eps"})  # functions without far angles
 
 
 def show(expression: Expression) -> str:
     """An expression in double precision."""
-    return infix(expression, _CHOICE)
+    return infix(expression, _FORMS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,9 @@ class Function:
             "outputs": len(kernel.outputs),
             "arguments": list(self._arguments()),
             "signature": self.signature,
-            "array_signature": self.array_signature,
+            "array": self._array,
+            "array_parameters": _listed(4, "(", self._array_parameters).lstrip(),
+            "array_given": _listed(4, "(", map(_name, self._array_parameters)).lstrip(),
             "body": self._body(),
             "scalar_call": self._call("1", places, "out", 4) + ";",
             "tile_call": self._call("0", columns, "at", 12),
@@ -53,11 +55,19 @@ class Function:
 
     @property
     def array_signature(self) -> str:
+        return _listed(0, f"void {self._array}(", self._array_parameters)
+
+    @property
+    def _array(self) -> str:
+        return f"{self.name}_array{self.precision.suffix}"
+
+    @property
+    def _array_parameters(self) -> list[str]:
         real = self.precision.real
         items = ["size_t count"]
         for kind, name in (*(("const ", a.name) for a in self.kernel.arguments), ("", "out")):
             items += [f"{kind}{real} *{name}", f"ptrdiff_t {name}_step", f"ptrdiff_t {name}_stride"]
-        return _listed(0, f"void {self.name}_array{self.precision.suffix}(", items)
+        return items
 
     def _arguments(self) -> Iterator[dict[str, Any]]:
         """Name, size, and place in the tile."""
@@ -128,10 +138,15 @@ class Function:
         return f"{literal(eps**guard.power)} * {self._text(guard.scale)}"
 
     def _text(self, expression: Expression) -> str:
-        return infix(expression, _CHOICE, self.precision.literal)
+        nan = f"({self.precision.real})NAN"  # the macro is a float
+        return infix(expression, {**_FORMS, "nan": nan}, self.precision.literal)
 
 
-def _listed(indent: int, head: str, items: Sequence[str]) -> str:
+def _name(parameter: str) -> str:
+    return parameter.split()[-1].lstrip("*")
+
+
+def _listed(indent: int, head: str, items: Iterable[str]) -> str:
     """Parameters or what is given for them; C takes no comma after the last."""
-    text = bracketed(indent, head, items, ")")
+    text = bracketed(indent, head, list(items), ")")
     return text.replace(f",\n{' ' * indent})", ")")

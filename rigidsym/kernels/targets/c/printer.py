@@ -24,7 +24,7 @@ from rigidsym.system import resources
 _WORDS = (
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf NULL angle_of "
     "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED tile "
-    "found rows count at i j"
+    "found rows count at i j HELPER CLONES CLONED"
 )
 RESERVED = numpy.RESERVED | {*_WORDS.split()}  # the Python module's, too
 _WIDTH = 92
@@ -123,6 +123,8 @@ def _about(program: Program) -> list[remarks.Paragraph]:
         "not overlap an argument.",
         "No function allocates, recurses or keeps a state; an array function takes room for "
         f"{_TILE} orientations on the stack.",
+        "With -DCLONES, gcc and clang for x86-64 compile array functions that choose between AVX2, "
+        "AVX-512 and neither when they are called.",
         "Sine and cosine are evaluated here, within 2 eps of their size (eps is 2^-52 in double, "
         "2^-23 in float) at any finite angle.",
         unwrap="unwrap is only in the Python module, since it needs room for a trajectory.",
