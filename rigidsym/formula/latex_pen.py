@@ -20,7 +20,7 @@ _SIGNS = {
     "∈": r"\in ",
     "⇔": r"\Leftrightarrow ",
 }
-_LETTERS = {"⊥": r"\perp", "…": r"\ldots", "+": "+"}
+_LETTERS = {"⊥": r"\perp", "∥": r"\parallel", "∗": "*", "…": r"\ldots", "+": "+"}
 _DOTS = ("", r"\dot", r"\ddot")
 _MACROS = ("sin", "cos", "tan", "cot", "det", "exp", "arctan")
 _LEFT = {"flat": ("", ""), "large": (r"\Bigl", r"\Bigr"), "stretched": (r"\left", r"\right")}

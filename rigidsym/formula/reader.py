@@ -64,6 +64,8 @@ _ATOMS: dict[str, Formula] = {
     r"\Leftrightarrow": Sign("⇔"),
     r"\ldots": Symbol("…"),
     r"\perp": Symbol("⊥"),
+    r"\parallel": Symbol("∥"),
+    r"\ast": Symbol("∗"),
     r"\varphi": Symbol("φ"),
     r"\sum": Big("∑"),
     r"\int": Big("∫"),

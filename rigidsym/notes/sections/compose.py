@@ -37,6 +37,7 @@ from rigidsym.notes.document.document import (
     said,
 )
 from rigidsym.notes.formula.derivation_letters import entry_names, letters_of
+from rigidsym.notes.prose.algebra_words import is_told, rates_in_words, rotation_in_words
 from rigidsym.notes.prose.figure_words import figure_of
 from rigidsym.notes.prose.prose import motion, turn
 from rigidsym.notes.prose.singular_words import (
@@ -192,6 +193,7 @@ class Composer:
             yield from self._product_of_turns()
         else:
             yield from self._figure()
+            yield from rotation_in_words(self.model, self.letters)
         yield from self._steps(("rotation_matrix",))
 
     def _product_of_turns(self) -> Iterator[NoteBlock]:
@@ -241,6 +243,7 @@ class Composer:
     def _angular_velocity(self) -> Iterator[NoteBlock]:
         shown = COSINES if self.model.passive else ROTATION
         yield from sum_in_words(self.model, self.letters)
+        yield from rates_in_words(self.model, self.letters)
         yield from motion(passive=self.model.passive)
         yield Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
         yield said(
@@ -298,6 +301,9 @@ class Composer:
             return (f"Likewise, the {step.quantity.about}:",)
         self.said.add(step.because)
         source = self._source(step)
+        if step.quantity.name == "rotation_matrix" and is_told(self.model):
+            matrix = "transpose of the matrix" if self.model.passive else "matrix"
+            return with_source((f"The {matrix} of this turn is:",), source)
         return with_source(with_symbols(step.because, self.symbols), source)
 
     def _source(self, step: Step) -> Citation | None:

@@ -1,0 +1,161 @@
+"""Rodrigues' formula and quaternions, as a textbook derives them before any matrix is written.
+
+A block is a paragraph, or an equation whose lines begin with `=`. Formulas in a paragraph stand
+between dollar signs; <v> is the vector of the coordinates, <n> its length, and <w> the coordinate
+beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import formula_of
+from rigidsym.formula.tree import Formula
+from rigidsym.models.rotation import RotationModel
+from rigidsym.notes.document.document import Equation, NoteBlock, Paragraph, said
+from rigidsym.notes.formula.derivation_letters import VECTOR
+
+_RODRIGUES = r"""
+Let $\mathbf{e}$ be the unit vector along the axis and $\alpha$ the angle of the turn. A vector
+$\mathbf{x}'$ has a part along the axis and a part perpendicular to it,
+
+= \mathbf{x}'
+= \mathbf{x}'_{\parallel} + \mathbf{x}'_{\perp}
+
+with $\mathbf{x}'_{\parallel} = (\mathbf{e}\cdot\mathbf{x}')\,\mathbf{e}$. The turn keeps the first
+part. It moves the second in the plane spanned by $\mathbf{x}'_{\perp}$ and
+$\mathbf{e}\times\mathbf{x}'$, which are perpendicular and of equal length:
+
+= \mathbf{x}
+= \mathbf{x}'_{\parallel} + \cos\alpha\,\mathbf{x}'_{\perp}
+  + \sin\alpha\,\mathbf{e}\times\mathbf{x}'
+
+Since $\mathbf{x}'_{\perp} = -\mathbf{e}\times(\mathbf{e}\times\mathbf{x}')$, this is Rodrigues'
+formula
+
+= \mathbf{x}
+= \mathbf{x}' + \sin\alpha\,\mathbf{e}\times\mathbf{x}'
+  + (1 - \cos\alpha)\,\mathbf{e}\times(\mathbf{e}\times\mathbf{x}')
+"""
+_LENGTHS = {  # what the vector is, and the coefficients that follow
+    "axis_angle": r"""
+Here $\mathbf{e} = <v>$ and $\alpha = <w>$.
+""",
+    "rotation_vector": r"""
+Here $<v> = \alpha\,\mathbf{e}$, so that $\alpha = <n>$, and the coefficients of
+$<v>\times\mathbf{x}'$ and $<v>\times(<v>\times\mathbf{x}')$ are $\frac{\sin <n>}{<n>}$ and
+$\frac{1 - \cos <n>}{<n>^2}$. For small angles they tend to 1 and to $\frac{1}{2}$, so that the
+rotation vector has no singularity there.
+""",
+    "gibbs_vector": r"""
+Here $<v> = \tan\frac{\alpha}{2}\,\mathbf{e}$. With $<n> = \tan\frac{\alpha}{2}$,
+
+= \sin\alpha
+= \frac{2 <n>}{1 + <n>^2}
+
+= 1 - \cos\alpha
+= \frac{2 <n>^2}{1 + <n>^2}
+
+so that both coefficients, of $<v>\times\mathbf{x}'$ and of $<v>\times(<v>\times\mathbf{x}')$, are
+$\frac{2}{1 + <n>^2}$.
+""",
+    "modified_rodrigues": r"""
+Here $<v> = \tan\frac{\alpha}{4}\,\mathbf{e}$. With $<n> = \tan\frac{\alpha}{4}$,
+
+= \sin\alpha
+= \frac{4 <n>\,(1 - <n>^2)}{(1 + <n>^2)^2}
+
+= 1 - \cos\alpha
+= \frac{8 <n>^2}{(1 + <n>^2)^2}
+""",
+}
+_QUATERNION = r"""
+The quaternion $\mathbf{q} = <w> + <v>$ has a scalar and a vector part. Quaternions are multiplied
+by the rule
+
+= (a + \mathbf{a})\,(b + \mathbf{b})
+= a\,b - \mathbf{a}\cdot\mathbf{b} + a\,\mathbf{b} + b\,\mathbf{a} + \mathbf{a}\times\mathbf{b}
+
+and $\mathbf{q}^{\ast} = <w> - <v>$ is the conjugate, so that
+$\mathbf{q}\,\mathbf{q}^{\ast} = |\mathbf{q}|^2$. The quaternion takes $\mathbf{x}'$ to
+
+= \mathbf{x}
+= \frac{1}{|\mathbf{q}|^2}\,\mathbf{q}\,\mathbf{x}'\,\mathbf{q}^{\ast}
+= \mathbf{x}' + \frac{2}{|\mathbf{q}|^2}\left(<w>\,<v>\times\mathbf{x}'
+  + <v>\times(<v>\times\mathbf{x}')\right)
+
+With $<w> = |\mathbf{q}|\cos\frac{\alpha}{2}$ and
+$<v> = |\mathbf{q}|\sin\frac{\alpha}{2}\,\mathbf{e}$, where $\mathbf{e}$ is a unit vector, the
+coefficients are $2\cos\frac{\alpha}{2}\sin\frac{\alpha}{2} = \sin\alpha$ and
+$2\sin^2\frac{\alpha}{2} = 1 - \cos\alpha$. By Rodrigues' formula this is the turn by $\alpha$ about
+$\mathbf{e}$.
+"""
+_OF_RATES = r"""
+Let $|\mathbf{q}|$ be constant. Differentiating $|\mathbf{q}|^2\,\mathbf{x} =
+\mathbf{q}\,\mathbf{x}'\,\mathbf{q}^{\ast}$ for a point at rest in the body gives
+$\dot{\mathbf{x}} = \boldsymbol{\Omega}\times\mathbf{x}$ with
+
+= \boldsymbol{\Omega}
+= \frac{2}{|\mathbf{q}|^2}\,\dot{\mathbf{q}}\,\mathbf{q}^{\ast}
+
+= \boldsymbol{\Omega}'
+= \frac{2}{|\mathbf{q}|^2}\,\mathbf{q}^{\ast}\,\dot{\mathbf{q}}
+
+Multiplied by $\mathbf{q}$, this is the equation that attitude software integrates:
+
+= \dot{\mathbf{q}}
+= \frac{1}{2}\,\boldsymbol{\Omega}\,\mathbf{q}
+= \frac{1}{2}\,\mathbf{q}\,\boldsymbol{\Omega}'
+
+The derivative of the rotation matrix leads to the same.
+"""
+_QUATERNIONS = ("quaternion", "unit_quaternion", "cayley_klein")
+
+
+def is_told(model: RotationModel) -> bool:
+    """Whether there are words on how the coordinates turn a vector."""
+    return model.name.removesuffix("_passive") in (*_QUATERNIONS, *_LENGTHS)
+
+
+def rotation_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
+    """How the coordinates turn a vector; nothing for other models."""
+    name = model.name.removesuffix("_passive")
+    if name in _QUATERNIONS:
+        yield from _blocks(_QUATERNION, model, letters)
+    elif name in _LENGTHS:
+        yield from _blocks(_RODRIGUES + _LENGTHS[name], model, letters)
+
+
+def rates_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
+    """The angular velocity of a quaternion as a product of quaternions."""
+    if model.name.removesuffix("_passive") in _QUATERNIONS:
+        yield from _blocks(_OF_RATES, model, letters)
+
+
+def _blocks(text: str, model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
+    others = [q for q in model.coordinates if q not in model.vector]
+    spans: dict[str, Formula] = {"v": VECTOR}
+    spans |= {"w": formula_of(others[0], letters)} if others else {}
+    spans |= {"n": letters.names[letters.length.symbol]} if letters.length else {}
+    for block in text.strip().split("\n\n"):
+        sides = block.strip().removeprefix("= ").split("\n= ")
+        if block.lstrip().startswith("= "):
+            yield Equation(sides=tuple(formula(*_filled(side, spans)) for side in sides))
+        else:
+            yield _paragraph(" ".join(block.split()), spans)
+
+
+def _filled(typed: str, spans: Mapping[str, Formula]) -> tuple[str, *tuple[Formula, ...]]:
+    """The formula with #1, #2, ... for the letters of the model, and these."""
+    for place, name in enumerate(spans, start=1):
+        typed = typed.replace(f"<{name}>", f"#{place}")
+    return (typed, *spans.values())
+
+
+def _paragraph(text: str, spans: Mapping[str, Formula]) -> Paragraph:
+    parts = text.split("$")
+    formulas = [formula(*_filled(part, spans)) for part in parts[1::2]]
+    words = "".join(part if k % 2 == 0 else "{}" for k, part in enumerate(parts))
+    return said(words, *formulas)

@@ -1,0 +1,65 @@
+"""What the notes say of Rodrigues' formula and of quaternions is true of the models."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+from rigidsym.models.so3 import TIME
+from rigidsym.notes.document.document import Equation
+from rigidsym.notes.prose.algebra_words import is_told, rates_in_words, rotation_in_words
+
+COEFFICIENTS = {  # of v × x′ and v × (v × x′), for the length n of the vector
+    "rotation_vector": lambda n: (np.sin(n) / n, (1 - np.cos(n)) / n**2),
+    "gibbs_vector": lambda n: (2 / (1 + n**2), 2 / (1 + n**2)),
+    "modified_rodrigues": lambda n: (4 * (1 - n**2) / (1 + n**2) ** 2, 8 / (1 + n**2) ** 2),
+}
+
+
+def rotated(model, values):
+    return np.array(model.matrix.xreplace(values), dtype=float)
+
+
+@pytest.mark.parametrize("name", COEFFICIENTS)
+def test_rodrigues_formula_with_these_coefficients_is_the_matrix(name):
+    model = rs.derive(name, "rotation_matrix").model
+    v, x = np.array([0.3, -0.5, 0.4]), np.array([1.0, 2.0, -0.7])
+    values = dict(zip(model.coordinates, map(sp.Float, v), strict=True))
+    first, second = COEFFICIENTS[name](np.linalg.norm(v))
+    expected = x + first * np.cross(v, x) + second * np.cross(v, np.cross(v, x))
+    np.testing.assert_allclose(rotated(model, values) @ x, expected, rtol=1e-12)
+
+
+def product(p, q):
+    (a, u), (b, v) = (p[0], p[1:]), (q[0], q[1:])
+    return np.array([a * b - u @ v, *(a * v + b * u + np.cross(u, v))])
+
+
+def test_the_angular_velocity_is_twice_the_rate_times_the_conjugate():
+    motion = rs.derive("quaternion")
+    q, rate = np.array([0.8, -0.3, 0.5, 0.2]), np.array([0.1, 0.4, -0.2, 0.3])
+    rate -= q * (q @ rate) / (q @ q)  # the length is constant
+    values = dict(zip(motion.model.coordinates, map(sp.Float, q), strict=True))
+    rates = {c.diff(TIME): sp.Float(r) for c, r in zip(values, rate, strict=True)}
+    conjugate = q * [1, -1, -1, -1] / (q @ q)
+    for name, expected in (
+        ("angular_velocity_space", 2 * product(rate, conjugate)),
+        ("angular_velocity_body", 2 * product(conjugate, rate)),
+    ):
+        found = np.array(getattr(motion, name).xreplace(rates).xreplace(values), dtype=float)
+        np.testing.assert_allclose([0, *found.ravel()], expected, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    "name", ["quaternion", "unit_quaternion", "cayley_klein", "axis_angle", *COEFFICIENTS]
+)
+def test_the_note_of_each_says_how_it_turns_a_vector(name):
+    motion = rs.derive(name, "rotation_matrix")
+    letters = motion.note().document.letters
+    assert is_told(motion.model)
+    blocks = [*rotation_in_words(motion.model, letters), *rates_in_words(motion.model, letters)]
+    texts = [block.sides[0].text for block in blocks if isinstance(block, Equation)]
+    assert "x" in texts
+    assert ("q̇" in texts) is (name in ("quaternion", "unit_quaternion", "cayley_klein"))
