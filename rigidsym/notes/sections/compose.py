@@ -301,9 +301,9 @@ class Composer:
             return (f"Likewise, the {step.quantity.about}:",)
         self.said.add(step.because)
         source = self._source(step)
-        if step.quantity.name == "rotation_matrix" and is_told(self.model):
-            matrix = "transpose of the matrix" if self.model.passive else "matrix"
-            return with_source((f"The {matrix} of this turn is:",), source)
+        is_matrix = step.quantity.name == "rotation_matrix"
+        if is_matrix and is_told(self.model) and not self.model.passive:
+            return with_source(("The matrix of this turn is:",), source)
         return with_source(with_symbols(step.because, self.symbols), source)
 
     def _source(self, step: Step) -> Citation | None:
