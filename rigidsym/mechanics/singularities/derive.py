@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterator, Sequence
 from functools import reduce
 from itertools import combinations
@@ -19,7 +20,6 @@ from rigidsym.algebra.stumpff import at_zero, rewriter_for
 from rigidsym.errors import ModelError
 from rigidsym.mechanics.derivation import Measure, Singularities, Singularity
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.singularities.rate_map import rate_map_of
 from rigidsym.mechanics.singularities.zeros import Zero, matrix_at, solver_for, substituted
 
 
@@ -56,13 +56,21 @@ class _Study:
         self.model = values.model
         self.codec: Codec = values.codec
         self.coordinates = values.arguments["q"].symbols
-        self.map = rate_map_of(values)
+        # rank, kernel and minors are the same in every frame: between the middle ones of the turns
+        # each axis has been moved by few turns, and W is shortest
+        turns = self.model.turns[: len(self.model.turns) // 2]
+        frame = (values.encoded(turn.matrix) for turn in turns)
+        self.to_space = reduce(operator.matmul, frame, values.one)
+        self.to_body = values.R.T @ self.to_space
+        here = self.to_space.T @ values.rate_matrix_space
         self.solver = solver_for(values.codec, self.coordinates)
-        bound = self.map.bound
-        self.bound_rank = _rank_and_minors(bound)[0] if bound is not None else 0
+        self.bound = values.bound
+        self.bound_rank = _rank_and_minors(self.bound)[0] if self.bound is not None else 0
+        below = self.bound.rows if self.bound is not None else ()  # the conditions on the rates
+        self.whole = RingMatrix(values.ring, (*here.rows, *below))
 
     def singularities(self) -> Singularities:
-        whole = self.map.whole
+        whole = self.whole
         full, minors = _rank_and_minors(whole)
         rank = full - self.bound_rank
         is_one = full == len(whole.rows) == whole.shape[1]
@@ -130,7 +138,7 @@ class _Study:
         relations = (substituted(relation, zero) for relation in self.codec.ring.relations)
         if any(relation.is_ground and relation for relation in relations):
             return False
-        bound = self.map.bound
+        bound = self.bound
         if bound is not None and _rank_and_minors(matrix_at(bound, zero))[0] < self.bound_rank:
             return None
         if not any(c.has(root.place.coordinate) for c in self.model.constraints for root in zero):
@@ -171,15 +179,12 @@ class _Study:
     def _in_space_and_body(
         self, found: RingMatrix | None, zero: Zero
     ) -> tuple[sp.ImmutableMatrix | None, sp.ImmutableMatrix | None]:
-        """A direction in the frame of the map, along the axes of space and of the body."""
+        """A direction in the frame of W, along the axes of space and of the body."""
         if found is None:
             return None, None
         ring = found.ring
         here = RingMatrix.column(ring, found.T.rows[0][:3])
-        space, body = (
-            reduce(lambda v, turn: matrix_at(turn, zero) @ v, turns, here)
-            for turns in (self.map.to_space, self.map.to_body)
-        )
+        space, body = (matrix_at(turned, zero) @ here for turned in (self.to_space, self.to_body))
         whole = _primitive((*space.entries, *body.entries), ring)
         halves = (RingMatrix.column(ring, part) for part in (whole[:3], whole[3:]))
         first, second = map(self.present.matrix, halves)
