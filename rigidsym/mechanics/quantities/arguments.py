@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ import sympy as sp
 from rigidsym.algebra.adjoin import rate_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula, named
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument
 from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.models.rotation import RotationModel
@@ -20,8 +22,6 @@ from rigidsym.models.so3 import TIME, time_function
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
 
-_SUFFIXES = ("", "_dot", "_ddot")  # of names, by the order of the derivative
-_CENTRE = ("X", "Y", "Z")
 POINT = tuple(sp.Symbol(f"p_{axis}") for axis in "xyz")
 DIRECTION = tuple(sp.Symbol(f"n_{axis}") for axis in "xyz")
 _SPACE = tuple(sp.Symbol(f"Omega_{k}") for k in (1, 2, 3))
@@ -33,13 +33,14 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
     Those of a body are its centre of mass, in space, and its constants. Raises ModelError for a
     name that would then stand for two things.
     """
+    q, units = model.coordinates, model.coordinate_units
     found = (
-        _coordinates(model, 0, "q", "coordinates"),
-        _coordinates(model, 1, "q_dot", "their time derivatives"),
-        _coordinates(model, 2, "q_ddot", "their second time derivatives"),
+        _moving("q", q, 0, units, "coordinates"),
+        _moving("q_dot", q, 1, units, "their time derivatives"),
+        _moving("q_ddot", q, 2, units, "their second time derivatives"),
         _angular_velocity("space", _SPACE, r"\Omega_{}"),
         _angular_velocity("body", OMEGA_BODY, r"\Omega'_{}"),
-        *((_centre(0), _centre(1), *_of_lines()) if body else ()),
+        *(_of_body() if body else ()),
         *_parameters(model, body),
     )
     if body is not None:
@@ -47,40 +48,35 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
     return found
 
 
+@cache
+def _of_body() -> tuple[Argument, ...]:
+    """The centre of mass, its velocity, and a line in the axes of the body."""
+    centre = tuple(map(time_function, ("X", "Y", "Z")))
+    of_centre = "space components of the {} of the centre of mass"
+    return (
+        _moving("centre", centre, 0, ("m",) * 3, of_centre.format("position")),
+        _moving("centre_dot", centre, 1, ("m",) * 3, of_centre.format("velocity")),
+        _vector("point", POINT, "m", "a point, in the axes of the body"),
+        _vector("direction", DIRECTION, "", "the direction of a line, a unit vector"),
+    )
+
+
 def arguments_of_motion(model: RotationModel) -> tuple[Argument, ...]:
     """The generalised momenta and the torque, inputs of Hamilton's and Euler's equations."""
     plain = [coordinate.func.__name__ for coordinate in model.coordinates]
+    momenta = [sp.Symbol(f"p_{label}") for label in plain]
+    shown = [formula("p_{#1}", named(label)) for label in plain]
+    torque, components = sp.symbols("torque_1:4"), [formula(f"N'_{k}") for k in (1, 2, 3)]
+    about = "body components of the torque about the fixed point"
     return (
-        Argument(
-            name="momenta",
-            symbols=tuple(sp.Symbol(f"p_{label}") for label in plain),
-            names=tuple(f"p_{label}" for label in plain),
-            notation=tuple(formula("p_{#1}", named(label)) for label in plain),
-            units=("kg m^2/s",) * len(plain),
-            about="generalised momenta",
-        ),
-        Argument(
-            name="torque",
-            symbols=tuple(sp.Symbol(f"torque_{k}") for k in (1, 2, 3)),
-            names=tuple(f"torque_{k}" for k in (1, 2, 3)),
-            notation=tuple(formula(f"N'_{k}") for k in (1, 2, 3)),
-            units=("N m",) * 3,
-            about="body components of the torque about the fixed point",
-        ),
+        _vector("momenta", momenta, "kg m^2/s", "generalised momenta", shown),
+        _vector("torque", torque, "N m", about, components),
     )
 
 
 def arguments_of_flow(state: Sequence[Argument]) -> tuple[Argument, ...]:
     """The time, and the state y of which `state` are the parts."""
-    time = Argument(
-        name="t",
-        symbols=(TIME,),
-        names=("t",),
-        notation=(formula("t"),),
-        units=("s",),
-        about="the time",
-        is_scalar=True,
-    )
+    time = replace(_vector("t", (TIME,), "s", "the time", [formula("t")]), is_scalar=True)
     whole = Argument(
         name="y",
         symbols=tuple(s for part in state for s in part.symbols),
@@ -105,81 +101,57 @@ def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument,
     symbols = (*model.constants, *(parameter.symbol for parameter in of_body))
     if not symbols:
         return ()
-    names = tuple(symbol.name for symbol in symbols)
     about = ["angles in radians, components of axes"] if model.constants else []
     about += ["masses, moments of inertia, lengths of the body"] if of_body else []
-    return (
-        Argument(
-            name="parameters",
-            symbols=symbols,
-            names=names,
-            notation=tuple(map(named, names)),
-            units=("",) * len(model.constants) + tuple(p.unit for p in of_body),
-            about=f"constants: {'; '.join(about)}",
-        ),
-    )
+    found = _vector("parameters", symbols, "", f"constants: {'; '.join(about)}")
+    units = ("",) * len(model.constants) + tuple(p.unit for p in of_body)
+    return (replace(found, units=units),)
 
 
-def _centre(order: int) -> Argument:
-    """The space components of the position of the centre of mass, or of its velocity."""
-    suffix = _SUFFIXES[order]
-    return Argument(
-        name=f"centre{suffix}",
-        symbols=tuple(_derivative(time_function(name), order) for name in _CENTRE),
-        names=tuple(name + suffix for name in _CENTRE),
-        notation=tuple(named(name, order) for name in _CENTRE),
-        units=(_per_second("m", order),) * 3,
-        about=f"space components of the {('position', 'velocity')[order]} of the centre of mass",
-    )
-
-
-def _of_lines() -> tuple[Argument, ...]:
-    """A point and the direction of a line through it, in the axes of the body."""
-    about = "a point, in the axes of the body", "the direction of a line, a unit vector"
-    return tuple(
-        Argument(
-            name=name,
-            symbols=symbols,
-            names=tuple(symbol.name for symbol in symbols),
-            notation=tuple(named(symbol.name) for symbol in symbols),
-            units=(unit,) * 3,
-            about=words,
-        )
-        for name, symbols, unit, words in zip(
-            ("point", "direction"), (POINT, DIRECTION), ("m", ""), about, strict=True
-        )
-    )
-
-
-def _coordinates(model: RotationModel, order: int, name: str, about: str) -> Argument:
-    suffix = _SUFFIXES[order]
-    plain = [coordinate.func.__name__ for coordinate in model.coordinates]
+def _vector(
+    name: str,
+    symbols: Sequence[sp.Symbol],
+    unit: str,
+    about: str,
+    notation: Iterable[Formula] | None = None,
+) -> Argument:
+    """An argument whose components are symbols of one unit, printed by their names or as given."""
+    names = tuple(symbol.name for symbol in symbols)
     return Argument(
         name=name,
-        symbols=tuple(_derivative(coordinate, order) for coordinate in model.coordinates),
-        names=tuple(label + suffix for label in plain),
+        symbols=tuple(symbols),
+        names=names,
+        notation=tuple(map(named, names) if notation is None else notation),
+        units=(unit,) * len(names),
+        about=about,
+    )
+
+
+def _moving(
+    name: str, functions: Sequence[sp.Expr], order: int, units: Sequence[str], about: str
+) -> Argument:
+    """Functions of time, or their derivatives of an order."""
+    plain = [function.func.__name__ for function in functions]
+    per = ("", "/s", "/s^2")[order]
+    return Argument(
+        name=name,
+        symbols=tuple(_derivative(function, order) for function in functions),
+        names=tuple(label + ("", "_dot", "_ddot")[order] for label in plain),
         notation=tuple(named(label, order) for label in plain),
-        units=tuple(_per_second(unit, order) for unit in model.coordinate_units),
+        units=tuple(f"{unit or '1'}{per}" if order else unit for unit in units),
         about=about,
     )
 
 
 @lru_cache(maxsize=1024)
-def _derivative(coordinate: sp.Expr, order: int) -> sp.Expr:
-    return rate_of(_derivative(coordinate, order - 1)) if order else coordinate
-
-
-def _per_second(unit: str, order: int) -> str:
-    return unit if order == 0 else f"{unit or '1'}/s{'^' + str(order) if order > 1 else ''}"
+def _derivative(function: sp.Expr, order: int) -> sp.Expr:
+    return rate_of(_derivative(function, order - 1)) if order else function
 
 
 @cache
 def _angular_velocity(frame: str, symbols: tuple[sp.Symbol, ...], typed: str) -> Argument:
-    return Argument(
-        name=f"omega_{frame}",
-        symbols=symbols,
-        names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3)),
-        notation=tuple(formula(typed.format(k)) for k in (1, 2, 3)),
-        units=("rad/s",) * 3,
-        about=f"{frame} components of the angular velocity",
+    about = f"{frame} components of the angular velocity"
+    found = _vector(
+        f"omega_{frame}", symbols, "rad/s", about, [formula(typed.format(k)) for k in (1, 2, 3)]
     )
+    return replace(found, names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3)))
