@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from operator import add, mul, sub
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.polys.groebnertools import groebner
@@ -28,8 +28,7 @@ Pair = tuple[PolyElement, PolyElement]
 Rule = tuple[Monomial, list[tuple[int, int]], Terms]  # leading monomial, its powers, the rest
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Generator:
+class Generator(NamedTuple):
     """One indeterminate of the ring and the SymPy expression it stands for."""
 
     expression: sp.Expr

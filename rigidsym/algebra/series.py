@@ -9,9 +9,9 @@ alternate and fall), and the switch from the rounding of the closed form, in rat
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from typing import NamedTuple
 
 import sympy as sp
 from sympy.polys.ring_series import rs_cos, rs_sin
@@ -26,8 +26,7 @@ _DEGREE = 40  # of the Taylor polynomials of sine and cosine in n
 FIRST_SERIES = 3  # c₀, c₁ and c₂ need none
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Series:
+class Series(NamedTuple):
     """c_k below its switch: Σ coefficients[j] x^j, x = n² < switch."""
 
     order: int  # k

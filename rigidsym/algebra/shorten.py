@@ -14,12 +14,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from itertools import combinations
 from math import gcd, lcm
 from operator import sub
+from typing import NamedTuple
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -82,8 +82,7 @@ Angle = tuple[int, int]  # places of sine and cosine
 FoldedTerms = dict[Monomial, Fraction]
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
+class Rule(NamedTuple):
     """first + sign · second = function(alpha ± beta), for products of two generators."""
 
     first: tuple[int, int]
@@ -163,8 +162,7 @@ def _times(monomial: Monomial, places: Iterable[int], power: int) -> Monomial:
 Weights = Mapping[int, int]  # place of a generator -> operations that one use of it costs
 
 
-@dataclass(frozen=True, slots=True)
-class FactoredTerm:
+class FactoredTerm(NamedTuple):
     """coefficient · generators^powers · (sum of the factors in `bracket`, where there is one)."""
 
     coefficient: Fraction

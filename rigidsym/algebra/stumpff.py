@@ -8,10 +8,9 @@ and must be equal there.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -47,8 +46,7 @@ def _start(order: int) -> tuple[int, int]:
     return first.numerator, first.denominator
 
 
-@dataclass(frozen=True, slots=True)
-class _Norm:
+class _Norm(NamedTuple):
     """The places of n, its powers, sin rn and cos rn among the generators of a ring."""
 
     expression: sp.Expr  # n

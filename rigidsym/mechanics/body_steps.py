@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 
 import sympy as sp
 
@@ -74,4 +73,4 @@ def _renamed(step: Found, turns: TurnByTurn) -> Found:
         return step
     proofs = [p for n in ("rotation_matrix", "angular_velocity_body") for p in turns.proofs(n)]
     expression = sp.ImmutableMatrix(step.expression.xreplace(names))
-    return replace(step, expression=expression, proofs=(*step.proofs, *proofs))
+    return step._replace(expression=expression, proofs=(*step.proofs, *proofs))

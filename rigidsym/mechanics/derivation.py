@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, Protocol, Self
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, Self
 
 import sympy as sp
 
@@ -82,16 +82,14 @@ class Argument:
     is_scalar: bool = False  # one number, of shape ()
 
 
-@dataclass(frozen=True, slots=True)
-class VectorTerm:
+class VectorTerm(NamedTuple):
     """coefficient · vector."""
 
     coefficient: sp.Expr
     vector: Formula  # v̇, v × v̇, ...
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class VectorForm:
+class VectorForm(NamedTuple):
     """A vector quantity in terms of the vector v of the coordinates, proved equal to it."""
 
     terms: tuple[VectorTerm, ...]
@@ -100,8 +98,7 @@ class VectorForm:
     proof: Proof
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class FirstIntegral:
+class FirstIntegral(NamedTuple):
     """A quantity that is constant along every motion, with the proof that it is."""
 
     name: str  # "energy", "momentum_phi"
@@ -130,8 +127,7 @@ class StepPrinter(Protocol):
     def text(self, step: Step) -> str: ...
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
+class Found(NamedTuple):
     """What the derivation of one quantity comes to, before it is a numbered step."""
 
     expression: sp.ImmutableMatrix
@@ -155,8 +151,7 @@ class OfBody:
     table: Mapping[str, Quantity] = field(default_factory=dict)  # of the quantities of motion
 
 
-@dataclass(frozen=True, slots=True)
-class Definition:
+class Definition(NamedTuple):
     """A named intermediate quantity: symbol = expression, in inputs and names defined before it."""
 
     symbol: sp.Symbol
@@ -222,8 +217,7 @@ class Statement:
     summands: sp.ImmutableMatrix | None = None  # that matrix; its sum is the last side
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Place:
+class Place(NamedTuple):
     """A coordinate, or the length of all of them, at one value, over and over again.
 
     The values are value + k period for all whole k; of a length, which is never negative, for

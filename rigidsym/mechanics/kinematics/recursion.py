@@ -17,10 +17,9 @@ so that the proofs are linear in n as well.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -210,8 +209,7 @@ class Recursion:
         return sp.ImmutableMatrix(parts[0] + parts[1] + parts[2])
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class OrthogonalRows:
+class OrthogonalRows(NamedTuple):
     """W = L U with L unit lower triangular and rows of U at right angles, so W Wᵀ = L D Lᵀ.
 
     W⁺ = Uᵀ D⁻¹ L⁻¹ loses as many digits near a pole as W has lost rank; the determinant of

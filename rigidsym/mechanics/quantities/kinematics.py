@@ -7,9 +7,10 @@ follow for the passive one (A = Rᵀ, the direction cosine matrix).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from types import MappingProxyType
+from typing import NamedTuple
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
@@ -46,8 +47,7 @@ def _jacobian(omega: Formula) -> Formula:
     return formula(r"\frac{\partial #1}{\partial #2}", omega, RATES)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Frame:
+class Frame(NamedTuple):
     """The symbols of the angular velocity and its rate matrix in one frame."""
 
     name: str

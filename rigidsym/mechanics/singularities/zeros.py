@@ -9,9 +9,8 @@ polynomials those that can be solved are, one after the other, and their zeros p
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -27,8 +26,7 @@ from rigidsym.models.so3 import TIME
 _QUARTERS = {0: (0, 1), 1: (1, 0), 2: (0, -1), -1: (-1, 0)}  # quarter turns: sine, cosine
 
 
-@dataclass(frozen=True, slots=True)
-class Root:
+class Root(NamedTuple):
     """One coordinate at one value, and the values of the generators there."""
 
     place: Place
@@ -39,8 +37,7 @@ class Root:
 Zero = tuple[Root, ...]  # all of them at once
 
 
-@dataclass(frozen=True, slots=True)
-class _Angle:
+class _Angle(NamedTuple):
     """The sine and the cosine of a fraction of one coordinate, or of the length of all."""
 
     sine: int
