@@ -27,6 +27,7 @@ from rigidsym.notes.prose.turn_words import are_euler_angles
 from rigidsym.notes.prose.words import vector
 
 _MOST_POINTS = 8  # that are told of one by one
+_MOST_PLACES = 2  # of one point that are repeated
 _FRAMES = (SPACE.matrix, BODY.matrix)
 WITH_CONDITIONS = formula(r"\mathbf{J}")
 _HALVES = {sp.pi / 2, -sp.pi / 2}
@@ -85,6 +86,9 @@ def failures(derivation: Derivation, found: Singularities) -> Iterator[Text]:
     """All that is said of them: where, and then what is lost at each point."""
     letters = letters_of(derivation.arguments, model=derivation.model)
     yield _zeros(found, letters)
+    if len(found.points) == 1 and len(found.points[0].places) > _MOST_PLACES:
+        yield ("There ", *_loss(found.points[0], derivation))
+        return
     yield from (singular(point, derivation) for point in found.points[:_MOST_POINTS])
     more = len(found.points) - _MOST_POINTS
     if more > 0:
@@ -144,9 +148,16 @@ def _where(
             return multiples, ()
         at = listed([_at(point, letters) for point in points])
         return (f"{what} {only}at ", *at), _period(points, letters)
+    alike: dict[tuple[sp.Expr, ...], list[sp.Expr]] = {}
+    for coordinate, several in values.items():
+        alike.setdefault(tuple(several), []).append(coordinate)
     choices: list[Text] = [
-        (formula_of(coordinate, letters), " is ", *listed(_markups(several, letters), " or "))
-        for coordinate, several in values.items()
+        (
+            *listed(_markups(coordinates, letters)),
+            " are " if len(coordinates) > 1 else " is ",
+            *listed(_markups(several, letters), " or "),
+        )
+        for several, coordinates in alike.items()
     ]
     return (f"{what} {only}where ", *listed(choices)), _period(points, letters)
 
@@ -209,9 +220,14 @@ def singular(point: Singularity, derivation: Derivation) -> Text:
     """What is lost at a singular point, and what remains determined."""
     letters = letters_of(derivation.arguments, model=derivation.model)
     head = ("At ", *_at(point, letters), " ") if point.places else ("Everywhere ",)
+    return (*head, *_loss(point, derivation))
+
+
+def _loss(point: Singularity, derivation: Derivation) -> Text:
     if not point.rank:
-        return (*head, "the body does not turn, whatever the rates are.")
-    return (*head, *_determined(point, derivation, letters), *_lost(point, letters), ".")
+        return ("the body does not turn, whatever the rates are.",)
+    letters = letters_of(derivation.arguments, model=derivation.model)
+    return (*_determined(point, derivation, letters), *_lost(point, letters), ".")
 
 
 def _determined(point: Singularity, derivation: Derivation, letters: Letters) -> Text:
