@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
@@ -15,7 +16,9 @@ from numpy.typing import NDArray
 from rigidsym.commands.command import command as make
 from rigidsym.commands.options import FILE, NAMED_NUMBER, option, with_options
 from rigidsym.data.writers import check_ending, table_writer
+from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
+from rigidsym.simulation.solver import METHODS, OMEGA, no_rotation
 from rigidsym.system.progress import bar
 
 _NUMBERS = {"type": NAMED_NUMBER, "multiple": True, "metavar": "NAME=NUMBER"}
@@ -27,9 +30,19 @@ class SimulationOptions:
 
     constants: tuple[tuple[str, float], ...] = option("--set", **_NUMBERS, help="A parameter.")
     initial: tuple[tuple[str, float], ...] = option(
-        "--initial", **_NUMBERS, help="A coordinate or rate; 0 by default."
+        "--initial",
+        **_NUMBERS,
+        help="A coordinate, a rate, or angular_velocity_body_1, _2, _3 in place of rates. "
+        "[default: no rotation, at rest]",
     )
     t_end: float = option("--time", type=float, default=10.0, show_default=True, help="Seconds.")
+    method: str = option(
+        "--method",
+        type=click.Choice(METHODS),
+        default=METHODS[0],
+        show_default=True,
+        help="lie takes steps in the rotation group; exact is for free bodies.",
+    )
     samples: int = option("--samples", type=click.IntRange(2), default=1001, show_default=True)
     out: Path | None = option("--out", type=FILE, help="CSV, NPY or Parquet file.")
     plot: Path | None = option("--plot", type=FILE, help="PNG, SVG or PDF picture.")
@@ -50,14 +63,14 @@ def command(source: str, options: SimulationOptions) -> None:
     if options.out is not None:
         check_ending(options.out)
     motion = motion_of(read(source))
-    rates = (*motion.argument("q").names, *motion.argument("q_dot").names)
-    start = dict.fromkeys(rates, 0.0) | dict(options.initial)
+    start = _start(motion, dict(options.initial))
     with bar(motion.name) as progress:
         found = motion.simulate(
             start,
             dict(options.constants),
             options.t_end,
             samples=options.samples,
+            method=options.method,
             progress=progress,
         )
     click.echo(found.report())
@@ -66,6 +79,19 @@ def command(source: str, options: SimulationOptions) -> None:
         click.echo(options.out)
     if options.plot is not None:
         click.echo(found.plot(options.plot))
+
+
+def _start(motion: Motion, given: Mapping[str, float]) -> dict[str, Any]:
+    """The initial values, with 0 and no rotation for what is not given."""
+    start: dict[str, Any] = dict(no_rotation(motion.model))
+    if set(start).isdisjoint(given):
+        start |= given
+    else:
+        start = dict.fromkeys(start, 0.0) | dict(given)
+    turning = [start.pop(f"{OMEGA}_{k}", None) for k in (1, 2, 3)]
+    if any(value is not None for value in turning):
+        return start | {OMEGA: [value or 0.0 for value in turning]}
+    return dict.fromkeys(motion.argument("q_dot").names, 0.0) | start
 
 
 def _write(columns: Mapping[str, NDArray[np.float64]], path: Path) -> None:

@@ -1,9 +1,10 @@
-"""Pictures of a trajectory: coordinates over time, the body axis on the sphere, drift."""
+"""Pictures of a trajectory: coordinates over time, traces on spheres and ellipsoids, drift."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,8 @@ from rigidsym.errors import MissingExtra
 Array = NDArray[np.float64]
 
 _ONE_TURN = 360
+_VIEW = (25, -60)  # elevation and azimuth of the eye, degrees
+_SMALLEST = 1e-17  # of a relative change in the picture of the drift
 
 
 def save_plot(
@@ -21,46 +24,92 @@ def save_plot(
     coordinates: Mapping[str, Array],
     axis: Array,
     first_integrals: Mapping[str, Array],
+    polhode: tuple[Array, Array] | None = None,
+    *,
+    in_degrees: bool = True,
 ) -> Path:
-    """One sheet with three pictures, PNG, SVG or PDF by the ending; raises MissingExtra.
+    """One sheet of pictures, PNG, SVG or PDF by the ending; raises MissingExtra.
 
-    Coordinates are in radians, (n,) each; `axis` is the third body axis in space, (n, 3).
+    Coordinates are in radians, (n,) each; `axis` is the third body axis in space, (n, 3). Of a
+    free body, `polhode` is Ω′, (n, 3), and the semi-axes of the ellipsoid of energy, (3,).
     """
     try:
         from matplotlib.figure import Figure
     except ModuleNotFoundError as error:
         raise MissingExtra("a picture", "plot") from error
-    figure = Figure(figsize=(11, 4), layout="constrained")
-    angles = figure.add_subplot(1, 3, 1)
-    degrees = {name: np.degrees(values) for name, values in coordinates.items()}
-    swinging = {name: values for name, values in degrees.items() if np.ptp(values) < _ONE_TURN}
-    for name, values in (swinging or degrees).items():  # one that winds on would dwarf the others
-        angles.plot(t, values, label=name)
-    angles.set(xlabel="t in s", ylabel="degrees", title="Coordinates")
-    angles.legend()
-    sphere = figure.add_subplot(1, 3, 2, projection="3d")
-    _draw_sphere(sphere)
-    sphere.plot(*axis.T, linewidth=1.2)
-    sphere.set(title="Trace of the third body axis", box_aspect=(1, 1, 1))
-    sphere.set_axis_off()
-    drift = figure.add_subplot(1, 3, 3)
-    for name, values in first_integrals.items():
-        size = abs(float(values[0])) or 1.0
-        drift.plot(t, (values - values[0]) / size, label=name)
-    drift.set(xlabel="t in s", ylabel="relative change", title="First integrals")
-    drift.legend(loc="lower left", fontsize="small")
+    count = 3 if polhode is None else 4
+    figure = Figure(figsize=(4 * count, 4), layout="constrained")
+    _draw_coordinates(figure.add_subplot(1, count, 1), t, coordinates, in_degrees=in_degrees)
+    sphere = figure.add_subplot(1, count, 2, projection="3d")
+    _draw_trace(sphere, axis, np.ones(3), "Trace of the third body axis")
+    if polhode is not None:
+        ellipsoid = figure.add_subplot(1, count, 3, projection="3d")
+        _draw_trace(ellipsoid, *polhode, "Polhode on the ellipsoid of energy")
+    _draw_drift(figure.add_subplot(1, count, count), t, first_integrals)
     path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path)
+    figure.savefig(path, dpi=150)
     return path
 
 
-def _draw_sphere(axes: object) -> None:
-    """A few circles of latitude and longitude."""
-    angle = np.linspace(0, 2 * np.pi, 120)
-    style = {"color": "0.85", "linewidth": 0.6}
-    for height in np.linspace(-0.8, 0.8, 5):
-        radius = np.sqrt(1 - height**2)
-        axes.plot(radius * np.cos(angle), radius * np.sin(angle), height, **style)  # type: ignore[attr-defined]
-    for turn in np.linspace(0, np.pi, 7)[:-1]:
-        flat = np.cos(angle)
-        axes.plot(flat * np.cos(turn), flat * np.sin(turn), np.sin(angle), **style)  # type: ignore[attr-defined]
+def _draw_coordinates(
+    axes: Any, t: Array, coordinates: Mapping[str, Array], *, in_degrees: bool
+) -> None:
+    """All of them; of angles, those that wind on are left out, since they would dwarf others."""
+    shown = {n: np.degrees(v) if in_degrees else v for n, v in coordinates.items()}
+    swinging = {n: v for n, v in shown.items() if np.ptp(v) < _ONE_TURN}
+    for name, values in (swinging or shown).items():
+        axes.plot(t, values, label=name)
+    axes.set(xlabel="t in s", ylabel="degrees" if in_degrees else "", title="Coordinates")
+    axes.legend(fontsize="small")
+
+
+def _draw_trace(axes: Any, points: Array, size: Array, title: str) -> None:
+    """A curve on an ellipsoid of circles; what is behind it is pale."""
+    angle = np.linspace(0, 2 * np.pi, 181)
+    flat = np.cos(angle), np.sin(angle)
+    circles = [
+        (flat[0] * np.sqrt(1 - h * h), flat[1] * np.sqrt(1 - h * h), angle * 0 + h)
+        for h in np.linspace(-0.8, 0.8, 5)
+    ]
+    circles += [
+        (flat[0] * np.cos(turn), flat[0] * np.sin(turn), flat[1])
+        for turn in np.linspace(0, np.pi, 7)[:-1]
+    ]
+    elevation, azimuth = np.radians(_VIEW)
+    eye = np.array(
+        [
+            np.cos(elevation) * np.cos(azimuth),
+            np.cos(elevation) * np.sin(azimuth),
+            np.sin(elevation),
+        ]
+    )
+    for circle in circles:
+        _draw_curve(axes, np.array(circle).T * size, eye, size, "0.75", 0.6)
+    _draw_curve(axes, points, eye, size, "C0", 1.4)
+    axes.scatter(*points[:1].T, color="C3", s=18)
+    for k, name in enumerate("xyz"):
+        axes.text(*(1.25 * size[k] * np.eye(3)[k]), name, color="0.4", ha="center", va="center")
+    axes.view_init(*_VIEW)
+    axes.set_box_aspect(size / size.max(), zoom=1.25)
+    axes.set(xlim=(-size[0], size[0]), ylim=(-size[1], size[1]), zlim=(-size[2], size[2]))
+    axes.set_title(title)
+    axes.set_axis_off()
+
+
+def _draw_curve(
+    axes: Any, points: Array, eye: Array, size: Array, color: str, width: float
+) -> None:
+    """In front of the ellipsoid opaque, behind it pale."""
+    is_front = (points / size**2) @ eye >= 0
+    for shown, alpha in ((is_front, 1.0), (~is_front, 0.25)):
+        part = np.where(shown[:, None], points, np.nan)
+        axes.plot(*part.T, color=color, linewidth=width, alpha=alpha)
+
+
+def _draw_drift(axes: Any, t: Array, first_integrals: Mapping[str, Array]) -> None:
+    for name, values in first_integrals.items():
+        size = abs(float(values[0])) or 1.0
+        axes.semilogy(t, np.maximum(np.abs(values - values[0]) / size, _SMALLEST), label=name)
+    axes.set(xlabel="t in s", ylabel="relative change", title="Drift of the first integrals")
+    if first_integrals:
+        axes.legend(loc="lower right", fontsize="x-small")

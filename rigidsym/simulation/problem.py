@@ -152,6 +152,7 @@ class Problem:
             rotation_matrix=self.rotation(states),
             first_integrals=self._integrals(states),
             inertia=self.inertia,
+            is_in_angles=set(self.derivation.model.coordinate_units) == {"rad"},
             ended=ended,
             remarks=tuple(remarks),
         )

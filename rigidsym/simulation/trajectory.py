@@ -27,6 +27,7 @@ class Trajectory:
     first_integrals: Mapping[str, Array]  # (n,) each
     inertia: Array  # (3, 3), kg m², about the fixed point in the axes of the body
     ended: str = ""  # why the motion ends before its time, if it does
+    is_in_angles: bool = True  # the coordinates, in radians
     remarks: tuple[str, ...] = ()  # such as a pole that was passed
 
     @property
@@ -57,7 +58,19 @@ class Trajectory:
 
         angles = {name: self.q[:, k] for k, name in enumerate(self.coordinates)}
         axis = self.rotation_matrix[:, :, 2]
-        return save_plot(Path(path), self.t, angles, axis, self.first_integrals)
+        return save_plot(
+            Path(path),
+            *(self.t, angles, axis, self.first_integrals, self._polhode()),
+            in_degrees=self.is_in_angles,
+        )
+
+    def _polhode(self) -> tuple[Array, Array] | None:
+        """Ω′ along the principal axes and the semi-axes √(2E/I_k), if the body is free."""
+        if "angular_momentum_squared" not in self.first_integrals:
+            return None
+        moments, axes = np.linalg.eigh(self.inertia)
+        omega = self.angular_velocity_body @ axes
+        return omega, np.sqrt(np.sum(moments * omega[0] ** 2) / moments)
 
     def _repr_pretty_(self, printer: Any, _: bool) -> None:
         printer.text(self.report())

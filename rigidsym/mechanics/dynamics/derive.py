@@ -33,7 +33,7 @@ _NONE = Found(sp.ImmutableMatrix([[0]]), "")  # of a quantity that a system does
 
 
 def equations_of_motion(model: RotationModel, body: RigidBody, forces: Forces) -> Flow:
-    """Lagrange's equations for angles and other free coordinates, else Euler's, unless asked for."""
+    """Lagrange's equations for free coordinates, else Euler's, unless one is asked for."""
     has_none_to_spare = bool(model.turns) or len(model.coordinates) == 3
     is_lagrange = is_free(model) and has_none_to_spare
     method = forces.method or ("lagrange" if is_lagrange else "euler")
