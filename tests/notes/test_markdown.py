@@ -141,6 +141,16 @@ def test_the_notebook_says_what_the_markdown_says():
     assert "\n\n".join(sources) + "\n" == written
 
 
+@pytest.mark.parametrize("rotation", ["ZXZ", "quaternion", "z(yaw) y(pitch) x(roll)"])
+def test_the_program_of_a_lecture_derives_it_again(rotation):
+    cells = nbformat.reads(rs.derive(rotation).note().notebook(), as_version=4).cells
+    (program,) = (cell.source for cell in cells if cell.cell_type == "code")
+    *lines, call = program.splitlines()
+    space: dict[str, object] = {}
+    exec("\n".join(lines), space)
+    assert np.shape(eval(call, space)) == (3,)
+
+
 @pytest.mark.parametrize("sequence", ["ZXZ", "xyz"])
 def test_the_program_of_a_notebook_runs_beside_its_module(tmp_path: Path, sequence):
     motion = derived(sequence)

@@ -145,6 +145,7 @@ class Document:
     sections: tuple[Section, ...]
     author: str = ""
     byline: tuple[str, ...] = ()  # below the title: author, course, date
+    program: str = ""  # lines of Python that derive it again, for a notebook
     more_sources: tuple[str, ...] = ()  # listed whether they are cited or not
 
     @property

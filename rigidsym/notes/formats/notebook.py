@@ -23,7 +23,10 @@ def render(document: Document) -> str:
     Raises MissingExtra without nbformat.
     """
     nbformat = _nbformat()
-    cells = [_cell(nbformat, part, place) for place, part in enumerate(parts(document), start=1)]
+    pieces = list(parts(document))
+    if document.program and not any(isinstance(part, CodeBlock) for part in pieces):
+        pieces += ["In Python:", CodeBlock(document.program)]
+    cells = [_cell(nbformat, part, place) for place, part in enumerate(pieces, start=1)]
     notebook = nbformat.v4.new_notebook(cells=cells, metadata=_METADATA)
     nbformat.validate(notebook)
     return str(nbformat.writes(notebook)) + "\n"

@@ -54,7 +54,7 @@ from rigidsym.notes.sections.claims_table import claims_in_a_table
 from rigidsym.notes.sections.fitting import Fitter
 from rigidsym.notes.sections.motion_section import what_follows, what_is_constant, what_moves
 from rigidsym.notes.sections.summary import summary
-from rigidsym.notes.sections.symbol_tables import functions, symbols
+from rigidsym.notes.sections.symbol_tables import functions, program, symbols
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -119,6 +119,7 @@ class Composer:
             subtitle=self.subtitle,
             letters=self.letters,
             sections=tuple(self.sections()),
+            program=program(self.derivation),
         )
 
     def sections(self) -> Iterator[Section]:

@@ -37,6 +37,8 @@ from rigidsym.notes.prose.words import (
 _U, _CROSS = formula(r"\mathbf{u}"), formula(r"\mathbf{u}\times")
 _PLACES = ("centre", "point", "direction")
 _MOST_SYMBOLS = 6  # in one cell
+_SHOWN = "angular_velocity_body"
+_OPTIONS = {"angles": "names"}  # of rotation_from, where a request has other keys
 _CODE_WIDTH = 76  # columns of typewriter type on a page
 
 
@@ -166,17 +168,28 @@ def functions(derivation: Derivation, module: str, names: Sequence[str]) -> Iter
 
 def _example(derivation: Derivation, module: str, names: Sequence[str]) -> str:
     """A call of one function with made-up numbers; of the angular velocity, if it is there."""
-    shown = "angular_velocity_body"
-    name = shown if shown in names else names[0]
+    name = _SHOWN if _SHOWN in names else names[0]
+    start = f"import {module.removesuffix('.py')} as kinematics"
+    return "\n".join([start, "", *_call(derivation, name)])
+
+
+def _call(derivation: Derivation, name: str) -> Iterator[str]:
     inputs = derivation.step(name).quantity.inputs
-    return "\n".join(
-        [
-            f"import {module.removesuffix('.py')} as kinematics",
-            "",
-            *(_given(derivation.argument(argument)) for argument in inputs),
-            f"kinematics.{name}({', '.join(inputs)})",
-        ]
-    )
+    yield from (_given(derivation.argument(argument)) for argument in inputs)
+    yield f"kinematics.{name}({', '.join(inputs)})"
+
+
+def program(derivation: Derivation) -> str:
+    """Lines of Python that derive it again and call a function of it; "" where no text can."""
+    request = dict(derivation.model.request)
+    if not request or all(step.quantity.name != _SHOWN for step in derivation.steps):
+        return ""
+    options = {_OPTIONS.get(key, key): value for key, value in request.items() if value}
+    rotation = f"rs.rotation_from({options.pop('sequence')!r}"
+    rotation += "".join(f", {key}={value!r}" for key, value in options.items()) + ")"
+    lines = ("import rigidsym as rs", "", f"rotation = {rotation}")
+    more = ("motion = rs.derive(rotation)", "kinematics = motion.kernels().load()", "")
+    return "\n".join([*lines, *more, *_call(derivation, _SHOWN)])
 
 
 def _given(argument: Argument) -> str:
