@@ -16,8 +16,10 @@ from typing import ClassVar, Self
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.tree import (
     Apply,
+    Bracket,
     Differential,
     Formula,
+    Fraction,
     Gap,
     Numeral,
     Power,
@@ -151,8 +153,9 @@ class Pen:
         return self.glued(pieces, _binding(node.parts))
 
     def indices(self, index: Formula) -> Piece:
-        """An index, whose parts stand close together."""
-        return self.row(index if isinstance(index, Row) else Row((index,)), is_tight=True)
+        """An index, whose parts stand close together, and whose fractions on one line."""
+        flat = _on_a_line(index)
+        return self.row(flat if isinstance(flat, Row) else Row((flat,)), is_tight=True)
 
     def glued(self, pieces: Iterable[Piece], binding: Binding = Binding.CALL) -> Piece:
         """Pieces side by side, which break where each of them does."""
@@ -192,6 +195,18 @@ def _written(
     pen: Callable[..., Pen], notation: Notation, loose: bool, short: bool, formula: Formula
 ) -> Piece:
     return pen(notation, loose=loose, short=short).node(notation.applied(formula))
+
+
+def _on_a_line(index: Formula) -> Formula:
+    """√2/2 in place of a fraction, also within brackets."""
+    match index:
+        case Fraction(above, below):
+            return row(above, Sign("/"), below)
+        case Bracket(inside):
+            return replace(index, inside=_on_a_line(inside))
+        case Row(parts):
+            return row(*map(_on_a_line, parts))
+    return index
 
 
 def _is_alone(parts: Sequence[Formula], place: int) -> bool:

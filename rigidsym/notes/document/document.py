@@ -132,6 +132,7 @@ class Section:
     title: str
     blocks: tuple[NoteBlock, ...]
     on_own_page: bool = False  # at the end, on a sheet that can be handed out alone
+    is_appendix: bool = False  # at the end, behind the sources of a paper
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

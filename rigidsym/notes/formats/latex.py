@@ -50,7 +50,14 @@ def rendered(template: str, document: Document) -> str:
     """A template with the parts of the note in it."""
     printer = _LatexPrinter(document)
     written = [
-        (section.on_own_page, {"title": escape(section.title), "body": printer.body(section)})
+        (
+            section.on_own_page or section.is_appendix,
+            {
+                "title": escape(section.title),
+                "body": printer.body(section),
+                "on_own_page": section.on_own_page,
+            },
+        )
         for section in document.sections
     ]
     return (
@@ -60,8 +67,8 @@ def rendered(template: str, document: Document) -> str:
             title=escape(document.title),
             subtitle=escape(document.subtitle),
             byline=escape(" · ".join(document.byline)),
-            sections=[section for is_sheet, section in written if not is_sheet],
-            sheets=[section for is_sheet, section in written if is_sheet],
+            sections=[section for is_last, section in written if not is_last],
+            last=[section for is_last, section in written if is_last],
             metadata=metadata(document),
             sources=[
                 {"key": printer.key(place), "text": escape(source)}

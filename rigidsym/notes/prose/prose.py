@@ -28,6 +28,17 @@ _SHORTHAND = words(
 )
 
 
+HOW_VERIFIED = (
+    "Each identity was verified exactly, as a polynomial identity in the sines and cosines using "
+    "sin² + cos² = 1 (and similar relations for other functions)."
+)
+EXACT_MEANS = " “Exact” means that the two sides were shown to be identical."
+_UNPROVED_MEANS = (
+    " “Unproved” means that the difference of the two sides was not shown to vanish; it is given "
+    "below the table."
+)
+
+
 def turn(turn: Turn, letters: Letters) -> Formula:
     """R_z(φ), or R_[0, 3/5, 4/5](φ)."""
     return Apply(Symbol("R", "bold", index=axis_of(turn, letters)), formula_of(turn.angle, letters))
@@ -79,13 +90,4 @@ def announcement(equation: Equation, done: Done) -> Text:
 
 def proofs_in_words(*, is_proved: bool) -> Text:
     """What the table of proofs means by its words."""
-    exact = (
-        "Each identity was verified exactly, as a polynomial identity in the sines and cosines "
-        "using sin² + cos² = 1 (and similar relations for other functions). “Exact” means that "
-        "the two sides were shown to be identical."
-    )
-    unproved = (
-        " “Unproved” means that the difference of the two sides was not shown to vanish; it is "
-        "given below the table."
-    )
-    return (exact if is_proved else exact + unproved,)
+    return (HOW_VERIFIED, EXACT_MEANS if is_proved else EXACT_MEANS + _UNPROVED_MEANS)

@@ -16,6 +16,7 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Section,
 )
+from rigidsym.notes.prose.prose import EXACT_MEANS, HOW_VERIFIED
 from rigidsym.notes.sections.claims_table import EXACT
 from rigidsym.notes.sections.compose import FUNCTIONS, IDENTITIES, SYMBOLS
 from rigidsym.notes.sections.summary import TITLE as SUMMARY
@@ -50,7 +51,9 @@ def in_style(document: Document, style: str, *, is_short: bool = False) -> Docum
         for section in document.sections
         if section.title not in left_out
     ]
-    identities = [replace(s, title=APPENDIX) for s in kept if s.title == IDENTITIES]
+    identities = [
+        replace(s, title=APPENDIX, is_appendix=True) for s in kept if s.title == IDENTITIES
+    ]
     others = [section for section in kept if section.title != IDENTITIES]
     if all(not equation.unproved for equation in document.equations):
         first, *rest = others
@@ -67,6 +70,8 @@ def _without_proofs(block: NoteBlock) -> NoteBlock:
     """Without the identities that were verified, the functions, and a column of nothing new."""
     if isinstance(block, Equation):
         return replace(block, proved=(), function="")
+    if block == Paragraph((HOW_VERIFIED, EXACT_MEANS)):
+        return Paragraph((HOW_VERIFIED,))
     if isinstance(block, NoteTable) and block.rows and all(r[-1] == EXACT for r in block.rows):
         rows = tuple(row[:-1] for row in block.rows)
         return replace(block, head=block.head[:-1], rows=rows)
