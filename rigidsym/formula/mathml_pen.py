@@ -9,7 +9,7 @@ from html import escape
 
 from rigidsym.formula.pen import Height, Piece
 from rigidsym.formula.sheet_pen import Aligned, Inline, SheetPen, Size
-from rigidsym.formula.tree import Big, Formula, FunctionCall, Symbol
+from rigidsym.formula.tree import Big, Bracket, Formula, FunctionCall, Symbol
 from rigidsym.formula.unicode_pen import UnicodePen
 
 _THIN, _QUAD = '<mspace width=".1667em"/>', '<mspace width="1em"/>'
@@ -85,6 +85,8 @@ class MathmlPen(SheetPen):
         if isinstance(base, Symbol) and base.prime and base.index is None:
             text = self.node(replace(base, prime="")).text
             return f"<msup>{text}<mrow>{_PRIME[base.prime]}{exponent}</mrow></msup>"
+        if isinstance(base, Bracket) and _LARGE in inside:  # browsers would set it small
+            return f'{inside}<msup><mspace height="1.1em"/>{_one(exponent)}</msup>'
         return f"<msup>{_one(inside)}{_one(exponent)}</msup>"
 
     def spelt_fraction(self, above: str, below: str) -> str:
