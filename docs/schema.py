@@ -92,6 +92,7 @@ def schema() -> Schema:
             },
         ),
         "notation": _notation(),
+        "text": _text(),
         "output": _output(),
     }
     return {
@@ -227,6 +228,22 @@ def _notation() -> Schema:
     }
     frames = texts('names of the frames of space and body, such as ["inertial", "spacecraft"]')
     return obj("The notation of notes and terminal.", choices | {"frames": frames})
+
+
+def _text() -> Schema:
+    names = "by the name of a quantity or the title of a section"
+    return obj(
+        "Your own words in the note: formulas between dollar signs, [key] for one of the sources.",
+        {
+            "author": text("author of the note"),
+            "course": text("the course it is for"),
+            "date": text("its date"),
+            "omit": texts("quantities and sections that are left out"),
+            "before": _by_name(f"what is said before, {names}"),
+            "after": _by_name(f"what is said after, {names}"),
+            "sources": _by_name("your own sources by key; the key lecture names the lecture notes"),
+        },
+    )
 
 
 def _output() -> Schema:
