@@ -21,8 +21,13 @@ if TYPE_CHECKING:
     from benchmarks.measure import Settings
     from benchmarks.report import Report
 
-DOCS = Path(__file__).resolve().parent.parent / "docs" / "reference"
-PAGES = {"rosetta": DOCS / "rosetta.md", "kernels": DOCS / "measured.md"}
+ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs" / "reference"
+PAGES = {  # what --docs writes into
+    "rosetta": DOCS / "rosetta.md",
+    "kernels": DOCS / "measured.md",
+    "sizes": ROOT / "README.md",
+}
 NAMES = (
     "derivation",
     "form",
@@ -108,7 +113,7 @@ def _parser() -> argparse.ArgumentParser:
     ):
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)
     parser.add_argument(
-        "--docs", action="store_true", help="put the tables into docs/reference/measured.md"
+        "--docs", action="store_true", help="put the tables into README.md and docs/reference"
     )
     parser.add_argument("--fresh", action="store_true", help="survey SymPy's forms anew (minutes)")
     return parser

@@ -17,6 +17,8 @@ extensions = ["myst_parser", "extension"]
 myst_enable_extensions = ["dollarmath", "deflist"]
 myst_heading_anchors = 3
 html_theme = "furo"
+html_theme_options = {"top_of_page_buttons": []}
+html_copy_source = html_show_sourcelink = False
 html_title = f"rigidsym {version}"
 html_extra_path = ["derivation.schema.json"]
 if (built := Path(__file__).parents[1] / "build" / "gallery").is_dir():

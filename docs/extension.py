@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from html import escape
+from pathlib import Path
 from typing import Any
 
 import from_code
@@ -40,7 +41,29 @@ def fill(_app: Sphinx, _page: str, source: list[str]) -> None:
     source[0] = _FROM_CODE.sub(lambda match: getattr(from_code, match[1])(), source[0])
 
 
+_ACCESSIBLE = (  # what the theme leaves out, for readers with a keyboard or a screen reader
+    ('<p class="caption" role="heading">', '<p class="caption" role="heading" aria-level="2">'),
+    ('<aside class="sidebar-drawer">', '<aside class="sidebar-drawer" aria-label="Site">'),
+    ('<aside class="toc-drawer">', '<aside class="toc-drawer" aria-label="On this page">'),
+    ('<aside class="toc-drawer no-toc">', '<aside class="toc-drawer no-toc" aria-label="None">'),
+    ("<pre>", '<pre tabindex="0">'),
+    ('<div class="table-wrapper', '<div tabindex="0" class="table-wrapper'),
+    ('<div id="search-results">', '<h1>Search</h1><div id="search-results">'),
+)
+
+
+def complete(app: Sphinx, _error: Exception | None) -> None:
+    """Add what axe-core asks for to the pages, but not to the notes of the gallery."""
+    for page in Path(app.outdir).rglob("*.html"):
+        if "gallery" not in page.relative_to(app.outdir).parts:
+            text = page.read_text(encoding="utf-8")
+            for found, better in _ACCESSIBLE:
+                text = text.replace(found, better)
+            page.write_text(text, encoding="utf-8")
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     app.add_html_math_renderer("mathml", (inline, None), (display, None))
     app.connect("source-read", fill)
+    app.connect("build-finished", complete)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

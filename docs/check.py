@@ -1,0 +1,143 @@
+"""What must hold of the built documentation: `python docs/check.py build/docs`.
+
+Links inside the site lead somewhere, a page has at most 300 kB, axe-core finds no fault, and every
+word of the texts is known to hunspell or to `docs/words.txt`. Exits with 1 and prints every fault.
+Needs Chromium and hunspell.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from urllib.parse import unquote, urlsplit
+
+ROOT = Path(__file__).parents[1]
+MOST_BYTES = 300_000
+WIDTH = 1100  # pixels
+_STYLE = re.compile(r'<link [^>]*href="([^"?]+\.css)[^"]*"[^>]*>')
+_SCRIPT = re.compile(r"<script.*?</script>", re.DOTALL)
+_SIDEBARS = re.compile(r"<aside.*?</aside>", re.DOTALL)
+_NO_PROSE = re.compile(
+    r"^```.*?^```|^\$\$.*?^\$\$|`[^`]*`|\$[^$]*\$|<[^>]*>|\]\([^)]*\)|https?://\S+|--?[a-z-]+",
+    re.DOTALL | re.MULTILINE,
+)
+
+
+class _Page(HTMLParser):
+    """The links of a page, and what they may lead to."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.links: list[str] = []
+        self.places: set[str] = set()
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        for name, value in attrs:
+            if name in ("href", "src") and value:
+                self.links.append(value)
+            if name == "id" or (name == "name" and tag == "a"):
+                self.places.add(value or "")
+
+
+@cache
+def page(path: Path) -> _Page:
+    return _Page(path)
+
+
+def pages(site: Path) -> list[Path]:
+    """The pages that Sphinx made, without the notes and live pages of the gallery."""
+    return [p for p in sorted(site.rglob("*.html")) if "gallery" not in p.relative_to(site).parts]
+
+
+def broken_links(site: Path) -> Iterator[str]:
+    """Links to files or places that are not there."""
+    for path in pages(site):
+        for link in page(path).links:
+            parts = urlsplit(link)
+            if parts.scheme or parts.netloc:
+                continue
+            target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+            if target.is_dir():
+                target /= "index.html"
+            if not target.is_file():
+                yield f"{path.relative_to(site)}: no file {link}"
+            elif target.suffix == ".html" and not has_place(target, unquote(parts.fragment)):
+                yield f"{path.relative_to(site)}: no place {link}"
+
+
+def has_place(path: Path, fragment: str) -> bool:
+    return not fragment or fragment in page(path).places
+
+
+def too_large(site: Path) -> Iterator[str]:
+    for path in pages(site):
+        if (size := path.stat().st_size) > MOST_BYTES:
+            yield f"{path.relative_to(site)}: {size} bytes, at most {MOST_BYTES}"
+
+
+def inaccessible(site: Path) -> Iterator[str]:
+    """What axe-core finds on the pages, with their styles and without scripts."""
+    sys.path.insert(0, str(ROOT / "tests"))
+    from helpers.browser import look_at
+
+    shown = pages(site)
+    with TemporaryDirectory() as folder:
+        html = [(self_contained(path), WIDTH) for path in shown]
+        html[1:] = [(_SIDEBARS.sub("", page), width) for page, width in html[1:]]  # once is enough
+        seen = look_at(html, Path(folder), with_axe=True)
+    for path, result in zip(shown, seen, strict=True):
+        yield from (f"{path.relative_to(site)}: {fault}" for fault in result.faults)
+
+
+def self_contained(path: Path) -> str:
+    """A page with its style sheets inside."""
+
+    def style(match: re.Match[str]) -> str:
+        sheet = path.parent / match[1]
+        return f"<style>{sheet.read_text(encoding='utf-8')}</style>" if sheet.is_file() else ""
+
+    return _SCRIPT.sub("", _STYLE.sub(style, path.read_text(encoding="utf-8")))
+
+
+def texts() -> list[Path]:
+    """What is written by hand for readers."""
+    return [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+def misspelt(files: Iterable[Path]) -> Iterator[str]:
+    """Words that neither hunspell nor the word list knows."""
+    known = set((ROOT / "docs" / "words.txt").read_text(encoding="utf-8").split())
+    for path in files:
+        text = _NO_PROSE.sub(" ", path.read_text(encoding="utf-8"))
+        words = sorted(set(re.findall(r"[^\W\d_]+(?:['’][^\W\d_]+)?", text)) - known)
+        unknown = set(_unknown(words))
+        yield from (f"{path.relative_to(ROOT)}: {word}" for word in words if word in unknown)
+
+
+def _unknown(words: list[str]) -> list[str]:
+    done = subprocess.run(
+        ["hunspell", "-l", "-d", "en_US", "-i", "utf-8"],
+        input="\n".join(words),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout.split()
+
+
+def main(site: Path) -> int:
+    checks = (broken_links(site), too_large(site), inaccessible(site), misspelt(texts()))
+    faults = [fault for check in checks for fault in check]
+    print(*faults, f"{len(faults)} faults on {len(pages(site))} pages", sep="\n")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]).resolve()))
