@@ -10,7 +10,7 @@ from types import ModuleType
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.derivatives import Asked, derivatives_of, read_requests
 from rigidsym.kernels.lowering.lower import lower
-from rigidsym.kernels.targets import printer
+from rigidsym.kernels.targets import TARGETS, printer
 from rigidsym.mechanics.conversions.conversions import conversions_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.system.files import write_text
@@ -50,11 +50,11 @@ class KernelModule:
     def write(self, path: str | Path) -> Path:
         """Write the files, each whole or not at all, and return the path of the main one.
 
-        In a folder that exists they take their own names. Else the path is that of the file, or,
-        of a target with several files, that of a folder to be made.
+        In a folder that exists they take their own names. Else the path is that of the main file,
+        or, if that needs the others, that of a folder to be made.
         """
         place = Path(path)
-        if len(self.files) == 1 and not place.is_dir():
+        if TARGETS[self.target].stands_alone and not place.is_dir():
             return write_text(place, self.source)
         for name, text in self.files.items():
             write_text(place / name, text)

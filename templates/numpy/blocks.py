@@ -127,7 +127,7 @@ def _share(work, pieces, threads):
         other.result()
 
 
-_POOLS = {}
+_POOLS: dict[int, object] = {}
 
 
 def _pool():

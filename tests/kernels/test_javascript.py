@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 from functools import cache
@@ -212,6 +213,18 @@ def test_a_module_is_written_and_node_accepts_it(tmp_path: Path):
     assert path == tmp_path / f"{NAME}.mjs"
     subprocess.run(["node", "--check", path], check=True)
     assert kernels.load().quaternion([0.0, 0.0, 0.0]).tolist() == [1.0, 0.0, 0.0, 0.0]
+
+
+def test_every_function_is_declared_for_typescript(tmp_path: Path):
+    asked = {"angular_velocity_body": "q"}
+    kernels = derived("ZXZ").kernels("javascript", conversions=True, derivatives=asked)
+    module, types = (kernels.files[f"{NAME}.{ending}"] for ending in ("mjs", "d.mts"))
+    functions = r"^export function (\w+)\((.*?)\)[ :]"
+    written = {name: given.count(",") for name, given in re.findall(functions, module, re.M)}
+    declared = {name: given.count(",") for name, given in re.findall(functions, types, re.M)}
+    assert declared == written
+    assert "export function rotation_matrix(q: Vector): number[][];" in types
+    assert kernels.write(tmp_path / "mine.mjs") == tmp_path / "mine.mjs"
 
 
 def test_without_node_it_is_said(monkeypatch):

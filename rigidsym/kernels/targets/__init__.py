@@ -39,6 +39,7 @@ class Target:
     ending: str  # of the main file, after the name of the derivation
     package: str = ""  # of Python, which the extra of the target's name installs
     programs: tuple[str, ...] = ()  # one of these is enough
+    stands_alone: bool = True  # whether the main file needs no other
     has_single: bool = True  # whether its functions also compute in single precision
 
     @property

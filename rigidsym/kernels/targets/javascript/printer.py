@@ -34,20 +34,24 @@ _WORDS = (
 )
 RESERVED = frozenset({*_WORDS.split(), *FUNCTIONS})
 _WIDTH = 88
+_TYPES = """type Vector = ArrayLike<number>;
+type Matrix = Vector | ArrayLike<Vector>;"""
 _FORMS = {"choice": "{0} ? {1} : {2}", "nan": "NaN", "==": "==="}
 
 
 def render(program: Program) -> dict[str, str]:
-    """The module."""
-    return {f"{program.name}.mjs": _module(_about(program), program.kernels)}
+    """The module, and its types for TypeScript."""
+    name, kernels = program.name, program.kernels
+    declared = "\n".join(line for kernel in kernels for line in _declared(kernel))
+    types = f"// The types of {name}.mjs.\n\n{_TYPES}\n\n{declared}\n"
+    return {f"{name}.mjs": _module(_about(program), kernels), f"{name}.d.mts": types}
 
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
     """The functions as a Python module that runs node; for comparison, each call is a process."""
     from rigidsym.kernels.targets.javascript.node import module
 
-    (source,) = files.values()
-    return module(name, source)
+    return module(name, files[f"{name}.mjs"])
 
 
 def bare(kernels: Sequence[Kernel]) -> str:
@@ -77,6 +81,25 @@ def _module(about: Sequence[remarks.Paragraph], kernels: Sequence[Kernel]) -> st
             takes_matrices=any(a.is_matrix for kernel in kernels for a in kernel.arguments),
         )
     )
+
+
+def _declared(kernel: Kernel) -> Iterator[str]:
+    """The functions of one orientation and of many; vectors may be arrays or typed arrays."""
+    kinds = [
+        "number" if a.is_scalar else "Matrix" if a.is_matrix else "Vector" for a in kernel.arguments
+    ]
+    marks = ["?" if a.is_optional else "" for a in kernel.arguments]
+    names = [f"{a.name}{mark}" for a, mark in zip(kernel.arguments, marks, strict=True)]
+    one = ", ".join(f"{name}: {kind}" for name, kind in zip(names, kinds, strict=True))
+    many = ", ".join(f"{name}: Vector" for name in names)
+    yield f"export function {kernel.name}({one}): {_kind(kernel)};"
+    yield f"export function {kernel.name}_batch({many}, out?: Float64Array): Float64Array;"
+
+
+def _kind(kernel: Kernel) -> str:
+    """The type of what is returned: number[][], or those of a value and its derivative."""
+    kinds = ["number" + "[]" * len(shape) for shape in kernel.parts or (kernel.shape,)]
+    return f"[{', '.join(kinds)}]" if kernel.parts else kinds[0]
 
 
 def _show(expression: Expression) -> str:
@@ -185,12 +208,10 @@ def _about_kernel(kernel: Kernel, vectors: Sequence[str]) -> list[remarks.Paragr
     for vector, a in zip(vectors, kernel.arguments, strict=True):
         rows = "; rows, or the entries row by row" if a.is_matrix else ""
         about = f"{', '.join(a.components)}{remarks.in_units(a.units)}{rows}"
-        lines.append(f"@param {{number[]}} {vector} {about}")
-    kinds = ["number" + "[]" * len(shape) for shape in kernel.parts or (kernel.shape,)]
+        lines.append(f"@param {{ArrayLike<number>}} {vector} {about}")
     shapes = [f"({', '.join(map(str, s))})" for s in kernel.parts or (kernel.shape,) if s]
-    kind = f"[{', '.join(kinds)}]" if kernel.parts else kinds[0]
     unit = f" in {kernel.unit}" if kernel.unit else ""
-    returned = " ".join([f"@returns {{{kind}}}", *filter(None, [" and ".join(shapes)])])
+    returned = " ".join([f"@returns {{{_kind(kernel)}}}", *filter(None, [" and ".join(shapes)])])
     return [*remarks.about_kernel(kernel), [*lines, returned + unit]]
 
 

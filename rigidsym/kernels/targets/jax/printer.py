@@ -63,7 +63,9 @@ def _imports(*, has_parts: bool, has_series: bool) -> str:
     """The lines before that of jax.numpy."""
     standard = ["from functools import cache"] * has_series + ["from math import prod"] * has_parts
     jax = ["import jax"] * has_series
-    return "".join(f"{line}\n" for line in [*standard, *[""] * bool(standard), *jax])
+    return "".join(
+        f"{line}\n" for line in [*standard, "from typing import TYPE_CHECKING", "", *jax]
+    )
 
 
 def _function(kernel: Kernel) -> dict[str, str]:
@@ -75,7 +77,12 @@ def _function(kernel: Kernel) -> dict[str, str]:
     return {
         "name": kernel.name,
         "ufunc": python.ufunc(kernel),
-        "signature": bracketed(0, f"def {kernel.name}(", python.taken(kernel), "):"),
+        "signature": bracketed(
+            0,
+            f"def {kernel.name}(",
+            python.parameters(kernel),
+            f") -> {python.returned(kernel)}:",
+        ),
         "about": docstring(python.about_function(kernel), indent=4),
         "body": "\n".join([given, *taken, *lines, *_returned(kernel)]),
     }

@@ -22,7 +22,9 @@ from rigidsym.system import resources
 
 TEMPLATE = "numpy/module.py.jinja"
 RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError"}
-OPTIONS = ("out=None", "threads=1")  # of every function of arrays
+OPTIONS = ("out: Array | None = None", "threads: int = 1")  # of every function of arrays
+
+_SPELLED = len("float, float, float, float")  # longer types are those of tuples of any length
 
 _SCALAR = python.Statements(
     indent=8,
@@ -70,7 +72,7 @@ def module_text(
         .get_template(template)
         .render(
             about=docstring(_about(program)),
-            imports=f"from math import {', '.join(sorted(_imports(kernels)))}\n\n",
+            imports=f"from math import {', '.join(sorted(_imports(kernels)))}\n",
             exports=python.lines(f'"{name}",' for name in sorted(exports)),
             components=python.components(program),
             functions=[_function(kernel, at_once) for kernel in kernels],
@@ -113,20 +115,28 @@ def _fitted(kernel: Kernel) -> Kernel:
 def _function(kernel: Kernel, at_once: str) -> dict[str, str]:
     """The pieces of text that stand for one kernel in the template."""
     block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
-    each = ((argument, name) for argument in kernel.arguments for name in argument.components)
-    floats = [f"{name}{python.default(argument, '0.0')}" for argument, name in each]
+    floats = [
+        f"{name}: float{' = 0.0' if argument.is_optional else ''}"
+        for argument in kernel.arguments
+        for name in argument.components
+    ]
     shape = str(kernel.shape)
     given = [block, scalar, shape, "out", "threads", *python.passed(kernel, "np")]
     nesting = ("a float", "a tuple", "a tuple of rows")[len(kernel.shape)]
     twin = [f"`{kernel.name}` of one orientation; floats to {nesting}."]
     return {
         "signature": bracketed(
-            0, f"def {kernel.name}(", [*python.taken(kernel), "*", *OPTIONS], "):"
+            0,
+            f"def {kernel.name}(",
+            python.parameters(kernel, *OPTIONS),
+            f") -> {python.returned(kernel)}:",
         ),
         "about": docstring(python.about_function(kernel), indent=4),
         "body": _body(kernel, given, at_once.format(kernel.name)),
         "ufunc": python.ufunc(kernel),
-        "scalar_signature": bracketed(0, f"def {scalar}(", floats, "):"),
+        "scalar_signature": bracketed(
+            0, f"def {scalar}(", floats, f") -> {_floats(kernel.shape)}:"
+        ),
         "scalar_about": docstring(twin, indent=4),
         "scalar_body": "\n".join([*_scalar_lines(kernel), _scalar_return(kernel)]),
         "exceptional": bracketed(
@@ -134,6 +144,15 @@ def _function(kernel: Kernel, at_once: str) -> dict[str, str]:
         ),
         "block": _block(kernel),
     }
+
+
+def _floats(shape: Sequence[int]) -> str:
+    """The type of one value in floats: tuple[float, float, float]."""
+    if not shape:
+        return "float"
+    inner = _floats(shape[1:])
+    spelled = ", ".join([inner] * shape[0])
+    return f"tuple[{spelled if len(spelled) <= _SPELLED else f'{inner}, ...'}]"
 
 
 def _body(kernel: Kernel, arguments: Sequence[str], at_once: str) -> str:

@@ -21,7 +21,7 @@ def unwrap_text(unwrapping: Unwrapping, block: Callable[[Kernel], str]) -> str:
     if unwrapping.coordinates is not None:
         given.append(str(len(unwrapping.coordinates.arguments[-1].components)))
     function = f"_unwrapped_{unwrapping.kind}"
-    head = bracketed(0, "def unwrap(", taken, "):")
+    head = bracketed(0, "def unwrap(", [f"{name}: ArrayLike" for name in taken], ") -> Array:")
     body = bracketed(4, f"return {function}(", [*given, *checked], ")")
     about = docstring(_about(unwrapping), indent=4)
     unwrap = f'{head}\n    """{about}"""\n{body}'

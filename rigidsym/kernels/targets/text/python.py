@@ -112,13 +112,17 @@ def series_entries(kernels: Iterable[Kernel], *, more: int = 0) -> str:
 # arguments
 
 
-def default(argument: KernelArgument, value: str) -> str:
-    return f"={value}" if argument.is_optional else ""
+def parameters(kernel: Kernel, *options: str) -> list[str]:
+    """Of a function of arrays, with their types."""
+    arrays = [
+        f"{a.name}: ArrayLike{' | None = None' if a.is_optional else ''}" for a in kernel.arguments
+    ]
+    return [*arrays, *(["*", *options] if options else [])]
 
 
-def taken(kernel: Kernel) -> list[str]:
-    """The parameters of a function of arrays."""
-    return [f"{argument.name}{default(argument, 'None')}" for argument in kernel.arguments]
+def returned(kernel: Kernel) -> str:
+    """The type of the result, or of the value and its derivative."""
+    return "tuple[Array, Array]" if kernel.parts else "Array"
 
 
 def passed(kernel: Kernel, library: str) -> list[str]:
@@ -166,12 +170,12 @@ def lines(items: Iterable[str]) -> str:
 
 
 def ufunc(kernel: Kernel) -> str:
-    """The line with the signature as a generalised ufunc: (3),(3)->(3)."""
+    """A line of the table of signatures as generalised ufuncs: "f": "(3),(3)->(3)","""
     given, results = (
         ",".join(f"({','.join(map(str, shape))})" for shape in shapes)
         for shapes in ([a.shape for a in kernel.arguments], kernel.parts or (kernel.shape,))
     )
-    return f'{kernel.name}.signature = "{given}->{results}"'
+    return f'    "{kernel.name}": "{given}->{results}",'
 
 
 # docstrings
