@@ -8,14 +8,8 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.command import command as make
-from rigidsym.commands.options import (
-    FolderOptions,
-    RotationOptions,
-    SelectionOptions,
-    option,
-    with_options,
-)
+from rigidsym.commands.command import command as make, option, with_options
+from rigidsym.commands.options import FolderOptions, RotationOptions, SelectionOptions
 from rigidsym.commands.output_folder import with_existing_files, write
 from rigidsym.kernels.targets.c.compiling import build
 from rigidsym.pipeline import integrated, output_of, read

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make
-from rigidsym.commands.options import TemplateOptions, with_options
+from rigidsym.commands.command import command as make, with_options
+from rigidsym.commands.options import TemplateOptions
+from rigidsym.commands.output_folder import content_of
 from rigidsym.errors import CheckError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.pipeline import output_of, read_record
@@ -34,7 +33,8 @@ def command(context: click.Context, paths: tuple[Path, ...], options: TemplateOp
     PATH is a generated file or a folder; each record NAME.json says how the files beside it were
     made. The exit code is 1 if a file is missing or differs.
     """
-    findings = list(_findings(paths))
+    records = [record for path in paths for record in _records(path)]
+    findings = [finding for record in records for finding in _compare(record)]
     for finding in findings:
         click.echo(str(finding))
     if any(finding.problem for finding in findings):
@@ -52,23 +52,13 @@ class Finding:
         return f"{self.path}: {self.problem or 'up to date'}"
 
 
-def _findings(paths: Iterable[Path]) -> Iterator[Finding]:
-    """One finding for each file that a record under the paths describes.
-
-    Raises CheckError for a path without a record.
-    """
-    for path in paths:
-        for record in _records(path):
-            yield from _compare(record)
-
-
 def _records(path: Path) -> list[Path]:
-    """The records in a folder and below it, or beside one generated file."""
-    if path.is_dir():
-        found = sorted(file for file in path.rglob("*.json") if _is_record(file))
-    else:
-        beside = path.with_suffix(".json")
-        found = [beside] if beside.is_file() and _is_record(beside) else []
+    """The records in a folder and below it, or beside one generated file.
+
+    Raises CheckError if there is none.
+    """
+    files = sorted(path.rglob("*.json")) if path.is_dir() else [path.with_suffix(".json")]
+    found = [file for file in files if content_of(file).get("schema") == SCHEMA]
     if not found:
         raise CheckError(
             f"{path}: no record of a derivation here; expected NAME.json beside generated files"
@@ -76,21 +66,8 @@ def _records(path: Path) -> list[Path]:
     return found
 
 
-def _is_record(file: Path) -> bool:
-    return _read(file).get("schema") == SCHEMA
-
-
-def _read(file: Path) -> Mapping[str, Any]:
-    """The object in a JSON file; empty if there is none."""
-    try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError):
-        return {}
-    return content if isinstance(content, dict) else {}
-
-
 def _compare(record: Path) -> Iterator[Finding]:
-    content = _read(record)
+    content = content_of(record)
     version = content.get("schema_version")
     if version != SCHEMA_VERSION:
         yield Finding(path=record, problem=f"schema version {version}, expected {SCHEMA_VERSION}")

@@ -11,14 +11,8 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.command import command as make
-from rigidsym.commands.options import (
-    MOST_LINES,
-    PrintingOptions,
-    RotationOptions,
-    option,
-    with_options,
-)
+from rigidsym.commands.command import command as make, option, with_options
+from rigidsym.commands.options import MOST_LINES, PrintingOptions, RotationOptions
 from rigidsym.commands.output_folder import with_existing_files, write
 from rigidsym.errors import RigidsymError
 from rigidsym.motion import Motion

@@ -11,15 +11,16 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.command import command as make, message
-from rigidsym.commands.options import (
+from rigidsym.commands.command import (
     NAMED_NUMBER,
     NAMES,
-    RotationOptions,
+    command as make,
+    message,
     option,
     unique,
     with_options,
 )
+from rigidsym.commands.options import RotationOptions
 from rigidsym.data.chunk import Missing
 from rigidsym.data.columns import counted
 from rigidsym.errors import ModelError

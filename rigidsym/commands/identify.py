@@ -1,16 +1,19 @@
 """`rigidsym identify`: the convention that given numbers follow."""
 
+# ruff: noqa: RUF009 -- `option` makes a field, as `dataclasses.field` does
+
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rigidsym.commands.command import command as make
+from rigidsym.commands.command import NAMES, command as make, option, with_options
 from rigidsym.system.progress import bar
 from rigidsym.tools.identify.identification import identify_file, identify_source
 from rigidsym.tools.identify.readings import ANGLE_NAMES
@@ -22,6 +25,48 @@ _COUNTS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
 _BRACKETS = str.maketrans("[](){};", "      ,")
 
 
+@dataclass(frozen=True, kw_only=True)
+class IdentifyOptions:
+    """All options of `identify`."""
+
+    angles: tuple[str, ...] = option(
+        "--angles", multiple=True, metavar="A,B,C", help="Three angles; roll=A,... names them."
+    )
+    matrix: tuple[str, ...] = option(
+        "--matrix", multiple=True, metavar="R11,R12,...", help="Nine numbers, row by row."
+    )
+    quaternion: tuple[str, ...] = option(
+        "--quaternion", multiple=True, metavar="A,B,C,D", help="Scalar first or last."
+    )
+    rates: tuple[str, ...] = option(
+        "--rates", multiple=True, metavar="A,B,C", help="Rates of the angles; needs --omega."
+    )
+    omega: tuple[str, ...] = option(
+        "--omega", multiple=True, metavar="X,Y,Z", help="The angular velocity."
+    )
+    columns: list[str] | None = option(
+        "--columns",
+        type=NAMES,
+        metavar="NAME,...",
+        help="Names of the columns of FILE; - skips one.",
+    )
+    tolerance: float | None = option(
+        "--tolerance",
+        type=float,
+        metavar="RADIANS",
+        help="Largest angle between data and reading.  [default: from the digits given]",
+    )
+    missing: str = option(
+        "--missing",
+        type=click.Choice(["error", "drop"]),
+        default="error",
+        show_default=True,
+        help="Samples in which a number is missing.",
+    )
+    everything: bool = option("--all", is_flag=True, help="Show all readings, with all calls.")
+    as_json: bool = option("--json", is_flag=True, help="Print the results as JSON.")
+
+
 @make("rigidsym identify --angles roll=10,pitch=20,yaw=30 --quaternion 0.95,0.04,0.19,0.24")
 @click.argument(
     "file",
@@ -29,41 +74,9 @@ _BRACKETS = str.maketrans("[](){};", "      ,")
     metavar="[FILE]",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
 )
-@click.option(
-    "--angles", multiple=True, metavar="A,B,C", help="Three angles; roll=A,... names them."
-)
-@click.option("--matrix", multiple=True, metavar="R11,R12,...", help="Nine numbers, row by row.")
-@click.option("--quaternion", multiple=True, metavar="A,B,C,D", help="Scalar first or last.")
-@click.option("--rates", multiple=True, metavar="A,B,C", help="Rates of the angles; needs --omega.")
-@click.option("--omega", multiple=True, metavar="X,Y,Z", help="The angular velocity.")
-@click.option("--columns", metavar="NAME,...", help="Names of the columns of FILE; - skips one.")
-@click.option(
-    "--tolerance",
-    type=float,
-    metavar="RADIANS",
-    help="Largest angle between data and reading.  [default: from the digits given]",
-)
-@click.option(
-    "--missing",
-    type=click.Choice(["error", "drop"]),
-    default="error",
-    show_default=True,
-    help="Samples in which a number is missing.",
-)
-@click.option("--all", "everything", is_flag=True, help="Show all readings, with all calls.")
-@click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
+@with_options(IdentifyOptions)
 @click.pass_context
-def command(
-    context: click.Context,
-    /,
-    file: Path | None,
-    columns: str | None,
-    tolerance: float | None,
-    missing: str,
-    everything: bool,
-    as_json: bool,
-    **texts: tuple[str, ...],
-) -> None:
+def command(context: click.Context, file: Path | None, options: IdentifyOptions) -> None:
     """Name the convention that angles and a matrix or quaternion follow.
 
     Give samples as options, each option once per sample, or in FILE. FILE is NPY or Parquet, with
@@ -72,41 +85,21 @@ def command(
     or qw,qx,qy,qz; a1_dot,... or rate1,...; omega1,omega2,omega3. Units in names, such as
     "yaw [mrad]", are converted. The exit code is 1 if no convention fits.
     """
-    drops = missing == "drop"
-    found = _identified(file, texts, columns=columns, tolerance=tolerance, drops_missing=drops)
-    if as_json:
+    texts = {name: getattr(options, name) for name in _COUNTS}
+    if (file is None) == (not any(texts.values())):
+        raise OptionError(["expected a file, or --angles with --matrix or --quaternion"])
+    found = _from_texts(texts, options) if file is None else _from_file(file, options)
+    if options.as_json:
         click.echo(json.dumps(found.record(), indent=1, ensure_ascii=False))
     else:
-        head, _, rest = found.text(everything=everything).partition("\n")
+        head, _, rest = found.text(everything=options.everything).partition("\n")
         click.echo(f"{click.style(head, bold=True)}\n{rest}")
     if not found.fits:
         context.exit(1)
 
 
-def _identified(
-    path: Path | None,
-    texts: Mapping[str, Sequence[str]],
-    *,
-    columns: str | None,
-    tolerance: float | None,
-    drops_missing: bool,
-) -> Identification:
-    """The finding for a file, or for the samples in the texts of the options.
-
-    Raises OptionError for neither, for both and for unreadable texts, and SampleError for an
-    unreadable file.
-    """
-    if path is None and any(texts.values()):
-        try:
-            return _from_options(texts, tolerance)
-        except SampleError as error:
-            raise OptionError(error.faults, count=error.count) from None
-    if path is None or any(texts.values()):
-        raise OptionError(["expected a file, or --angles with --matrix or --quaternion"])
-    return _from_path(path, columns, tolerance, drops_missing)
-
-
-def _from_options(texts: Mapping[str, Sequence[str]], tolerance: float | None) -> Identification:
+def _from_texts(texts: Mapping[str, Sequence[str]], options: IdentifyOptions) -> Identification:
+    """The samples in options; raises OptionError with all faults in them."""
     faults: list[str] = []
     names: Sequence[str] = ANGLE_NAMES
     given: dict[str, ArrayLike | None] = {}
@@ -117,8 +110,11 @@ def _from_options(texts: Mapping[str, Sequence[str]], tolerance: float | None) -
         if name == "angles" and read:
             names = read[0][0] or names
     if faults:
-        raise SampleError([*faults, *parts_missing({name for name in texts if texts[name]})])
-    return identify_source(from_arrays(given, names), tolerance=tolerance)
+        raise OptionError([*faults, *parts_missing({name for name in texts if texts[name]})])
+    try:
+        return identify_source(from_arrays(given, names), tolerance=options.tolerance)
+    except SampleError as error:
+        raise OptionError(error.faults, count=error.count) from None
 
 
 def _numbers(name: str, text: str, faults: list[str]) -> tuple[list[str], list[float]]:
@@ -137,18 +133,15 @@ def _numbers(name: str, text: str, faults: list[str]) -> tuple[list[str], list[f
     return [label for label, _, _ in pairs if label], numbers
 
 
-def _from_path(
-    path: Path, columns: str | None, tolerance: float | None, drops_missing: bool
-) -> Identification:
+def _from_file(path: Path, options: IdentifyOptions) -> Identification:
     """Samples from a file, with a bar if standard error is a terminal."""
-    names = None if columns is None else [name.strip() for name in columns.split(",")]
     with bar(path.name) as progress:
         try:
             return identify_file(
                 path,
-                columns=names,
-                tolerance=tolerance,
-                drops_missing=drops_missing,
+                columns=options.columns,
+                tolerance=options.tolerance,
+                drops_missing=options.missing == "drop",
                 progress=progress,
             )
         except SampleError as error:

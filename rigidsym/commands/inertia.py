@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.command import command as make, message
+from rigidsym.commands.command import NAMES, command as make, message
 from rigidsym.data.mass.mesh import ENDINGS, mesh_inertia, read_mesh_file
 from rigidsym.data.mass.point_masses import inertia_of
 from rigidsym.data.mass.properties import MassProperties
@@ -17,9 +17,11 @@ from rigidsym.system.progress import bar
 _POSITIVE = click.FloatRange(min=0, min_open=True)
 
 
-@make("rigidsym inertia cloud.npy\n  rigidsym inertia part.stl --density 2700 --scale 0.001")
+@make("rigidsym inertia cloud.npy\n         rigidsym inertia part.stl --density 2700 --scale 0.001")
 @click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
-@click.option("--columns", metavar="NAME,...", help="Column order of particles, such as x,y,z,m.")
+@click.option(
+    "--columns", type=NAMES, metavar="NAME,...", help="Column order of particles, such as x,y,z,m."
+)
 @click.option("--mass", type=_POSITIVE, metavar="KG", help="Mass of a uniform mesh.")
 @click.option("--density", type=_POSITIVE, metavar="KG/M3", help="Density of a uniform mesh.")
 @click.option(
@@ -30,7 +32,7 @@ _POSITIVE = click.FloatRange(min=0, min_open=True)
 @click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
 def command(
     file: Path,
-    columns: str | None,
+    columns: list[str] | None,
     mass: float | None,
     density: float | None,
     scale: float | None,
@@ -60,13 +62,14 @@ def command(
 
 
 def _of_particles(
-    file: Path, columns: str | None, scheduler: str | None, *, allow: bool
+    file: Path, columns: list[str] | None, scheduler: str | None, *, allow: bool
 ) -> MassProperties:
-    names = None if columns is None else [name.strip() for name in columns.split(",")]
     if scheduler is not None:
         message(f"connecting to {scheduler}")
     with bar(file.name) as progress:
-        return inertia_of(file, columns=names, allow=allow, scheduler=scheduler, progress=progress)
+        return inertia_of(
+            file, columns=columns, allow=allow, scheduler=scheduler, progress=progress
+        )
 
 
 def _refuse(options: Mapping[str, object], found: str, expected: str) -> None:

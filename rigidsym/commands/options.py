@@ -4,15 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, fields, replace
-from functools import wraps
-from itertools import chain
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 import click
 
+from rigidsym.commands.command import NAMES, option, unique
 from rigidsym.errors import KernelError, QuantityError, offer
 from rigidsym.formula.notation import CHOICES, DEFAULT
 from rigidsym.kernels.lowering.derivatives import read_requests
@@ -21,61 +19,7 @@ from rigidsym.motion import QUANTITIES
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.resources import overridden_by
 
-
-class _Names(click.ParamType[Any]):
-    """Names between commas."""
-
-    name = "names"
-
-    def convert(self, value: Any, param: object, ctx: object) -> list[str]:  # noqa: ARG002
-        return value if isinstance(value, list) else [name.strip() for name in value.split(",")]
-
-
-class _NamedNumber(click.ParamType[Any]):
-    """NAME=NUMBER, as a pair."""
-
-    name = "number"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[str, float]:
-        name, _, number = value.partition("=")
-        try:
-            return name.strip(), float(number)
-        except ValueError:
-            flag = param.opts[0] if param else ""
-            raise click.UsageError(f"{flag} {value}: expected NAME=NUMBER", ctx) from None
-
-
-NAMES, NAMED_NUMBER = _Names(), _NamedNumber()
-FILE = click.Path(dir_okay=False, path_type=Path)
 MOST_LINES = 150  # that a terminal shows by default
-_OPTION = "click option"
-
-
-def option(*flags: str, **settings: Any) -> Any:
-    """A field of a dataclass that a command-line option sets."""
-    if settings.get("multiple"):
-        settings.setdefault("default", ())
-    default = settings.get("default", False if settings.get("is_flag") else None)
-    return field(default=default, metadata={_OPTION: (flags, settings)})
-
-
-def with_options(kind: type[Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Give a command the options of a dataclass; it receives them as the argument `options`."""
-
-    def decorate(command: Callable[..., None]) -> Callable[..., None]:
-        @wraps(command)
-        def run(*arguments: Any, **given: Any) -> None:
-            options = kind(**{f.name: given.pop(f.name) for f in fields(kind)})
-            command(*arguments, options=options, **given)
-
-        for each in reversed(fields(kind)):
-            flags, settings = each.metadata[_OPTION]
-            run = click.option(*flags, each.name, **settings)(run)
-        return run
-
-    return decorate
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -261,8 +205,3 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, SelectionOp
 def _check_quantity(name: str, flag: str) -> None:
     if name not in QUANTITIES:
         raise QuantityError(f"{flag}: no quantity {name!r}\n{offer(name, QUANTITIES)}")
-
-
-def unique(names: Iterable[Sequence[str]]) -> tuple[str, ...]:
-    """The names of an option that may be repeated, each once."""
-    return tuple(dict.fromkeys(chain.from_iterable(names)))

@@ -53,7 +53,7 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
 
 def _edited(output: Output, folder: Path) -> list[Path]:
     """The files that are neither as the record there describes them nor as they will be."""
-    known = _record_in(folder).get("files")
+    known = content_of(folder / f"{folder.name}.json").get("files")
     found = []
     for name, text in output.files.items():
         path = folder / name
@@ -84,15 +84,15 @@ def _is_same(before: DerivationSpec, now: DerivationSpec) -> bool:
 def _spec_there(folder: Path) -> DerivationSpec | None:
     """The specification in the record of a folder; None without a record that can be read."""
     try:
-        return read_record(_record_in(folder).get("request"))
+        return read_record(content_of(folder / f"{folder.name}.json").get("request"))
     except SpecError:
         return None
 
 
-def _record_in(folder: Path) -> dict[str, Any]:
-    """The record of a folder; empty without one that can be read."""
+def content_of(record: Path) -> dict[str, Any]:
+    """The object in a JSON file; empty without one that can be read."""
     try:
-        content = json.loads((folder / f"{folder.name}.json").read_text(encoding="utf-8"))
+        content = json.loads(record.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
         return {}
     return content if isinstance(content, dict) else {}

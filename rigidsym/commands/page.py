@@ -6,13 +6,12 @@ from dataclasses import dataclass, replace
 
 import click
 
-from rigidsym.commands.command import command as make
+from rigidsym.commands.command import command as make, with_options
 from rigidsym.commands.options import (
     FolderOptions,
     NotationOptions,
     RotationOptions,
     SelectionOptions,
-    with_options,
 )
 from rigidsym.commands.output_folder import with_existing_files, write
 from rigidsym.pipeline import PAGE, integrated, output_of, page_name, read

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import click
 
-from rigidsym.commands.command import command as make, message
+from rigidsym.commands.command import command as make, message, with_options
 from rigidsym.commands.derive import produce
-from rigidsym.commands.options import PrintingOptions, with_options
+from rigidsym.commands.options import PrintingOptions
 from rigidsym.errors import SpecError
 from rigidsym.pipeline import read_file
 from rigidsym.spec.derivation_spec import DerivationSpec

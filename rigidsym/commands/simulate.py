@@ -11,10 +11,8 @@ from typing import Any
 
 import click
 import numpy as np
-from numpy.typing import NDArray
 
-from rigidsym.commands.command import command as make
-from rigidsym.commands.options import FILE, NAMED_NUMBER, option, with_options
+from rigidsym.commands.command import FILE, NAMED_NUMBER, command as make, option, with_options
 from rigidsym.data.writers import check_ending, table_writer
 from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
@@ -49,8 +47,8 @@ class SimulationOptions:
 
 
 @make(
-    "rigidsym simulate heavy_symmetric_top --set A=1 --set C=0.5 --set m=1 --set g=9.81 "
-    "--set l=1\n      --initial theta=0.5 --initial psi_dot=20 --time 5 --plot top.png"
+    "rigidsym simulate heavy_symmetric_top --set A=1 --set C=0.5 --set m=1\n"
+    "         --set g=9.81 --set l=1 --initial theta=0.5 --initial psi_dot=20 --time 5"
 )
 @click.argument("source", metavar="NAME|FILE")
 @with_options(SimulationOptions)
@@ -75,7 +73,10 @@ def command(source: str, options: SimulationOptions) -> None:
         )
     click.echo(found.report())
     if options.out is not None:
-        _write(found.columns(), options.out)
+        columns = found.columns()
+        rows = np.column_stack([*columns.values()])
+        with table_writer(options.out, tuple(columns), rows.dtype) as writer:
+            writer.append(rows)
         click.echo(options.out)
     if options.plot is not None:
         click.echo(found.plot(options.plot))
@@ -92,9 +93,3 @@ def _start(motion: Motion, given: Mapping[str, float]) -> dict[str, Any]:
     if any(value is not None for value in turning):
         return start | {OMEGA: [value or 0.0 for value in turning]}
     return dict.fromkeys(motion.argument("q_dot").names, 0.0) | start
-
-
-def _write(columns: Mapping[str, NDArray[np.float64]], path: Path) -> None:
-    rows = np.column_stack([*columns.values()])
-    with table_writer(path, tuple(columns), rows.dtype) as writer:
-        writer.append(rows)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -106,9 +106,10 @@ class RigidBody:
             left = sp.expand(self.inertia[row, column] - self.inertia[column, row])
             if left != 0:
                 places = _AXES[row] + _AXES[column], _AXES[column] + _AXES[row]
+                value = self.in_numbers(left)
                 raise BodyError(
-                    f"{self.name}: the inertia tensor is not symmetric: "
-                    f"I_{places[0]} − I_{places[1]} = {_short(self.in_numbers(left))}"
+                    f"{self.name}: the inertia tensor is not symmetric: I_{places[0]} − "
+                    f"I_{places[1]} = {format(float(value), 'g') if value.is_Float else value}"
                 )
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
@@ -152,10 +153,6 @@ class BodyDescription:
     allow: bool = False  # whether unphysical numbers pass
     keeps_numbers: bool = False  # whether sums of numbers stay sums, and are not rounded once
     request: Mapping[str, Any] = field(default_factory=dict, hash=False)
-
-
-def _short(value: sp.Expr) -> str:
-    return f"{float(value):g}" if value.is_Float else str(value)
 
 
 def principal_moments(
@@ -215,7 +212,7 @@ def given_inertia(
         parameters=described(
             parameters,
             mass_slot(mass),
-            *((entry, _kind_of_entry(k)) for k, entry in enumerate(inertia)),
+            *zip(inertia, _ENTRIES, strict=True),
             *((entry, "coordinate of the centre of mass") for entry in place),
         ),
         allow=allow,
@@ -226,10 +223,6 @@ def mass_slot(mass: sp.Expr) -> tuple[sp.Expr, str]:
     return mass, "mass"
 
 
-def _kind_of_entry(place: int) -> str:
-    return "moment of inertia" if place in (0, 4, 8) else "product of inertia, with its sign"
-
-
 _UNITS = {
     "mass": "kg",
     "principal moment of inertia": "kg m^2",
@@ -237,6 +230,10 @@ _UNITS = {
     "product of inertia, with its sign": "kg m^2",
     "coordinate of the centre of mass": "m",
 }
+_ENTRIES = tuple(
+    "moment of inertia" if place in (0, 4, 8) else "product of inertia, with its sign"
+    for place in range(9)
+)
 _SIGNED = {"product of inertia, with its sign", "coordinate of the centre of mass"}
 
 
@@ -248,7 +245,7 @@ def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[
     known = {parameter.symbol: parameter for parameter in given}
     found: dict[sp.Symbol, Parameter] = {}
     for expression, about in slots:
-        for symbol in _symbols(expression):
+        for symbol in sorted(expression.free_symbols, key=str):
             alone = Parameter(
                 symbol=symbol,
                 about=about if expression == symbol else "",
@@ -259,7 +256,3 @@ def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[
             named = replace(own, about=own.about or alone.about, unit=own.unit or alone.unit)
             found.setdefault(symbol, named)
     return tuple(found.values())
-
-
-def _symbols(expression: sp.Expr) -> Iterable[sp.Symbol]:
-    return sorted(expression.free_symbols, key=str)

@@ -19,6 +19,7 @@ KEYS = (*_OF_SEQUENCES, "matrix", *_OF_MATRICES, "passive")
 A_SEQUENCE = 'a sequence such as "ZXZ", or a list of sequences'
 _THREE_NAMES = 'a list of three names such as ["phi", "theta", "psi"]'
 _NAMES = 'a list of names such as ["phi", "theta"]'
+_DIGITS = str.maketrans("123", "XYZ")
 _ROWS = "three rows of three expressions in quotes"
 
 
@@ -35,7 +36,10 @@ def read_rotation(table: Table, name: str) -> list[RotationModel]:
         "constants": _read_names(table, "constants", _NAMES),
     }
     sequences = _read_sequences(table)
-    angles = _read_angles(table, is_euler=any(_is_euler(text) for text in sequences.values()))
+    angles = _read_angles(
+        table,
+        is_euler=any(text.translate(_DIGITS) in EULER_SEQUENCES for text in sequences.values()),
+    )
     models: dict[Place, RotationModel] = {}
     for at, text in sequences.items():
         with table.noting(*at):
@@ -45,10 +49,6 @@ def read_rotation(table: Table, name: str) -> list[RotationModel]:
     for place, message in repeated(models.values()).items():
         table.fault(message, *list(models)[place])
     return list(models.values())
-
-
-def _is_euler(text: str) -> bool:
-    return text.translate(str.maketrans("123", "XYZ")) in EULER_SEQUENCES
 
 
 def _read_matrix(table: Table, name: str) -> list[RotationModel]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
@@ -54,18 +54,16 @@ class Evaluation:
         names = (*self.kept_names, *map(str, self.work.outputs))
         count = 0
         with table_writer(self.path, names, self.reader.dtype, self.output) as writer:
-            for chunk, table in self._computed(self._chunks()):
+            for chunk, table in self._computed():
                 writer.append(table, chunk.kept)
                 count += len(table)
                 if progress is not None:
                     progress(chunk.share)
         return Evaluated(path=self.path, rows=count, columns=names)
 
-    def _chunks(self) -> Iterator[Chunk]:
-        chunks = self.reader.chunks(self.columns, self.rows, self.kept)
-        return without_missing(self.reader, chunks, self.names, self.missing)
-
-    def _computed(self, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Table]]:
+    def _computed(self) -> Iterator[tuple[Chunk, Table]]:
+        read = self.reader.chunks(self.columns, self.rows, self.kept)
+        chunks = without_missing(self.reader, read, self.names, self.missing)
         if self.scheduler is None:
             return ((chunk, self.work.of(chunk.table)) for chunk in chunks)
         return on_cluster(self.scheduler, self.work.of, chunks, lambda chunk: chunk.table)

@@ -51,7 +51,9 @@ def tolerances(
         return
     floor = max(FLOOR, coarseness)
     attitude = max(floor, _attitude(block))
-    velocity = floor if block.omega is None else max(floor, _velocity(block.omega, scale))
+    velocity = floor
+    if block.omega is not None and scale:
+        velocity = max(floor, sqrt(3) * _largest(rounding_of(block.omega)) / scale)
     yield Tolerance(
         radians=attitude,
         degrees=attitude,
@@ -87,10 +89,6 @@ def _attitude(block: SampleBlock) -> float:
         defects <= _EXACT, 0.0, np.maximum(rounding_of(block.attitude), defects / 2)
     )
     return _SPAN["matrix" if block.is_matrix else "quaternion"] * _largest(rounding)
-
-
-def _velocity(omega: Array, scale: float) -> float:
-    return sqrt(3) * _largest(rounding_of(omega)) / scale if scale else 0.0
 
 
 def _largest(rounding: Array) -> float:
