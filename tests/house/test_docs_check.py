@@ -44,7 +44,8 @@ def test_a_large_page_is_found(check, tmp_path):
 
 def test_axe_finds_a_picture_without_text(check, tmp_path):
     require_chromium()
-    faults = list(check.inaccessible(site(tmp_path, a="<main><h1>A</h1><img src=a.png></main>")))
+    made = site(tmp_path, a="<main><h1>A</h1><img src=a.png></main>")
+    faults = list(check.inaccessible(made, check.pages(made)))
     assert [fault for fault in faults if "image-alt" in fault]
 
 
