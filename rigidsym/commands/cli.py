@@ -29,6 +29,7 @@ _SUMMARIES = {  # name: what `rigidsym --help` says of it
     "identify": "Find the convention that given numbers follow.",
     "inertia": "Mass properties of particles or of a mesh.",
     "simulate": "Simulate a motion and report its first integrals.",
+    "problems": "Write a problem sheet with worked solutions.",
     "list": "List rotations, quantities, targets and shipped files.",
     "templates": "Copy the shipped templates, to change them.",
 }

@@ -1,0 +1,48 @@
+"""`rigidsym problems`: a problem sheet with its worked solutions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rigidsym.commands.command import command as make
+from rigidsym.notes.formats import FORMATS
+from rigidsym.notes.problems.exercise import sheet_of
+from rigidsym.notes.problems.subjects import SUBJECTS
+from rigidsym.system.files import write_text
+
+_ENDINGS = ("tex", "html")
+
+
+@make("rigidsym problems euler --number 8 --variant 3")
+@click.argument("subject", type=click.Choice(list(SUBJECTS)))
+@click.option("--number", type=click.IntRange(1, 100), default=4, show_default=True)
+@click.option(
+    "--variant",
+    type=click.IntRange(0),
+    default=1,
+    show_default=True,
+    help="The same variant is the same sheet; others have other numbers.",
+)
+@click.option("--moodle", is_flag=True, help="Also write a question bank in Moodle XML.")
+@click.option(
+    "--out",
+    type=click.Path(file_okay=False, path_type=Path),
+    default=Path("out"),
+    show_default=True,
+    help="The folder for the results.",
+)
+def command(subject: str, number: int, variant: int, moodle: bool, out: Path) -> None:
+    """Write a problem sheet and its worked solutions.
+
+    SUBJECT is euler (Euler angles), bodies (moments of inertia) or all. Every answer is derived.
+    The files are LaTeX and HTML.
+    """
+    sheet = sheet_of(subject, SUBJECTS, count=number, variant=variant)
+    for document in (sheet.document(solved=False), sheet.document(solved=True)):
+        for ending in _ENDINGS:
+            path = out / sheet.name / f"{document.name}.{ending}"
+            click.echo(write_text(path, FORMATS[ending].render(document)))
+    if moodle:
+        click.echo(write_text(out / sheet.name / f"{sheet.name}.xml", sheet.moodle))

@@ -1,0 +1,169 @@
+"""Problems with worked solutions: data, sheets for students and for teachers, and Moodle XML."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from random import Random
+
+from rigidsym.errors import ModelError
+from rigidsym.formula.display import display
+from rigidsym.formula.letters import Letters
+from rigidsym.formula.tree import MINUS, Formula, Numeral, equal, row
+from rigidsym.mechanics.derivation import Argument
+from rigidsym.notes.document.document import (
+    Document,
+    Equation,
+    NoteBlock,
+    Paragraph,
+    Section,
+    Strong,
+    Text,
+    listed,
+)
+from rigidsym.notes.formula.derivation_letters import letters_of
+
+_WIDTH = 40.0  # ems of a display in a quiz
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Asked:
+    """What is asked for: a number, or one of several texts."""
+
+    symbol: Formula | None = None  # of a number
+    value: float = 0.0
+    unit: str = ""
+    choices: tuple[str, ...] = ()  # the right one first
+
+    @property
+    def text(self) -> Text:
+        if self.choices:
+            return (self.choices[0],)
+        assert self.symbol is not None
+        shown = equal(self.symbol, numeral(self.value))
+        space = "" if self.unit == "°" else " "
+        return (shown, f"{space}{self.unit}") if self.unit else (shown,)
+
+    @property
+    def cloze(self) -> str:
+        """The answer as Moodle embeds it; a number may be off by one per cent."""
+        if self.choices:
+            right, *wrong = self.choices
+            return "{1:MULTICHOICE_S:=" + "~".join((right, *wrong)) + "}"
+        tolerance = max(0.01 * abs(self.value), 1e-3)
+        return f"{{1:NUMERICAL:={self.value:.6g}:{tolerance:.2g}}} {self.unit}"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Exercise:
+    """A question and its solution, which leads to the answers."""
+
+    title: str
+    question: tuple[NoteBlock, ...]
+    solution: tuple[NoteBlock, ...]
+    answers: tuple[Asked, ...]
+    arguments: tuple[Argument, ...] = ()  # whose letters the formulas have
+
+    @property
+    def answer(self) -> Paragraph:
+        return Paragraph((Strong("Answer:"), " ", *listed([a.text for a in self.answers]), "."))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Sheet:
+    """The problems of one variant."""
+
+    subject: str
+    title: str
+    variant: int
+    problems: tuple[Exercise, ...]
+
+    @property
+    def name(self) -> str:
+        return f"problems_{self.subject}_{self.variant}"
+
+    def document(self, *, solved: bool) -> Document:
+        """The sheet, or the sheet with its solutions."""
+        return Document(
+            name=f"{self.name}_solutions" if solved else self.name,
+            title="Solutions" if solved else "Problems",
+            subtitle=f"{self.title}, variant {self.variant}",
+            letters=self.letters,
+            sections=tuple(
+                Section(p.title, (*p.question, *_solution(p)) if solved else p.question)
+                for p in self.problems
+            ),
+        )
+
+    @property
+    def letters(self) -> Letters:
+        return letters_of([a for problem in self.problems for a in problem.arguments])
+
+    @property
+    def moodle(self) -> str:
+        """A question bank in Moodle XML: one question with embedded answers a problem."""
+        questions = "".join(
+            '<question type="cloze">\n'
+            f"<name><text>{escape(p.title)}</text></name>\n"
+            f'<questiontext format="html"><text><![CDATA[{_html(p, self.letters)}]]></text>'
+            "</questiontext>\n</question>\n"
+            for p in self.problems
+        )
+        return f'<?xml version="1.0" encoding="UTF-8"?>\n<quiz>\n{questions}</quiz>\n'
+
+
+Subject = tuple[str, Sequence[Callable[[Random], Exercise]]]  # its title, and its kinds in turn
+
+
+def sheet_of(
+    subject: str,
+    kinds: Mapping[str, Subject],
+    *,
+    count: int,
+    variant: int,
+) -> Sheet:
+    """`count` problems of a subject, its kinds in turn; the same variant is the same sheet.
+
+    Raises ModelError for a subject that is not among the kinds.
+    """
+    if subject not in kinds:
+        raise ModelError(f"no problems on {subject!r}; there are {', '.join(kinds)}")
+    title, made = kinds[subject]
+    problems = (made[k % len(made)](Random(f"{subject} {variant} {k}")) for k in range(count))
+    return Sheet(subject=subject, title=title, variant=variant, problems=tuple(problems))
+
+
+def _solution(problem: Exercise) -> Iterator[NoteBlock]:
+    first, *others = problem.solution
+    assert isinstance(first, Paragraph)
+    yield Paragraph((Strong("Solution."), " ", *first.text))
+    yield from others
+    yield problem.answer
+
+
+def numeral(value: float) -> Formula:
+    """A number with four digits at most."""
+    digits = Numeral(f"{abs(float(f'{value:.4g}')):g}")
+    return row(MINUS, digits) if value < 0 else digits
+
+
+def _html(problem: Exercise, letters: Letters) -> str:
+    parts = [_block(block, letters) for block in problem.question]
+    for answer in problem.answers:
+        asked = f"\\({answer.symbol.latex}\\) = " if answer.symbol else ""
+        parts.append(f"<p>{asked}{answer.cloze}</p>")
+    return "\n".join(parts)
+
+
+def _block(block: NoteBlock, letters: Letters) -> str:
+    if isinstance(block, Equation):
+        return f"<p>\\[{escape(display(block, letters, _WIDTH).text, quote=False)}\\]</p>"
+    assert isinstance(block, Paragraph)
+    spans = (
+        f"\\({escape(span.latex, quote=False)}\\)"
+        if isinstance(span, Formula)
+        else escape(str(span))
+        for span in block.text
+    )
+    return f"<p>{''.join(spans)}</p>"

@@ -1,0 +1,106 @@
+"""Exercise sheets: reproducible, and with answers that witnesses of their own confirm."""
+
+from __future__ import annotations
+
+import re
+from random import Random
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rigidsym.notes.document.document import Equation, Paragraph, plain
+from rigidsym.notes.formats import FORMATS
+from rigidsym.notes.problems import body_problems as bodies, euler_problems as euler
+from rigidsym.notes.problems.exercise import Exercise, Sheet, sheet_of
+from rigidsym.notes.problems.subjects import SUBJECTS
+
+
+def sheet(variant: int, count: int = 7) -> Sheet:
+    return sheet_of("all", SUBJECTS, count=count, variant=variant)
+
+
+def asked(problem: Exercise) -> str:
+    return " ".join(plain(b.text) for b in problem.question if isinstance(b, Paragraph))
+
+
+def numbers(text: str) -> list[float]:
+    return [float(n.replace("−", "-")) for n in re.findall(r"[−-]?\d+(?:\.\d+)?", text)]
+
+
+def test_a_variant_is_the_same_sheet_every_time_and_another_has_other_numbers():
+    first, again, other = sheet(3), sheet(3), sheet(4)
+    assert first.moodle == again.moodle != other.moodle
+    render = FORMATS["tex"].render
+    assert render(first.document(solved=True)) == render(again.document(solved=True))
+
+
+def test_only_the_solutions_hold_answers():
+    made = sheet(1)
+    for ending in ("tex", "html", "md"):
+        assert "Answer" not in FORMATS[ending].render(made.document(solved=False))
+        assert FORMATS[ending].render(made.document(solved=True)).count("Answer") == 7
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_angular_velocity_is_that_of_a_witness(seed):
+    problem = euler.angular_velocity(Random(seed))
+    text = asked(problem)
+    sequence = re.search(r"by ([XYZ]{3})", text)[1]
+    angles, rates = np.reshape(numbers(text.split("order")[1].split("Find")[0]), (2, 3))
+    step = 1e-6
+    at = [
+        Rotation.from_euler(sequence, angles + s * np.degrees(rates), degrees=True)
+        for s in (-step, step)
+    ]
+    turned = at[1] * at[0].inv() if "of space" in text else at[0].inv() * at[1]
+    expected = turned.as_rotvec() / (2 * step)
+    np.testing.assert_allclose([a.value for a in problem.answers], expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_convention_is_the_only_one_that_fits(seed):
+    problem = euler.identify(Random(seed))
+    angles = numbers(asked(problem))[:3]
+    (equation,) = (b for b in problem.question if isinstance(b, Equation))
+    shown = [[float(e.text.replace("−", "-")) for e in line] for line in equation.sides[1].rows]
+    for place, sequence in enumerate(problem.answers[0].choices):
+        found = Rotation.from_euler(sequence, angles, degrees=True).as_matrix()
+        assert np.allclose(found, shown, atol=6e-4) is (place == 0)
+
+
+def test_the_determinant_near_gimbal_lock_is_the_volume_of_the_three_axes():
+    problem = euler.gimbal_lock(Random(5))
+    sequence = re.search(r"rates of ([XYZ]{3})", asked(problem))[1]
+    theta = numbers(asked(problem))[-1]
+    unit = dict(zip("XYZ", np.eye(3), strict=True))
+    turned = Rotation.from_euler(sequence[1], theta, degrees=True)
+    axes = [unit[sequence[0]], unit[sequence[1]], turned.apply(unit[sequence[2]])]
+    determinant, growth = (answer.value for answer in problem.answers)
+    assert abs(determinant - abs(np.linalg.det(axes))) < 1e-12
+    assert abs(growth * determinant - 1) < 1e-12
+
+
+def test_the_block_with_a_hole_has_the_moments_of_many_points():
+    problem = bodies.drilled_block(Random(2))
+    a, b, c, density, radius, aside = numbers(asked(problem).replace("m³", ""))[:6]
+    count = 60
+    x, y, z = (side * ((np.arange(count) + 0.5) / count - 0.5) for side in (a, b, c))
+    points = np.stack(np.meshgrid(x, y, z, indexing="ij"), -1).reshape(-1, 3)
+    points = points[np.hypot(points[:, 0] - aside, points[:, 1]) > radius]
+    mass = density * a * b * c / count**3 * len(points)
+    found = {answer.symbol.text: answer.value for answer in problem.answers}
+    assert abs(found["M"] / mass - 1) < 5e-3
+    centred = points - points.mean(axis=0)
+    tensor = mass * (np.eye(3) * (centred**2).sum() - centred.T @ centred) / len(points)
+    np.testing.assert_allclose([found["I₁"], found["I₂"], found["I₃"]], np.diag(tensor), rtol=1e-2)
+
+
+def test_the_quiz_is_well_formed_and_embeds_every_answer():
+    made = sheet(2)
+    questions = ElementTree.fromstring(made.moodle).findall("question")
+    assert len(questions) == len(made.problems)
+    for question, problem in zip(questions, made.problems, strict=True):
+        text = question.findtext("questiontext/text")
+        assert len(re.findall(r"\{1:(?:NUMERICAL|MULTICHOICE_S):=", text)) == len(problem.answers)
