@@ -21,6 +21,7 @@ _SIGNS = {
     "⇔": r"\Leftrightarrow ",
 }
 _LETTERS = {"⊥": r"\perp", "∥": r"\parallel", "∗": "*", "…": r"\ldots", "+": "+"}
+_GREEK = frozenset("αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ")
 _DOTS = ("", r"\dot", r"\ddot")
 _MACROS = ("sin", "cos", "tan", "cot", "det", "exp", "arctan")
 _LEFT = {"flat": ("", ""), "large": (r"\Bigl", r"\Bigr"), "stretched": (r"\left", r"\right")}
@@ -34,6 +35,11 @@ class LatexPen(SheetPen):
     thin: ClassVar[str] = r"\,"
     row_end: ClassVar[str] = r" \\[{}pt]" + "\n"
     script: ClassVar[str] = ""  # what stands before an index
+    spelt_number = "{}".format
+    spelt_fraction = r"\frac{{{}}}{{{}}}".format
+    spelt_root = r"\sqrt{{{}}}".format
+    spelt_words = r"\text{{{}}}".format
+    boxed = r"\boxed{{{}}}".format
 
     def spelt_symbol(self, symbol: Symbol, index: str | None) -> str:
         text = symbol.macro or _letters(symbol.letter)
@@ -50,14 +56,12 @@ class LatexPen(SheetPen):
             text = rf"\mathit{{{text}}}"
         if symbol.dots:
             text = rf"{_DOTS[symbol.dots]}{{{text}}}"
+            text += "{}" if symbol.prime else ""  # a prime on the accent would stand too high
         text += {"": "", "′": "'", "ᴮ": r"^{\mathrm{B}}"}[symbol.prime]
         return text if index is None else self.spelt_index(text, index)
 
     def spelt_index(self, base: str, index: str) -> str:
         return f"{base}{self.script}_{_braced(index)}"
-
-    def spelt_number(self, digits: str) -> str:
-        return digits
 
     def spelt_sign(self, character: str, is_binary: bool) -> str:
         text = _SIGNS.get(character, character)
@@ -88,14 +92,8 @@ class LatexPen(SheetPen):
         is_whole = is_raised or isinstance(base, Rate | Radical | Row)
         return f"{{{inside}}}^{_braced(exponent)}" if is_whole else f"{inside}^{_braced(exponent)}"
 
-    def spelt_fraction(self, above: str, below: str) -> str:
-        return rf"\frac{{{above}}}{{{below}}}"
-
     def spelt_bracket(self, bracket: str, size: Size, is_open: bool) -> str:
         return _LEFT[size][not is_open] + bracket
-
-    def spelt_root(self, inside: str) -> str:
-        return rf"\sqrt{{{inside}}}"
 
     def spelt_matrix(self, rows: Sequence[Sequence[Piece]]) -> str:
         lines = [" & ".join(map(_tall, row)) for row in rows]
@@ -108,14 +106,8 @@ class LatexPen(SheetPen):
         lower = f"{self.script}_{_braced(below)}" if below else ""
         return _BIG[sign] + lower + (f"^{_braced(above)}" if above else "")
 
-    def spelt_words(self, words: str) -> str:
-        return rf"\text{{{words}}}"
-
     def spelt_differential(self, letter: str) -> str:
         return r"\partial " if letter == "∂" else letter
-
-    def boxed(self, inside: str) -> str:
-        return rf"\boxed{{{inside}}}"
 
     def continued(self, text: str, indent: int) -> str:
         return r"\quad" * indent + f" {{}}{text}" if indent else text
@@ -149,14 +141,16 @@ def _braced(script: str) -> str:
 
 
 def _letters(letters: str) -> str:
-    if letters in _LETTERS:
-        return _LETTERS[letters]
-    names = (unicodedata.name(letter, "").partition(" LETTER ") for letter in letters)
-    kind, _, name = next(names)
+    return _LETTERS.get(letters) or greek_macro(letters) or letters
+
+
+def greek_macro(letter: str) -> str:
+    """LaTeX of a Greek letter; "" for what is none, or has no macro."""
+    if letter not in _GREEK:
+        return ""
+    kind, _, name = unicodedata.name(letter).partition(" LETTER ")
     macro = name.lower().replace("lamda", "lambda")
-    if kind == "GREEK CAPITAL":
-        macro = macro.title()
-    return f"\\{macro}" if kind.startswith("GREEK") and len(letters) == 1 else letters
+    return f"\\{macro.title() if kind == 'GREEK CAPITAL' else macro}"
 
 
 def _tall(entry: Piece) -> str:

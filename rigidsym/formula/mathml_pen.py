@@ -25,6 +25,10 @@ _STYLES = {"bold": "BOLD", "arrow": "", "sans": "SANS-SERIF", "upright": "", "it
 
 class MathmlPen(SheetPen):
     wide_gap = '<mspace width="2em"/>'
+    spelt_number = "<mn>{}</mn>".format
+    spelt_root = "<msqrt>{}</msqrt>".format
+    spelt_differential = "<mi>{}</mi>".format
+    boxed = '<mrow class="boxed">{}</mrow>'.format  # menclose is not in MathML Core
 
     def inline(self, formulas: Iterable[Formula]) -> dict[Formula, Inline]:
         """As elements; one too wide for a phone in parts that may go on several lines."""
@@ -58,9 +62,6 @@ class MathmlPen(SheetPen):
 
     def spelt_index(self, base: str, index: str) -> str:
         return f"<msub>{_one(base)}{_one(index)}</msub>"
-
-    def spelt_number(self, digits: str) -> str:
-        return f"<mn>{digits}</mn>"
 
     def spelt_sign(self, character: str, is_binary: bool) -> str:
         is_close = (not is_binary and character not in ",;") or character in "/·"
@@ -101,9 +102,6 @@ class MathmlPen(SheetPen):
             return written
         return f"<mrow>{written}" if is_open else f"{written}</mrow>"
 
-    def spelt_root(self, inside: str) -> str:
-        return f"<msqrt>{inside}</msqrt>"
-
     def spelt_matrix(self, rows: Sequence[Sequence[Piece]]) -> str:
         inside = "".join(_table_row([_tall(entry) for entry in line]) for line in rows)
         return f"<mrow><mo>(</mo><mtable>{inside}</mtable><mo>)</mo></mrow>"
@@ -120,12 +118,6 @@ class MathmlPen(SheetPen):
         inside = escape(words.strip())
         start = blank if words.startswith(" ") else ""
         return f"<mtext>{start}{inside}{blank if words.endswith(' ') else ''}</mtext>"
-
-    def spelt_differential(self, letter: str) -> str:
-        return f"<mi>{letter}</mi>"
-
-    def boxed(self, inside: str) -> str:
-        return f'<mrow class="boxed">{inside}</mrow>'  # menclose is not in MathML Core
 
     def continued(self, text: str, indent: int) -> str:
         return _QUAD * indent + text

@@ -7,6 +7,8 @@ import unicodedata
 from functools import cache
 from string import ascii_letters, digits
 
+from rigidsym.formula.latex_pen import greek_macro
+
 _SPECIAL = {
     "\\": r"\textbackslash{}",
     "{": r"\{",
@@ -42,42 +44,6 @@ _MATH = {
 }
 _SCRIPTS = {"<super>": "^", "<sub>": "_"}  # as Unicode tells of ², ₀, ₊ and ₐ
 _PLAIN = frozenset(f"{ascii_letters}{digits}+-=()")  # what LaTeX writes there as it is
-_GREEK = [
-    "alpha",
-    "beta",
-    "gamma",
-    "delta",
-    "epsilon",
-    "zeta",
-    "eta",
-    "theta",
-    "iota",
-    "kappa",
-    "lambda",
-    "mu",
-    "nu",
-    "xi",
-    "pi",
-    "rho",
-    "sigma",
-    "tau",
-    "upsilon",
-    "phi",
-    "chi",
-    "psi",
-    "omega",
-    "Gamma",
-    "Delta",
-    "Theta",
-    "Lambda",
-    "Xi",
-    "Pi",
-    "Sigma",
-    "Upsilon",
-    "Phi",
-    "Psi",
-    "Omega",
-]
 _TEXT_ACCENTS = {"\u0307": r"\.", "\u0308": r"\""}
 _MATH_ACCENTS = {"\u0307": r"\dot", "\u0308": r"\ddot"}
 _PUNCTUATION = "–—‘’“”…€"
@@ -99,8 +65,8 @@ def _cluster(base: str, marks: str) -> str:
     if not marks:
         return _character(base)
     if len(marks) == 1 and marks in _MATH_ACCENTS:
-        if _greek(base):
-            return rf"\ensuremath{{{_MATH_ACCENTS[marks]}{{{_greek(base)}}}}}"
+        if greek_macro(base):
+            return rf"\ensuremath{{{_MATH_ACCENTS[marks]}{{{greek_macro(base)}}}}}"
         return f"{_TEXT_ACCENTS[marks]}{{{_character(base)}}}"
     return _character(base) + "".join(map(_code, marks))
 
@@ -129,22 +95,12 @@ def _formula(character: str) -> str:
         base = chr(int(codes[0], 16))
         written = base if base in _PLAIN else _formula(base)
         return f"{_SCRIPTS[place]}{{{written}}}" if written else ""
-    return _greek(character)
+    return greek_macro(character)
 
 
 def _is_in_font(character: str) -> bool:
     is_letter = character <= "\u017e" and character not in _MISSING
     return is_letter or character in _PUNCTUATION
-
-
-def _greek(character: str) -> str:
-    """The macro of a Greek letter, or nothing."""
-    name = unicodedata.name(character, "").replace("LAMDA", "LAMBDA")
-    for kind, change in (("GREEK SMALL LETTER ", str.lower), ("GREEK CAPITAL LETTER ", str.title)):
-        letter = change(name.removeprefix(kind))
-        if name.startswith(kind) and letter in _GREEK:
-            return f"\\{letter}"
-    return ""
 
 
 def _code(character: str) -> str:
