@@ -18,6 +18,7 @@ from rigidsym.formula.letters import (
     is_negative,
     ordered_factors,
     ordered_terms,
+    power_of,
 )
 from rigidsym.formula.tree import (
     MINUS,
@@ -79,7 +80,7 @@ def signs_outside(node: sp.Expr) -> sp.Expr:
 
 
 def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
-    """A fraction that is in all entries, such as ½ or 2/(n² + w²), and the matrix behind it."""
+    """What is in all entries, such as ½ M or 2/(n² + w²), and the matrix behind it."""
     entries = [entry for entry in matrix if entry != 0]
     below = {sp.fraction(entry)[1].as_coeff_Mul()[1] for entry in entries}
     if len(entries) < 2 or len(below) > 1:
@@ -87,10 +88,22 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     (divisor,) = below
     contents = [(entry * divisor).as_content_primitive() for entry in matrix]
     number = sp.gcd_list([content for content, rest in contents if rest != 0])
-    if divisor == 1 and number.is_Integer:
+    constants = _constants_in_all([rest for _, rest in contents if rest != 0])
+    if divisor == 1 and number.is_Integer and constants == 1:
         return sp.S.One, matrix
-    rest = [content / number * primitive for content, primitive in contents]
-    return number / divisor, sp.ImmutableMatrix(*matrix.shape, rest)
+    rest = [content / number * (primitive / constants) for content, primitive in contents]
+    return number * constants / divisor, sp.ImmutableMatrix(*matrix.shape, rest)
+
+
+def _constants_in_all(entries: Sequence[sp.Expr]) -> sp.Expr:
+    """The product of the powers of symbols that every entry has as factors."""
+    first, *others = (dict(map(power_of, sp.Mul.make_args(entry))) for entry in entries)
+    common = sp.S.One
+    for base, power in first.items():
+        powers = [power, *(other.get(base, sp.S.Zero) for other in others)]
+        if base.is_Symbol and all(p.is_Integer and p > 0 for p in powers):
+            common *= base ** min(powers)
+    return common
 
 
 def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> list[list[Formula]]:
