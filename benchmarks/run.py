@@ -44,6 +44,7 @@ NAMES = (
     "rosetta",
     "fuzz",
     "kills",
+    "mutation",
 )
 
 

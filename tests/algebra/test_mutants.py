@@ -1,0 +1,152 @@
+"""Every change of one sign, operator or constant in the arithmetic of the ring is seen.
+
+`benchmarks/mutation.py` makes the changes; it also tries those of the other files of the ring and
+of the prover, which takes minutes.
+"""
+
+from __future__ import annotations
+
+from types import FunctionType
+
+import pytest
+import sympy as sp
+from sympy.polys.rings import PolyElement
+
+from benchmarks.mutation import Mutant, mutants
+from rigidsym.algebra import codec as codec_module, matrix, ring
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.matrix import RingMatrix, cross, hat, unhat
+from rigidsym.algebra.ring import Quotient, Ring
+from rigidsym.models.so3 import TIME, time_function
+
+PHI, X = time_function("phi"), time_function("x")
+OF_RING = ("dot", "total", "partial", "dt", "_monomial_rate", "_settled", "difference")
+OF_QUOTIENT = ("__add__", "__mul__", "__pow__", "inverse", "equals", "sum")
+OF_MATRIX = ("det", "adjugate", "gram", "__matmul__", "__sub__", "_minor")
+EQUIVALENT = {  # changes that change no value
+    ("Ring.difference", "Or -> And"),
+    ("Quotient.__pow__", "GtE -> Gt"),
+    ("Quotient.__pow__", "0 -> 1"),
+    ("RingMatrix.gram", "1 -> 2"),
+    ("RingMatrix.det", "2 -> 3"),
+    ("RingMatrix.adjugate", "Add -> Sub"),
+}
+CHOSEN = [
+    mutant
+    for module, owner, names in (
+        ("rigidsym.algebra.ring", "Ring", OF_RING),
+        ("rigidsym.algebra.ring", "Quotient", OF_QUOTIENT),
+        ("rigidsym.algebra.matrix", "RingMatrix", OF_MATRIX),
+        ("rigidsym.algebra.matrix", "", ("cross", "hat", "unhat")),
+    )
+    for mutant in mutants(module)
+    if mutant.function.rpartition(".")[::2] in {(owner, name) for name in names}
+    if (mutant.function, mutant.change) not in EQUIVALENT and mutant.change != "True -> False"
+]
+
+
+AT = {  # a point of the circle, where all values are rational numbers
+    sp.sin(PHI): sp.Rational(3, 5),
+    sp.cos(PHI): sp.Rational(4, 5),
+    X: sp.Rational(7, 3),
+    sp.diff(X, TIME): sp.Rational(2, 5),
+    sp.diff(PHI, TIME): sp.Rational(1, 7),
+}
+
+
+def arithmetic_is_right() -> bool:
+    """The ring, its quotients and its matrices against SymPy's numbers and matrices."""
+    codec = codec_for([sp.sin(PHI), sp.diff(X, TIME), X, sp.Rational(1, 2)], order=1)
+    here: Ring = codec.ring
+    c, s, x = (here.generator(here.index[e]) for e in (sp.cos(PHI), sp.sin(PHI), X))
+    a, b, d = here.reduce(2 * x**2 * c + 3 * s * x - 1), s * c - x + 4, s * x + 2 * c
+
+    def value(found: PolyElement | Quotient) -> sp.Expr:
+        if isinstance(found, Quotient):
+            return value(found.numerator) / value(found.denominator)
+        return codec.decode(found).xreplace(AT)
+
+    def values(found: RingMatrix) -> sp.Matrix:
+        return sp.Matrix(*found.shape, list(map(value, found.entries)))
+
+    square = RingMatrix.of(here, [[a, b, x], [c, s, b], [here.one, d, a]])
+    four = RingMatrix.of(here, [[a, b, x, c], [c, s, b, d], [x, d, a, s], [s, x, here.one, b]])
+    first, second = Quotient(here, a, x), Quotient(here, b, c)
+    whole = [Quotient.whole(here, e) for e in (b, x)]
+    u, v = (RingMatrix.column(here, e) for e in ((a, b, c), (x, d, s)))
+    A, B, C, S, x0 = map(value, (a, b, c, s, x))  # noqa: N806
+    derivative = sp.diff(codec.decode(a), TIME).xreplace(AT)
+    pairs = [
+        (here.dot([(a, b), (x, s)], minus=[(b, b), (s, s)]), A * B + x0 * S - B**2 - S**2),
+        (here.total([a, b, here.reduce(-a)]), B),
+        (here.partial(2 * x**3 * c, here.index[X]), 6 * x0**2 * C),
+        (here.partial(2 * x**3 * c, here.index[sp.cos(PHI)]), 2 * x0**3),
+        (here.dt(a), derivative),
+        (here.difference(a, b), A - B),
+        (here.difference(here.zero, b), -B),
+        (here.difference(b, here.zero), B),
+        (here.reduce(s**3 * x), S**3 * x0),
+        (first + second, A / x0 + B / C),
+        (first + first, 2 * A / x0),
+        (first * second, A * B / x0 / C),
+        (second * whole[1], B * x0 / C),
+        (second**-2, C**2 / B**2),
+        (second**3, B**3 / C**3),
+        (Quotient.sum(here, whole), B + x0),
+        (Quotient.sum(here, [first, second]), A / x0 + B / C),
+        (Quotient.sum(here, [first, whole[0]]), A / x0 + B),
+        *((part.det(), values(part).det()) for part in (square, four, u.T @ v, minor(square))),
+    ]
+    matrices = [
+        (square @ square, values(square) ** 2),
+        (square.gram(), values(square) * values(square).T),
+        (square - square.T, values(square) - values(square).T),
+        *((m.adjugate(), values(m).adjugate()) for m in (square, four, minor(square))),
+        (RingMatrix(here, ((a,),)).adjugate(), sp.eye(1)),
+        (RingMatrix.column(here, cross(here, u.entries, v.entries)), values(u).cross(values(v))),
+        (hat(u) @ v, values(u).cross(values(v))),
+        (unhat(hat(u)), values(u)),
+    ]
+    return (
+        all(value(found) == expected for found, expected in pairs)
+        and all(values(found) == expected for found, expected in matrices)
+        and (first + second).equals(Quotient(here, here.dot([(a, c), (b, x)]), here.reduce(x * c)))
+        and not (first + second).equals(first)
+        and not first.equals(Quotient(here, b, x))
+        and first.equals(Quotient(here, here.dot([(a, c)]), here.reduce(x * c)))
+        and not first.equals(Quotient(here, a, c))
+        and here.dt(here.one) == here.zero
+    )
+
+
+def minor(of: RingMatrix) -> RingMatrix:
+    return RingMatrix(of.ring, tuple(row[:2] for row in of.rows[:2]))
+
+
+def test_the_arithmetic_is_right_as_it_is():
+    assert arithmetic_is_right()
+
+
+@pytest.mark.parametrize("mutant", CHOSEN, ids=str)
+def test_a_change_of_the_arithmetic_is_seen(monkeypatch, mutant: Mutant):
+    *owner, name = mutant.function.split(".")
+    module = {"rigidsym.algebra.ring": ring, "rigidsym.algebra.matrix": matrix}[mutant.module]
+    held = getattr(module, owner[0]) if owner else module
+    changed = FunctionType(mutant.code, vars(module), name, _defaults(vars(held)[name]))
+    wrapped = classmethod(changed) if isinstance(vars(held)[name], classmethod) else changed
+    monkeypatch.setattr(held, name, wrapped)
+    if not owner:
+        monkeypatch.setitem(globals(), name, changed)
+    codec_module._shared.cache_clear()
+    try:
+        assert not arithmetic_is_right()
+    except AssertionError:
+        raise
+    except Exception:  # an error is seen too
+        pass
+    finally:
+        codec_module._shared.cache_clear()
+
+
+def _defaults(function: object) -> tuple[object, ...] | None:
+    return getattr(getattr(function, "__func__", function), "__defaults__", None)
