@@ -33,7 +33,7 @@ _STYLE = re.compile(r'<link [^>]*href="([^"?]+\.css)[^"]*"[^>]*>')
 _SCRIPT = re.compile(r"<script.*?</script>", re.DOTALL)
 _SIDEBARS = re.compile(r"<aside.*?</aside>", re.DOTALL)
 _NO_PROSE = re.compile(
-    r"^```.*?^```|^\$\$.*?^\$\$|`[^`]*`|\$[^$]*\$|<[^>]*>|\]\([^)]*\)|https?://\S+|--?[a-z-]+",
+    r"^```.*?^```|^\$\$.*?^\$\$|`[^`]*`|\$[^$]*\$|<[^>]*>|\]\([^)]*\)|https?://\S+|--?[a-z-]+|\.[a-z]+\b",
     re.DOTALL | re.MULTILINE,
 )
 
@@ -125,7 +125,7 @@ def misspelt(files: Iterable[Path]) -> Iterator[str]:
     for path in files:
         text = _NO_PROSE.sub(" ", path.read_text(encoding="utf-8"))
         found = set(re.findall(r"[^\W\d_]+(?:['’][^\W\d_]+)?", text)) - known
-        words = sorted(word for word in found if not word.isupper())  # ZXZ, JSON
+        words = sorted(word for word in found if word[1:] == word[1:].lower())  # not JSON, NumPy
         unknown = set(_unknown(words))
         yield from (f"{path.relative_to(ROOT)}: {word}" for word in words if word in unknown)
 
