@@ -41,6 +41,7 @@ NAMES = (
     "identify",
     "bodies",
     "notes",
+    "motion",
     "rosetta",
     "fuzz",
     "kills",

@@ -107,9 +107,11 @@ def _draw_curve(
 
 
 def _draw_drift(axes: Any, t: Array, first_integrals: Mapping[str, Array]) -> None:
+    """The largest change so far."""
     for name, values in first_integrals.items():
         size = abs(float(values[0])) or 1.0
-        axes.semilogy(t, np.maximum(np.abs(values - values[0]) / size, _SMALLEST), label=name)
-    axes.set(xlabel="t in s", ylabel="relative change", title="Drift of the first integrals")
+        changes = np.nan_to_num(np.abs(values - values[0])) / size
+        axes.semilogy(t, np.maximum(np.maximum.accumulate(changes), _SMALLEST), label=name)
+    axes.set(xlabel="t in s", ylabel="largest relative change", title="Drift of first integrals")
     if first_integrals:
         axes.legend(loc="lower right", fontsize="x-small")

@@ -165,5 +165,11 @@ def test_the_command_writes_a_table_and_a_picture(tmp_path):
     assert table.shape == (50,)
     assert table["theta"][0] == 0.5
     assert plot.read_text(encoding="utf-8").startswith("<?xml")
+    turning = [f"--initial=angular_velocity_body_{k}={k}" for k in (1, 2)]
+    moments = ["--set=A=1", "--set=B=2", "--set=C=2.5"]
+    free = ["simulate", "free_body", "--method=exact", "--time=1", *moments, *turning]
+    done = call(*free, "--plot=free.png", cwd=tmp_path)
+    assert "angular_momentum_squared  drift" in done.stdout
+    assert (tmp_path / "free.png").read_bytes().startswith(b"\x89PNG")
     wrong = call("simulate", "heavy_symmetric_top", "--set", "A", cwd=tmp_path, status=2)
     assert "expected NAME=NUMBER" in wrong.stderr

@@ -1,0 +1,237 @@
+"""Equations of motion: their derivation, exact solutions, and the cost of a right-hand side.
+
+Beside SymPy's `LagrangesMethod`, `lambdify`, JAX and heyoka; what is not installed is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib.util import find_spec
+from statistics import median
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame, dynamicsymbols, inertia
+
+import rigidsym as rs
+from benchmarks.measure import Settings, interleaved, progress
+from benchmarks.report import Cell, Column, Figure, Report, Table
+
+A, B, C = sp.symbols("A B C")
+SYMMETRIC = ((A, A, C), "m*g*l*cos(theta)")
+ASYMMETRIC = ((A, B, C), "m*g*(sin(theta)*(a*sin(psi) + b*cos(psi)) + l*cos(theta))")
+MOST = {"symmetric": (0.3, 60), "asymmetric": (1.0, 180)}  # seconds, operations
+BRICK = {"A": 0.001894220, "B": 0.006211019, "C": 0.007194665}  # slug ft², NASA/TM-2015-218675
+TOP = {"A": 1.3, "C": 0.7, "g": 9.81, "l": 0.4, "m": 2.0}
+BODIES = 100_000
+
+
+def run(settings: Settings) -> Report:
+    """Derivation, accuracy over 1,000 periods, and right-hand sides."""
+    repeats = settings.repeats or 3
+    derived = dict(derivations(repeats))
+    tables = [
+        Table(
+            "Heavy tops to explicit accelerations (ZXZ): seconds, operations after cse",
+            tuple(
+                map(
+                    Column,
+                    ("top", "rigidsym, s", "operations", "SymPy, s", "its operations", "after cse"),
+                )
+            ),
+            tuple((name, *row) for name, row in derived.items()),
+        ),
+        Table(
+            "Against exact solutions: largest error, largest relative drift of an integral",
+            (Column("motion"), Column("method"), Column("error", ".1e"), Column("drift", ".1e")),
+            tuple(accuracy()),
+        ),
+        Table(
+            f"One right-hand side of {BODIES:,} symmetric tops, nanoseconds a body",
+            (Column("by"), Column("ns", ".0f")),
+            tuple(right_hand_sides(repeats)),
+        ),
+    ]
+    figures = [
+        Figure(
+            f"Heavy {name} top to accelerations",
+            f"at most {MOST[name][0]} s and {MOST[name][1]} operations",
+            f"{row[0]} s and {row[1]}",
+            float(row[0]) <= MOST[name][0] and int(row[1]) <= MOST[name][1],
+        )
+        for name, row in derived.items()
+    ]
+    return Report(title="Motion", tables=tuple(tables), figures=tuple(figures))
+
+
+# derivation
+
+
+def derivations(repeats: int) -> Iterator[tuple[str, tuple[Any, ...]]]:
+    for name, (moments, potential) in (("symmetric", SYMMETRIC), ("asymmetric", ASYMMETRIC)):
+        progress(f"the {name} top")
+        seconds = []
+        for _ in range(repeats):
+            _forget()
+            start = perf_counter()
+            motion = rs.derive(
+                "ZXZ", "accelerations", body=rs.principal_moments(*moments), potential=potential
+            )
+            seconds.append(perf_counter() - start)
+        start = perf_counter()
+        theirs = _by_sympy(moments, motion.forces.potential)
+        spent = perf_counter() - start
+        raw = sum(map(sp.count_ops, theirs))
+        ours = f"{median(seconds):.2f}"
+        yield name, (ours, _shared(motion.accelerations), f"{spent:.1f}", raw, _shared(theirs))
+    progress()
+
+
+def _forget() -> None:
+    """Rings and presenters are kept from one derivation to the next, but not here."""
+    from rigidsym.algebra import codec, present
+
+    codec._shared.cache_clear()
+    present.presenter_for.cache_clear()
+
+
+def _by_sympy(moments: Sequence[sp.Expr], potential: sp.Expr) -> Any:
+    phi, theta, psi = dynamicsymbols("phi theta psi")
+    space = ReferenceFrame("N")
+    body = space.orientnew("B", "Body", [phi, theta, psi], "ZXZ")
+    omega = body.ang_vel_in(space)
+    kinetic = omega.dot(inertia(body, *moments).dot(omega)) / 2
+    method = LagrangesMethod(kinetic - potential, [phi, theta, psi])
+    method.form_lagranges_equations()
+    return method.rhs()[3:]
+
+
+def _shared(expressions: Sequence[sp.Expr]) -> int:
+    shared, outputs = sp.cse(list(expressions))
+    return sum(sp.count_ops(e) for _, e in shared) + sum(map(sp.count_ops, outputs))
+
+
+# accuracy
+
+
+def accuracy() -> Iterator[tuple[Cell, ...]]:
+    """1,000 periods of a free body and of a nodding top; the brick after 30 s."""
+    free = rs.derive("unit_quaternion", ["energy"], body=rs.principal_moments(A, B, C), potential=0)
+    omega = np.radians([10.0, 20.0, 30.0])
+    for what, t_end in (("free body, 30 s (NASA case 2)", 30.0), ("free body, 1,000 periods", 1e4)):
+        start = {"w": 1, "x": 0, "y": 0, "z": 0, "angular_velocity_body": omega}
+        options = {"samples": 31 if t_end < 100 else 1001}
+        exact = free.simulate(start, BRICK, t_end, method="exact", **options)
+        for method in ("lie", "DOP853") if t_end < 100 else ("lie",):
+            progress(f"{what}, {method}")
+            found = free.simulate(start, BRICK, t_end, method=method, **options)
+            error = np.abs(found.rotation_matrix - exact.rotation_matrix).max()
+            yield what, method, float(error), max(found.drift.values())
+    yield _nodding()
+    progress()
+
+
+def _nodding(periods: int = 1000) -> tuple[Cell, ...]:
+    """θ of a heavy top against sn, over whole periods."""
+    from scipy.special import ellipj, ellipk
+
+    motion = rs.derive(
+        "ZXZ", ["energy"], body=rs.principal_moments(A, A, C), potential=SYMMETRIC[1]
+    )
+    start = {"phi": 0, "theta": 0.9, "psi": 0, "phi_dot": 0, "theta_dot": 0, "psi_dot": 12.0}
+    weight, a = TOP["m"] * TOP["g"] * TOP["l"], TOP["A"]
+    spin = TOP["C"] * start["psi_dot"]
+    p_phi, u0 = spin * np.cos(0.9), np.cos(0.9)
+    energy = weight * u0  # without C ω₃²/2
+    u = np.polynomial.Polynomial([0, 1])
+    cubic = 2 * (1 - u**2) * (energy - weight * u) / a - ((p_phi - spin * u) / a) ** 2
+    one, two, three = np.sort(cubic.roots().real)
+    rate = np.sqrt(weight / (2 * a) * (three - one))
+    m = (two - one) / (three - one)
+    found = motion.simulate(start, TOP, periods * 2 * ellipk(m) / rate, samples=20 * periods + 1)
+    sn, *_ = ellipj(ellipk(m) + rate * found.t, m)  # from the upper circle on
+    error = np.abs(np.cos(found.q[:, 1]) - one - (two - one) * sn**2).max()
+    return "heavy top, 1,000 nutations", "DOP853", float(error), max(found.drift.values())
+
+
+# right-hand sides
+
+
+def right_hand_sides(repeats: int) -> Iterator[tuple[Cell, ...]]:
+    moments, potential = SYMMETRIC
+    motion = rs.derive(
+        "ZXZ", ["state_derivative"], body=rs.principal_moments(*moments), potential=potential
+    )
+    names = motion.argument("parameters").names
+    parameters = np.array([TOP.get(name, 1.0) for name in names])
+    y = np.random.default_rng(1).uniform(0.3, 2.0, (BODIES, 6))
+    actions = {name: each for name, each in _actions(motion, y, parameters).items() if each}
+    expected = actions["rigidsym, NumPy"]()
+    for name, action in actions.items():
+        if not np.allclose(action(), expected, rtol=1e-9):
+            raise ArithmeticError(f"{name}: the right-hand sides differ")
+    times = interleaved({n: _timed(a) for n, a in actions.items()}, repeats)
+    for name in sorted(times, key=lambda name: min(times[name])):
+        yield name, 1e9 * min(times[name]) / BODIES
+    progress()
+
+
+def _timed(action: Callable[[], Any]) -> Callable[[], float]:
+    def timed() -> float:
+        start = perf_counter()
+        action()
+        return perf_counter() - start
+
+    return timed
+
+
+def _actions(motion: rs.Motion, y: Any, parameters: Any) -> Mapping[str, Callable[[], Any] | None]:
+    found: dict[str, Callable[[], Any] | None] = {}
+    for target, shown in (("numpy", "NumPy"), ("c", "C"), ("numba", "Numba")):
+        kernels = motion.kernels(target).load()
+        found[f"rigidsym, {shown}"] = _kernel(kernels.state_derivative, y, parameters)
+    found["lambdify(cse=True)"] = _lambdified(motion, y, parameters)
+    found["JAX, jit of rigidsym's"] = _jax(motion, y, parameters) if find_spec("jax") else None
+    found["heyoka, cfunc"] = _heyoka(motion, y, parameters) if find_spec("heyoka") else None
+    return found
+
+
+def _kernel(function: Any, y: Any, parameters: Any) -> Callable[[], Any]:
+    return lambda: function(0.0, y, parameters)
+
+
+def _plain(motion: rs.Motion) -> tuple[list[sp.Symbol], list[sp.Expr]]:
+    """The state as symbols, and its derivative in them."""
+    symbols = list(sp.symbols("y0:6"))
+    known = dict(zip(reversed(motion.argument("y").symbols), reversed(symbols), strict=True))
+    return symbols, [entry.xreplace(known) for entry in motion.state_derivative]
+
+
+def _lambdified(motion: rs.Motion, y: Any, parameters: Any) -> Callable[[], Any]:
+    symbols, slopes = _plain(motion)
+    constants = motion.argument("parameters").symbols
+    function = sp.lambdify([*symbols, *constants], slopes, "numpy", cse=True)
+    return lambda: np.stack(np.broadcast_arrays(*function(*y.T, *parameters)), axis=-1)
+
+
+def _jax(motion: rs.Motion, y: Any, parameters: Any) -> Callable[[], Any]:
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+    function = jax.jit(motion.kernels("jax").load().state_derivative)
+    function(0.0, y, parameters).block_until_ready()
+    return lambda: np.asarray(function(0.0, y, parameters).block_until_ready())
+
+
+def _heyoka(motion: rs.Motion, y: Any, parameters: Any) -> Callable[[], Any]:
+    import heyoka as hy
+
+    symbols, slopes = _plain(motion)
+    constants = motion.argument("parameters").symbols
+    values = dict(zip(constants, map(sp.Float, parameters), strict=True))
+    expressions = [hy.from_sympy(slope.xreplace(values)) for slope in slopes]
+    function = hy.cfunc(expressions, vars=[hy.expression(s.name) for s in symbols])
+    columns = np.ascontiguousarray(y.T)
+    return lambda: function(columns).T
