@@ -81,6 +81,7 @@ def derivations(repeats: int) -> Iterator[tuple[str, tuple[Any, ...]]]:
             )
             seconds.append(perf_counter() - start)
         start = perf_counter()
+        assert motion.forces is not None
         theirs = _by_sympy(moments, motion.forces.potential)
         spent = perf_counter() - start
         raw = sum(map(sp.count_ops, theirs))
@@ -110,7 +111,7 @@ def _by_sympy(moments: Sequence[sp.Expr], potential: sp.Expr) -> Any:
 
 def _shared(expressions: Sequence[sp.Expr]) -> int:
     shared, outputs = sp.cse(list(expressions))
-    return sum(sp.count_ops(e) for _, e in shared) + sum(map(sp.count_ops, outputs))
+    return int(sum(sp.count_ops(e) for _, e in shared) + sum(map(sp.count_ops, outputs)))
 
 
 # accuracy
@@ -219,7 +220,7 @@ def _lambdified(motion: rs.Motion, y: Any, parameters: Any) -> Callable[[], Any]
 def _jax(motion: rs.Motion, y: Any, parameters: Any) -> Callable[[], Any]:
     import jax
 
-    jax.config.update("jax_enable_x64", True)
+    jax.config.update("jax_enable_x64", True)  # type: ignore[no-untyped-call]
     function = jax.jit(motion.kernels("jax").load().state_derivative)
     function(0.0, y, parameters).block_until_ready()
     return lambda: np.asarray(function(0.0, y, parameters).block_until_ready())

@@ -53,13 +53,14 @@ def steps_of_body(
     found |= motion.steps(tuple(only))
     asks = not only or not {*only}.isdisjoint(FLOW_QUANTITIES)
     functions = motion.functions() if asks else {}
+    follows = not only or "effective_potential" in only
     return OfBody(
         arguments={**values.arguments, **{a.name: a for a in motion.added}},
         steps=found,
         body=whole,
         functions={n: f for n, f in functions.items() if not only or n in only},
         first_integrals=motion.first_integrals,
-        consequences=tuple(motion.consequences()) if "effective_potential" in found else (),
+        consequences=tuple(motion.consequences()) if follows else (),
         table=motion.table,
     )
 

@@ -187,3 +187,13 @@ def test_a_pendulum_and_its_effective_potential_need_no_third_coordinate():
         samples=11,
     )
     assert found.drift["energy"] < 1e-10
+
+
+def test_the_middle_axis_of_a_free_body_is_unstable_and_the_others_are_not():
+    found = [c for c in shipped("free_body").consequences if c.left.text == "λ²"]
+    values = {A: 1, B: 2, C: 3, sp.Symbol("Omega"): 1}
+    assert [sp.sign(each.value.subs(values)) for each in found] == [-1, 1, -1]
+    assert all(proof.is_exact for each in found for proof in each.proofs)
+    symmetric = rs.derive("unit_quaternion", body=rs.principal_moments(A, A, C), potential=0)
+    rate = next(c for c in symmetric.consequences if c.title == "The symmetric body").value
+    assert sp.expand(rate - (C - A) / A * sp.Symbol("Omega_body_3")) == 0

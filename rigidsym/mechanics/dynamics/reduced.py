@@ -6,7 +6,7 @@ u = cos θ turns the energy into u̇² = f(u) with a polynomial f; a cubic is so
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -15,6 +15,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Consequence, Proof
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import dynamics as claims
+from rigidsym.models.forces import OMEGA_BODY
 
 _E, _U, _P = sp.symbols("E u p")
 _SINE = sp.Dummy("sine")
@@ -231,3 +232,53 @@ def _roots_proof(a: sp.Expr, b: sp.Expr, c: sp.Expr, name: str) -> Proof:
     x = (-b - r) / (2 * a)
     residual = sp.ImmutableMatrix([[a * x**2 + b * x + c - (r**2 - (b**2 - 4 * a * c)) / (4 * a)]])
     return identity(residual, formula(r"a x^2 + b x + c = 0"), name)
+
+
+def of_free_body(
+    inertia: sp.ImmutableMatrix, slopes: Sequence[sp.Expr], name: str
+) -> Iterator[Consequence]:
+    """Rotations about the principal axes, and the regular precession of a symmetric body.
+
+    `slopes` are dΩ′/dt. A deviation along the axes i and j obeys dΩ_i/dt = a Ω_j and dΩ_j/dt =
+    b Ω_i, so that it grows or turns with λ² = a b.
+    """
+    if not inertia.is_diagonal():
+        return
+    spin = sp.Symbol("Omega")
+    for k, axis in enumerate(("first", "second", "third")):
+        i, j = (n for n in range(3) if n != k)
+        steady = {s: spin if n == k else sp.S.Zero for n, s in enumerate(OMEGA_BODY)}
+        a, b = (sp.diff(slopes[n], OMEGA_BODY[o]).xreplace(steady) for n, o in ((i, j), (j, i)))
+        own, one, other = inertia[k, k], inertia[i, i], inertia[j, j]
+        squared = spin**2 * (own - one) * (other - own) / (one * other)
+        claim = formula(r"\lambda^2 = a b")
+        yield Consequence(
+            title="Rotation about the principal axes" if k == 0 else "",
+            text=f"A small deviation from the rotation about the {axis} axis at the rate {{}} is "
+            "proportional to {}, which grows if {} is positive:",
+            spans=(spin, formula(r"\exp(\lambda t)"), formula(r"\lambda^2")),
+            left=formula(r"\lambda^2"),
+            value=squared,
+            proofs=(identity(sp.ImmutableMatrix([[a * b - squared]]), claim, name),),
+        )
+    if inertia[0, 0] == inertia[1, 1] != inertia[2, 2]:
+        yield _precession(inertia, slopes, name)
+
+
+def _precession(inertia: sp.ImmutableMatrix, slopes: Sequence[sp.Expr], name: str) -> Consequence:
+    """Ω′ turns about the axis of symmetry: dΩ₁/dt = −κ Ω₂, dΩ₂/dt = κ Ω₁, Ω₃ constant."""
+    first, second, third = OMEGA_BODY
+    rate = (inertia[2, 2] - inertia[0, 0]) / inertia[0, 0] * third
+    residual = [slopes[0] + rate * second, slopes[1] - rate * first, slopes[2]]
+    turning = formula(
+        r"\Omega'_1 + i\Omega'_2 = \left(\Omega'_1(0) + i\Omega'_2(0)\right)e^{i\kappa t}"
+    )
+    return Consequence(
+        title="The symmetric body",
+        text="{} is constant, and the other two components turn about the axis of symmetry, {}, "
+        "with the rate",
+        spans=(formula(r"\Omega'_3"), turning),
+        left=formula(r"\kappa"),
+        value=rate,
+        proofs=(identity(sp.ImmutableMatrix(residual), claims.PRECESSION, name),),
+    )

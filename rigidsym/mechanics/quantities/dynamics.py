@@ -214,6 +214,7 @@ def is_constant(symbol: Formula) -> Formula:
     return formula(r"\frac{d#1}{dt} = 0", symbol)
 
 
+PRECESSION = formula(r"\dot{\Omega}'_1 + i\dot{\Omega}'_2 = i\kappa(\Omega'_1 + i\Omega'_2)")
 NEAR_UPRIGHT = formula("#1 = #1(0) + k(1 - u) + O((1 - u)^2)", EFFECTIVE)
 
 
