@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -15,9 +15,11 @@ from rigidsym.mechanics.derivation import Derivation, FirstIntegral, Quantity, S
 from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
+from rigidsym.page.growing_body import SHARE, places_of
 from rigidsym.page.stage import has_turns
 
 SHOWN = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
+OF_BODY = ("mass", "inertia_tensor")  # of one that grows with its parameters
 TURNS = "turns"
 FLOW = ("state_derivative", "first_integrals")
 CONDITIONS = ("conditions", "condition_slopes")
@@ -37,7 +39,8 @@ class Functions:
     @property
     def steps(self) -> tuple[Step, ...]:
         """The steps of the quantities shown."""
-        return tuple(step for step in self.derivation.steps if step.quantity.name in SHOWN)
+        shown = (*SHOWN, *OF_BODY) if SHARE in self.derivation.arguments else SHOWN
+        return tuple(step for step in self.derivation.steps if step.quantity.name in shown)
 
     @property
     def constants(self) -> tuple[sp.Symbol, ...]:
@@ -66,7 +69,10 @@ def functions_of(derivation: Derivation) -> Functions:
     shown = derivation_of(derivation.model, (*SHOWN, _WITH_A_MARGIN))
     whole = {argument.name: argument for argument in (*shown.arguments, *derivation.arguments)}
     flow = _flow(derivation)
-    steps = tuple(replace(step, number=0) for step in (*shown.steps, *_more(shown), *flow))
+    places = places_of(derivation.body)
+    whole |= {SHARE.name: SHARE} if places else {}
+    more = (*_more(shown), *flow, *_of_body(derivation, places))
+    steps = tuple(replace(step, number=0) for step in (*shown.steps, *more))
     shown = replace(shown, arguments=tuple(whole.values()), steps=steps, functions=())
     program = lower(shown, javascript.RESERVED)
     return Functions(
@@ -83,6 +89,16 @@ def _flow(derivation: Derivation) -> tuple[Step, ...]:
     q, q_dot, y = (derivation.argument(name).symbols for name in ("q", "q_dot", "y"))
     is_plain = y == (*q, *q_dot)
     return tuple(f for f in derivation.functions if is_plain and f.quantity.name in FLOW)
+
+
+def _of_body(derivation: Derivation, places: Mapping[str, sp.ImmutableMatrix]) -> Iterator[Step]:
+    """The mass, the centre and the moments of a body that grows, and where its points are."""
+    if not places:
+        return
+    yield from (s for s in derivation.steps if s.quantity.name in (*OF_BODY, "centre_of_mass"))
+    for name, place in places.items():
+        quantity = _quantity(name, "a point of the body", (SHARE.name, "parameters"))
+        yield Step(number=0, quantity=quantity, expression=place, because="", proofs=())
 
 
 def _more(derivation: Derivation) -> Iterator[Step]:
@@ -113,14 +129,18 @@ def _step(
     name: str, matrix: sp.MatrixBase, about: str, inputs: tuple[str, ...], model: RotationModel
 ) -> Step:
     """A function that is evaluated like the quantities but is in no note."""
-    quantity = Quantity(
+    quantity = _quantity(name, about, (*inputs, "parameters") if model.constants else inputs)
+    return Step(
+        number=0, quantity=quantity, expression=matrix.as_immutable(), because="", proofs=()
+    )
+
+
+def _quantity(name: str, about: str, inputs: tuple[str, ...]) -> Quantity:
+    return Quantity(
         name=name,
         symbol=Symbol(name),
         definition=_NAMELESS,
         about=about,
         unit="",
-        inputs=(*inputs, "parameters") if model.constants else inputs,
-    )
-    return Step(
-        number=0, quantity=quantity, expression=matrix.as_immutable(), because="", proofs=()
+        inputs=inputs,
     )

@@ -27,6 +27,7 @@ from rigidsym.notes.prose.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of, starts_of
 from rigidsym.page.copies import LANGUAGES, copies_of
 from rigidsym.page.functions import Functions, functions_of
+from rigidsym.page.growing_body import growing
 from rigidsym.page.shapes import SHAPES, as_data, on_its_tip
 from rigidsym.page.stage import has_turns, label, shown_angles, stage_of
 from rigidsym.system import resources
@@ -80,6 +81,7 @@ def print_page(derivation: Derivation, document: Document) -> str:
         "scene": stage,
         "bodies": {name: as_data(shape) for name, shape in shapes.items()},
         "body": body,
+        "growing": growing(derivation.body),
         "shown": [name for name, _, is_shown in choices if is_shown],
         "controls": [_data(control) for control in controls],
         "parameters": [starts.get(symbol, 0.0) for symbol in functions.constants],

@@ -4,7 +4,7 @@ import { cross, dot, length, minus, plus, scaled, within } from "./vectors.mjs";
 
 const FLAT = 1e-4; // lengths off a plane that do not count
 const LIGHT = [-0.36, 0.48, 0.8]; // right, up and toward the viewer
-const trees = new Map(); // a body -> its tree
+const trees = new WeakMap(); // a body -> its tree
 
 function facesOf({ points, colors, faces }) {
   return faces.map(([color, ...corners]) => {

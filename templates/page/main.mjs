@@ -81,6 +81,23 @@ function turnsNow(body) {
   return whole ? [{ ...whole, rate: 0 }] : [];
 }
 
+let own = { of: null, body: page.bodies.own };
+
+/** The file's own body for its parameters as they are, about its centre of mass, to fit. */
+function grown() {
+  if (!page.growing || !kernels.inertia_tensor) return page.bodies.own;
+  const of = String(state.parameters);
+  if (own.of !== of) {
+    const { corners, colors, faces } = page.growing;
+    const centre = kernels.centre_of_mass ? evaluated("centre_of_mass") : [0, 0, 0];
+    const placed = corners.map(([part, ...share]) =>
+      minus(kernels[`place_${part}`]([...share, 0, 0].slice(0, 3), state.parameters), centre));
+    const reach = Math.max(...placed.map(length));
+    own = { of, body: { points: placed.map((point) => scaled(0.95 / reach, point)), colors, faces } };
+  }
+  return own.body;
+}
+
 function follow(pose, turns) {
   const axis = kernels.turns && turns.length ? turns.at(-1).axis : STANDARD[2];
   const tip = within(axis, pose.frames.at(-1));
@@ -100,6 +117,9 @@ export function show() {
   showNumbers("rotation_matrix", matrix);
   showNumbers("angular_velocity_space", omega, factor);
   showNumbers("angular_velocity_body", evaluated("angular_velocity_body"), factor);
+  for (const name of ["mass", "inertia_tensor"].filter((known) => kernels[known])) {
+    showNumbers(name, [evaluated(name)].flat());
+  }
   if (kernels.first_integrals) showNumbers("first_integrals", evaluated("first_integrals").map((value) => [value]));
   const isLocked = showMargin();
   const columns = [0, 1, 2].map((k) => matrix.map((row) => row[k]));
@@ -111,7 +131,7 @@ export function show() {
   if (view.shown.has("trace") && isWhole) follow(pose, turns);
   draw(group, pose, cameraAt(at("azimuth").valueAsNumber, at("elevation").valueAsNumber), {
     shown: view.shown,
-    body: page.bodies[at("body").value],
+    body: at("body").value === "own" ? grown() : page.bodies[at("body").value],
     omega: isWhole ? omega : null,
     omegaName: scene.omega,
     trace: view.shown.has("trace") ? view.trace : [],

@@ -620,3 +620,24 @@ INTEGRALS = """
 def motion_of_file(name: str) -> rs.Motion:
     (spec,) = read_file(name).singles()
     return motion_of_spec(spec)
+
+
+def test_a_body_grows_with_the_sliders_of_its_lengths(tab, tmp_path):
+    motion = derive("ZXZ", ("body",), body=rs.solid("cone"))
+    page = motion.page()
+    assert len(page.encode()) <= MOST_BYTES
+    opened(tab, page, tmp_path)
+    names = motion.argument("parameters").names
+    shape = "[...document.querySelectorAll('#figure .face')].map((f) => f.getAttribute('points'))"
+    before = tab.run(shape)
+    for a, h in ((0.4, 1.7), (1.1, 0.3)):
+        values = dict(zip(("M", "h", "a"), (2.0, h, a), strict=True))
+        sliders = {f"parameters-{names.index(name)}": value for name, value in values.items()}
+        tab.run(f"({SET_ALL})({json.dumps(sliders)})")
+        expected = np.diag([2 * 3 / 80 * (4 * a**2 + h**2)] * 2 + [2 * 0.3 * a**2])
+        found = tab.run(NUMBERS)["inertia_tensor-value"]
+        np.testing.assert_allclose(np.reshape(found, (3, 3)), expected, atol=1e-12)
+        after = tab.run(shape)
+        assert after != before
+        before = after
+    assert tab.complaints == []

@@ -37,13 +37,14 @@ Numbers = Mapping[sp.Symbol, sp.Float]
 Map = Callable[..., Vector]
 Evaluator = Callable[[Sequence[float]], float]
 
-_PALETTE = (BLUE, GOLD, GREY, RED, BRONZE)
+PALETTE = (BLUE, GOLD, GREY, RED, BRONZE)
 _SIZE = 0.95  # of the body drawn, from its centre of mass
 _LENGTHS = (1.0, 0.22, 0.3, 1.4, 0.6, 0.15, 0.8)  # of parameters without a value
 _TWO_LENGTHS = (0.6, 1.0)
 _MOST_TRIES = 500
 _IN_MATH = {"Abs": "fabs"}  # the functions that Python's math names otherwise
 _ROUND, _CURVED = 20, 8  # divisions of a coordinate within sines, and of any other that bends
+SWELL = "1.01"  # of a hole, so that its rim is seen on the surface
 _THICK = 0.03  # half the width of a line
 _PARTICLE = 0.09  # radius
 
@@ -174,9 +175,9 @@ def _faces(what: Distribution, numbers: Numbers, color: Color) -> Iterator[Face]
             corners = [vector_of(vertex.xreplace(numbers)) for vertex in what.vertices]
             yield from (Face(tuple(corners[k] for k in face), color) for face in what.faces)
         case Solid():
-            yield from _of_solid(what, numbers, color)
+            yield from of_solid(what, numbers, color)
         case Composite():
-            for part, tint in zip(what.parts, _PALETTE * len(what.parts), strict=False):
+            for part, tint in zip(what.parts, PALETTE * len(what.parts), strict=False):
                 yield from _placed(part, numbers, HOLE if part.hole else tint)
 
 
@@ -189,7 +190,7 @@ def vector_of(column: Iterable[Any]) -> Vector:
 def _placed(part: Part, numbers: Numbers, color: Color) -> Iterator[Face]:
     at = vector_of(part.at.xreplace(numbers))
     axes = [vector_of(part.turned[:, k].xreplace(numbers)) for k in range(3)]
-    swell = 1.01 if part.hole else 1.0  # its rim is seen on the surface
+    swell = float(SWELL) if part.hole else 1.0
     for face in _faces(part.what, numbers, color):
         moved = (combined((1, swell), (at, combined(corner, axes))) for corner in face.corners)
         yield Face(tuple(moved), HOLE if part.hole else face.color)
@@ -202,8 +203,20 @@ def _octahedron(centre: Vector, color: Color) -> Iterator[Face]:
         yield Face(corners if i * j * k > 0 else corners[::-1], color)
 
 
-def _of_solid(solid: Solid, numbers: Numbers, color: Color) -> Iterator[Face]:
-    point = _map(solid, numbers)
+def of_solid(
+    solid: Solid,
+    numbers: Numbers,
+    color: Color,
+    seen: dict[Vector, tuple[float, ...]] | None = None,
+) -> Iterator[Face]:
+    """The faces of a solid; `seen` is told the coordinates, from 0 to 1, of every point."""
+    mapped, known = _map(solid, numbers), {} if seen is None else seen
+
+    def point(*shares: float) -> Vector:
+        found = mapped(*shares)
+        known.setdefault(near(found), shares)
+        return found
+
     counts = [_divisions(solid, symbol) for symbol in solid.coordinates]
     if len(counts) == 1:
         yield from _tube([point(k / (2 * _ROUND)) for k in range(2 * _ROUND + 1)], color)
@@ -258,12 +271,12 @@ def _tiles(grid: Sequence[Sequence[Vector]], color: Color) -> Iterator[Face]:
     """The tiles of a grid, counterclockwise as seen along (row) × (column); none without area."""
     for lower, upper in pairwise(grid):
         for (a, b), (d, c) in zip(pairwise(lower), pairwise(upper), strict=True):
-            corners = tuple(dict.fromkeys(_near(p) for p in (a, d, c, b)))
+            corners = tuple(dict.fromkeys(near(p) for p in (a, d, c, b)))
             if len(corners) > 2 and _area(corners) > 1e-9:
                 yield Face(corners, color)
 
 
-def _near(point: Vector) -> Vector:
+def near(point: Vector) -> Vector:
     """Without the rounding errors that would part one corner into two."""
     x, y, z = (round(part, 9) + 0.0 for part in point)
     return (x, y, z)
