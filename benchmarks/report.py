@@ -105,7 +105,9 @@ def _processor() -> str:
     except OSError:
         lines = []
     names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.processor() or platform.machine()
+    flags = {flag for line in lines if line.startswith("flags") for flag in line.split()}
+    vectors = [f", {name}" for name in ("avx512f", "avx2") if name in flags][:1]
+    return (names[0] if names else platform.processor() or platform.machine()) + "".join(vectors)
 
 
 def spread_columns(unit: str, digits: int = 3) -> tuple[Column, ...]:

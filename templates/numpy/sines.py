@@ -21,11 +21,11 @@ def _sin_cos(angle):
     """
     if angle.size < _FEW or angle.dtype == np.float32:
         return np.sin(angle), np.cos(angle)
-    t = np.multiply(0.5, angle)
+    t = np.multiply(_HALF, angle)
     np.tan(t, out=t)
     cosine = t * t
-    scale = 1.0 + cosine
-    np.subtract(1.0, cosine, out=cosine)
+    scale = _ONE + cosine
+    np.subtract(_ONE, cosine, out=cosine)
     t += t
     t /= scale
     cosine /= scale
@@ -36,17 +36,17 @@ def _sin(angle):
     """The sine alone, as in `_sin_cos`."""
     if angle.size < _FEW or angle.dtype == np.float32:
         return np.sin(angle)
-    t = np.tan(0.5 * angle)
-    return (t + t) / (1.0 + t * t)
+    t = np.tan(_HALF * angle)
+    return (t + t) / (_ONE + t * t)
 
 
 def _cos(angle):
     """The cosine alone, as in `_sin_cos`."""
     if angle.size < _FEW or angle.dtype == np.float32:
         return np.cos(angle)
-    t = np.tan(0.5 * angle)
+    t = np.tan(_HALF * angle)
     square = t * t
-    return (1.0 - square) / (1.0 + square)
+    return (_ONE - square) / (_ONE + square)
 
 
 def _sharp(cosine, angle):
