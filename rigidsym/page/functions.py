@@ -4,28 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import sympy as sp
 
-from rigidsym.formula.tree import NOTHING, Symbol
 from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets.javascript import printer as javascript
-from rigidsym.mechanics.derivation import Derivation, FirstIntegral, Quantity, Step
+from rigidsym.mechanics.derivation import Derivation, FirstIntegral, Step
 from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import TIME
 from rigidsym.page.growing_body import SHARE, places_of
-from rigidsym.page.stage import has_turns
+from rigidsym.page.other_conventions import others
+from rigidsym.page.stage import has_turns, quantity_of, step_of, turns_step
 
 SHOWN = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
 OF_BODY = ("mass", "inertia_tensor")  # of one that grows with its parameters
-TURNS = "turns"
 FLOW = ("state_derivative", "first_integrals")
 CONDITIONS = ("conditions", "condition_slopes")
 
 _WITH_A_MARGIN = "rate_matrix_space"
-_NAMELESS = NOTHING
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -34,6 +32,7 @@ class Functions:
 
     derivation: Derivation  # of the quantities shown
     kernels: tuple[Kernel, ...]
+    others: tuple[dict[str, Any], ...] = ()  # the conventions to compare with
     integrals: tuple[FirstIntegral, ...] = ()  # of the equations of motion
 
     @property
@@ -75,9 +74,14 @@ def functions_of(derivation: Derivation) -> Functions:
     steps = tuple(replace(step, number=0) for step in (*shown.steps, *more))
     shown = replace(shown, arguments=tuple(whole.values()), steps=steps, functions=())
     program = lower(shown, javascript.RESERVED)
+    compared = list(others(derivation.model))
     return Functions(
         derivation=shown,
-        kernels=tuple(k for k in program.kernels if k.name != _WITH_A_MARGIN),
+        kernels=(
+            *(k for k in program.kernels if k.name != _WITH_A_MARGIN),
+            *(kernel for _, kernels in compared for kernel in kernels),
+        ),
+        others=tuple(data for data, _ in compared),
         integrals=derivation.first_integrals if flow else (),
     )
 
@@ -97,22 +101,20 @@ def _of_body(derivation: Derivation, places: Mapping[str, sp.ImmutableMatrix]) -
         return
     yield from (s for s in derivation.steps if s.quantity.name in (*OF_BODY, "centre_of_mass"))
     for name, place in places.items():
-        quantity = _quantity(name, "a point of the body", (SHARE.name, "parameters"))
+        quantity = quantity_of(name, "a point of the body", (SHARE.name, "parameters"))
         yield Step(number=0, quantity=quantity, expression=place, because="", proofs=())
 
 
 def _more(derivation: Derivation) -> Iterator[Step]:
     model = derivation.model
     if has_turns(model):
-        rows = [[*turn.direction, turn.angle, turn.angle.diff(TIME)] for turn in model.turns]
-        about = "axis, angle and rate of each turn, one turn a row"
-        yield _step(TURNS, sp.ImmutableMatrix(rows), about, ("q", "q_dot"), model)
+        yield turns_step(model)
     bound = sp.Matrix(_conditions(model))
     if bound:
         inputs = [*model.coordinates, *model.constants]
-        yield _step(CONDITIONS[0], bound, "constraints, which vanish", ("q",), model)
+        yield step_of(CONDITIONS[0], bound, "constraints, which vanish", ("q",), model)
         slopes = bound.jacobian(inputs)
-        yield _step(
+        yield step_of(
             CONDITIONS[1], slopes, "derivatives of the constraints by all inputs", ("q",), model
         )
 
@@ -123,24 +125,3 @@ def _conditions(model: RotationModel) -> tuple[sp.Expr, ...]:
         return model.constraints
     left_over = model.matrix * model.matrix.T - sp.eye(3)
     return tuple(left_over[i, j] for i in range(3) for j in range(i, 3))
-
-
-def _step(
-    name: str, matrix: sp.MatrixBase, about: str, inputs: tuple[str, ...], model: RotationModel
-) -> Step:
-    """A function that is evaluated like the quantities but is in no note."""
-    quantity = _quantity(name, about, (*inputs, "parameters") if model.constants else inputs)
-    return Step(
-        number=0, quantity=quantity, expression=matrix.as_immutable(), because="", proofs=()
-    )
-
-
-def _quantity(name: str, about: str, inputs: tuple[str, ...]) -> Quantity:
-    return Quantity(
-        name=name,
-        symbol=Symbol(name),
-        definition=_NAMELESS,
-        about=about,
-        unit="",
-        inputs=inputs,
-    )

@@ -82,6 +82,7 @@ def print_page(derivation: Derivation, document: Document) -> str:
         "bodies": {name: as_data(shape) for name, shape in shapes.items()},
         "body": body,
         "growing": growing(derivation.body),
+        "others": functions.others,
         "shown": [name for name, _, is_shown in choices if is_shown],
         "controls": [_data(control) for control in controls],
         "parameters": [starts.get(symbol, 0.0) for symbol in functions.constants],
@@ -109,6 +110,7 @@ def print_page(derivation: Derivation, document: Document) -> str:
             for group in groups
         ],
         values=[_value(step, printer, in_degrees=in_degrees) for step in functions.steps],
+        others=[(other["key"], other["title"]) for other in functions.others],
         integrals=[printer.span(integral.symbol) for integral in functions.integrals],
         pole=_pole(functions),
         stage=stage,

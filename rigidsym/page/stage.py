@@ -10,6 +10,7 @@ import sympy as sp
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula, Numeral, Symbol
+from rigidsym.mechanics.derivation import Quantity, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import AXES, TIME
@@ -97,3 +98,31 @@ def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Itera
         yield {"name": name, "rate_name": label(rate), "start": start, "radius": radius}
     if not turns:
         yield {"name": "", "rate_name": "", "start": None, "radius": RADII[0]}
+
+
+def turns_step(model: RotationModel) -> Step:
+    """The function of the axis, the angle and the rate of each turn."""
+    rows = [[*turn.direction, turn.angle, turn.angle.diff(TIME)] for turn in model.turns]
+    about = "axis, angle and rate of each turn, one turn a row"
+    return step_of("turns", sp.ImmutableMatrix(rows), about, ("q", "q_dot"), model)
+
+
+def step_of(
+    name: str, matrix: sp.MatrixBase, about: str, inputs: tuple[str, ...], model: RotationModel
+) -> Step:
+    """A function that is evaluated like the quantities but is in no note."""
+    quantity = quantity_of(name, about, (*inputs, "parameters") if model.constants else inputs)
+    return Step(
+        number=0, quantity=quantity, expression=matrix.as_immutable(), because="", proofs=()
+    )
+
+
+def quantity_of(name: str, about: str, inputs: tuple[str, ...]) -> Quantity:
+    return Quantity(
+        name=name,
+        symbol=Symbol(name),
+        definition=NOTHING,
+        about=about,
+        unit="",
+        inputs=inputs,
+    )

@@ -70,15 +70,34 @@ function showMargin() {
 // --- the figure
 
 /** The turns as the product has them, or the single turn that R is. */
-function turnsNow(body) {
-  if (kernels.turns) {
-    return evaluated("turns").map(([x, y, z, angle, rate]) => ({
+function turnsOf(rows, stage, q, body) {
+  if (rows) {
+    return rows.map(([x, y, z, angle, rate]) => ({
       axis: scaled(1 / length([x, y, z]), [x, y, z]), angle, rate,
     }));
   }
-  const vector = scene.vector.length ? scene.vector.map((place) => state.q[place]) : null;
-  const whole = wholeTurn(body, vector, state.q[scene.angle]);
+  const vector = stage.vector.length ? stage.vector.map((place) => q[place]) : null;
+  const whole = wholeTurn(body, vector, q[stage.angle]);
   return whole ? [{ ...whole, rate: 0 }] : [];
+}
+
+const otherGroup = at("figure-other").querySelector("g");
+
+/** The same orientation in another convention, beside the figure. */
+function compare(body, camera, options) {
+  const other = page.others.find(({ key }) => key === at("other").value);
+  at("board").classList.toggle("compared", Boolean(other));
+  if (!other) return;
+  const { key, title, names, unit, factor } = other;
+  const q = kernels[`from_${key}`]([0, 1, 2].map((row) => body.map((axis) => axis[row])));
+  const rows = kernels[`turns_${key}`]?.(q, q.map(() => 0));
+  const turns = turnsOf(rows, other.scene, q, body);
+  draw(otherGroup, posed(other.scene, turns, turns.length), camera, {
+    ...options, omega: null, trace: [], done: turns.length, letters: other.scene.letters, isLocked: false,
+  });
+  const digits = unit ? 1 : 4;
+  at("other-words").textContent = `${title}: ` +
+    names.map((name, k) => `${name} = ${fixed(q[k] / factor, digits)}${unit}`).join(", ");
 }
 
 let own = { of: null, body: page.bodies.own };
@@ -125,11 +144,12 @@ export function show() {
   const columns = [0, 1, 2].map((k) => matrix.map((row) => row[k]));
   const body = page.passive ? matrix : columns;
   if (!body.flat().every(Number.isFinite)) return; // the last figure stays
-  const turns = turnsNow(body);
+  const turns = turnsOf(kernels.turns && evaluated("turns"), scene, state.q, body);
   const pose = posed(scene, turns, view.done);
   const isWhole = view.done >= count;
   if (view.shown.has("trace") && isWhole) follow(pose, turns);
-  draw(group, pose, cameraAt(at("azimuth").valueAsNumber, at("elevation").valueAsNumber), {
+  const camera = cameraAt(at("azimuth").valueAsNumber, at("elevation").valueAsNumber);
+  const options = {
     shown: view.shown,
     body: at("body").value === "own" ? grown() : page.bodies[at("body").value],
     omega: isWhole ? omega : null,
@@ -138,7 +158,9 @@ export function show() {
     done: view.done,
     letters: scene.letters,
     isLocked,
-  });
+  };
+  draw(group, pose, camera, options);
+  compare(body, camera, options);
 }
 
 /** Read the numbers aloud once they have come to rest, and keep them in the address. */
@@ -165,6 +187,7 @@ function remember() {
   }
   words.set("view", [at("azimuth").value, at("elevation").value].join(" "));
   words.set("body", at("body").value);
+  if (at("other").value) words.set("compare", at("other").value);
   words.set("show", [...view.shown].join(" "));
   if (view.done < count) words.set("turns", String(view.done));
   history.replaceState(null, "", `#${words}`);
@@ -184,6 +207,7 @@ function recall() {
   if (Number.isFinite(azimuth)) at("azimuth").value = azimuth;
   if (Number.isFinite(elevation)) at("elevation").value = elevation;
   if (page.bodies[words.get("body")] || words.get("body") === "none") at("body").value = words.get("body");
+  at("other").value = page.others.some(({ key }) => key === words.get("compare")) ? words.get("compare") : "";
   if (words.has("show")) setShown(words.get("show").split(" "));
   const [done] = numbers("turns");
   setDone(Number.isFinite(done) ? done : count);
@@ -254,7 +278,7 @@ function change(act) {
 for (const box of boxes) {
   box.addEventListener("change", change(() => setShown(boxes.filter((b) => b.checked).map((b) => b.dataset.show))));
 }
-for (const id of ["azimuth", "elevation", "body"]) at(id).addEventListener("input", change(() => {}));
+for (const id of ["azimuth", "elevation", "body", "other"]) at(id).addEventListener("input", change(() => {}));
 at("turns")?.addEventListener("input", change(() => {
   stepping = null;
   setDone(at("turns").valueAsNumber);
@@ -359,6 +383,7 @@ at("reset").addEventListener("click", () => {
   at("azimuth").value = scene.azimuth;
   at("elevation").value = scene.elevation;
   at("body").value = page.body;
+  at("other").value = "";
   at("speed").value = "1";
   setShown(page.shown);
   setDone(count);

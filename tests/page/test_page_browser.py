@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 from dataclasses import replace
 from functools import cache
@@ -640,4 +641,25 @@ def test_a_body_grows_with_the_sliders_of_its_lengths(tab, tmp_path):
         after = tab.run(shape)
         assert after != before
         before = after
+    assert tab.complaints == []
+
+
+@pytest.mark.parametrize("other", ["ZYX", "unit_quaternion", "rotation_vector"])
+def test_another_convention_shows_the_same_orientation(tab, other, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    assert tab.run("getComputedStyle(document.getElementById('figure-other')).display") == "none"
+    text = tab.run(
+        "(() => { const e = document.getElementById('other');"
+        f"e.value = {other!r}; e.dispatchEvent(new Event('input'));"
+        "return document.getElementById('other-words').textContent; })()"
+    )
+    shown = [float(n.replace("−", "-")) for n in re.findall(r"= ([−\d.]+)", text)]
+    factor = np.pi / 180 if other == "ZYX" else 1.0
+    model = rs.derive(other, "rotation_matrix").model
+    values = dict(zip(model.coordinates, map(float, np.array(shown) * factor), strict=True))
+    found = np.array(model.matrix.evalf(subs=values), dtype=float)
+    matrix = np.reshape(tab.run(NUMBERS)["rotation_matrix-value"], (3, 3))
+    np.testing.assert_allclose(found, matrix, atol=3e-3)
+    tab.click("#reset")
+    assert tab.run("document.getElementById('other').value") == ""
     assert tab.complaints == []

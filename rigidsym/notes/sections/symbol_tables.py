@@ -182,7 +182,7 @@ def _call(derivation: Derivation, name: str) -> Iterator[str]:
 def program(derivation: Derivation) -> str:
     """Lines of Python that derive it again and call a function of it; "" where no text can."""
     request = dict(derivation.model.request)
-    if not request or all(step.quantity.name != _SHOWN for step in derivation.steps):
+    if "sequence" not in request or all(step.quantity.name != _SHOWN for step in derivation.steps):
         return ""
     options = {_OPTIONS.get(key, key): value for key, value in request.items() if value}
     rotation = f"rs.rotation_from({options.pop('sequence')!r}"

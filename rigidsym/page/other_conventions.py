@@ -1,0 +1,56 @@
+"""The same orientation in other conventions: their coordinates from R, and their turns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import pi
+from typing import Any
+
+from rigidsym.kernels.ir import Kernel
+from rigidsym.kernels.lowering.lower import lower
+from rigidsym.kernels.targets.javascript import printer as javascript
+from rigidsym.mechanics.conversions.conversions import conversions_of
+from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.derive import derive
+from rigidsym.models.rotation import RotationModel
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.notes.formula.derivation_letters import letters_of
+from rigidsym.page.stage import has_turns, label, stage_of, turns_step
+
+_COMPARED = ("ZXZ", "ZYX", "unit_quaternion", "rotation_vector")
+_TITLES = {"unit_quaternion": "Quaternion", "rotation_vector": "Rotation vector"}
+_FROM_MATRIX = "from_rotation_matrix"
+
+
+def others(model: RotationModel) -> Iterator[tuple[dict[str, Any], tuple[Kernel, ...]]]:
+    """What the script needs of each other convention, and the functions behind it."""
+    for name in _COMPARED:
+        other = rotation_from(name)
+        if other.matrix != model.matrix:
+            derivation = derive(other, ("rotation_matrix",))
+            yield _data(name, derivation), tuple(_kernels(name, derivation))
+
+
+def _data(name: str, derivation: Derivation) -> dict[str, Any]:
+    q = derivation.argument("q")
+    letters = letters_of(derivation.arguments)
+    are_angles = has_turns(derivation.model)
+    return {
+        "key": name,
+        "title": _TITLES.get(name, name),
+        "names": [label(symbol) for symbol in q.notation],
+        "unit": "°" if are_angles else "",
+        "factor": pi / 180 if are_angles else 1.0,
+        "scene": stage_of(derivation.model, letters),
+    }
+
+
+def _kernels(name: str, derivation: Derivation) -> Iterator[Kernel]:
+    steps = (turns_step(derivation.model),) if has_turns(derivation.model) else ()
+    conversions = conversions_of(derivation.model)
+    shown = replace(derivation, steps=steps, singularities=None)
+    program = lower(shown, javascript.RESERVED, conversions=conversions)
+    for kernel in program.kernels:
+        if kernel.name in (_FROM_MATRIX, "turns"):
+            yield replace(kernel, name=f"{kernel.name.removesuffix('_rotation_matrix')}_{name}")
