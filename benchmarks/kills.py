@@ -134,14 +134,10 @@ class Trial:
 
     def _again(self) -> str:
         """The command run to its end over what is left."""
-        status = _wait(_start((*self.words, *self._force), self.place))
+        status = _wait(_start(self.words, self.place))
         if status or _files(self.place) != self.after:
             return f"the next run ends with {status}"
         return ""
-
-    @property
-    def _force(self) -> tuple[str, ...]:
-        return () if self.words[0] == "eval" else ("--force",)
 
     def _prepare(self) -> None:
         shutil.rmtree(self.place, ignore_errors=True)

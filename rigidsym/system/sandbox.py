@@ -16,6 +16,7 @@ from jinja2 import (
     TemplateError,
     TemplateNotFound,
     TemplateSyntaxError,
+    Undefined,
     nodes,
 )
 from jinja2.exceptions import SecurityError
@@ -69,6 +70,7 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
             "loader": FunctionLoader(lambda name: self._load(find, name)),
             "undefined": StrictUndefined,
             "autoescape": False,
+            "finalize": _printable,
             "keep_trailing_newline": True,
             "trim_blocks": True,
             "lstrip_blocks": True,
@@ -187,6 +189,13 @@ def _joined(items: Iterable[Any], separator: str = "") -> str:
     texts = [str(item) for item in items]
     _check_length(sum(map(len, texts)) + len(separator) * len(texts))
     return separator.join(texts)
+
+
+def _printable(value: Any) -> Any:
+    """What a template prints; a function, with its address in memory, is nothing to print."""
+    if callable(value) and not isinstance(value, Undefined):
+        raise SecurityError("a function is no text")
+    return value
 
 
 def _check_length(length: int) -> None:

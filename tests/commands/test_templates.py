@@ -44,7 +44,7 @@ def test_an_own_template_may_include_others(tmp_path: Path):
         (
             "a\n{{ titel }}",
             2,
-            "'titel' is undefined; names here: sections, sources, subtitle, title",
+            "'titel' is undefined; names here: byline, sections, sources, subtitle, title",
         ),
         ("{% for s in sections %}\n\n{{ s.name }}{% endfor %}", 3, "has no attribute 'name'"),
         ("{% if x %}", 1, "Unexpected end of template"),
@@ -68,6 +68,8 @@ def test_an_own_template_may_include_others(tmp_path: Path):
         ("{{ ['a'].append('b') }}", 1, "access to attribute 'append'"),
         ("\n{% for x in 1 %}{% endfor %}", 2, "'int' object is not iterable"),
         ("{{ title|tojson }}", 1, "No filter named 'tojson'"),
+        ("\n{{ range }}", 2, "a function is no text"),
+        ("{{ ''.join }}", 1, "access to attribute 'join'"),
         ("{{ 'a' * 9999999999 }}", 1, "templates place text; * is not for them"),
     ],
 )

@@ -10,6 +10,7 @@ import pytest
 import sympy as sp
 from hypothesis import given, strategies as st
 
+import rigidsym as rs
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.quantities.arguments import arguments_of
@@ -18,6 +19,7 @@ from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.parametrisations import AxisAngle, GibbsVector, RotationVector, UnitQuaternion
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import time_function
+from rigidsym.models.solids import shaped
 from rigidsym.notes.document.document import plain
 from rigidsym.notes.figure.camera import STANDARD, camera, combined, cross, dot, turned, unit
 from rigidsym.notes.figure.drawing import Box, Drawing, Ellipse, Label, Stroke, beyond, placed
@@ -306,3 +308,10 @@ def test_the_axes_in_tikz_have_names_that_can_be_used():
     names = re.findall(r"\\coordinate \((.*?)\)", text)
     assert names == ["O", "x", "y", "z", "x'", "y'", "z'", "N"]
     assert r"\draw[space, ->] (O) -- (x);" in text
+
+
+def test_a_turn_that_is_none_and_a_distant_body_are_drawn():
+    cone = shaped("cone", sp.symbols("a h"), mass=sp.Symbol("M"))
+    body = rs.body_of(rs.Composite(parts=(rs.Part(what=cone, at=sp.ImmutableMatrix([99, 0, 0])),)))
+    motion = rs.derive("z(k*v) x(pi/3-pi/3) [1,2,3](point)", "rotation_matrix", body=body)
+    assert "<svg" in motion.note(with_kernels=False).html()
