@@ -23,6 +23,7 @@ from rigidsym.algebra.ring import Monomial, Quotient
 from rigidsym.algebra.shorten import FactoredTerm, Rule, collect, folded, rules, shortest
 from rigidsym.errors import AlgebraError
 
+_SHORT_SUM = 12  # terms of a divisor that is factored, since that is done once for many entries
 _MORE_TERMS = 2  # that a sum over one denominator may have; with more it is hardly ever shorter
 
 
@@ -50,6 +51,7 @@ class Presenter:
         self._matrices: dict[tuple[tuple[Row, ...], PolyElement], sp.ImmutableMatrix] = {}
         self._products: dict[tuple[Monomial, tuple[FactoredTerm, ...]], sp.Expr] = {}
         self._known: dict[tuple[PolyElement, PolyElement], sp.Expr] = {}
+        self._factors: dict[PolyElement, list[tuple[PolyElement, int]]] = {}
 
     def matrix(
         self, matrix: RingMatrix, denominator: PolyElement | None = None
@@ -87,7 +89,7 @@ class Presenter:
         above = shortest(self.ring, value.numerator)
         below = shortest(self.ring, value.denominator)
         if len(below) > 1:
-            _, above, below = above.cofactors(below)
+            above, below = self._cancelled(above, below)
         if len(below) > 1:
             over, under = _leading_number(above), _leading_number(below)
             number = sp.Rational(*(over / under).as_integer_ratio())
@@ -97,6 +99,22 @@ class Presenter:
             return min(plain, *others, key=_length) if others else plain
         ((divisor, scale),) = below.items()
         return self._terms({_divide(m, divisor): c for m, c in above.items()}, _fraction(scale))
+
+    def _cancelled(self, above: PolyElement, below: PolyElement) -> tuple[PolyElement, PolyElement]:
+        """Both without their common factors; many entries are divided by one short sum."""
+        if len(below) > _SHORT_SUM:
+            _, above, below = above.cofactors(below)
+            return above, below
+        factors = self._factors.get(below)
+        if factors is None:
+            factors = self._factors[below] = below.factor_list()[1]
+        for factor, power in factors:
+            for _ in range(power):
+                quotient, rest = above.div(factor)
+                if rest:
+                    break
+                above, below = quotient, below.exquo(factor)
+        return above, below
 
     def _is_plain_sum(self, expression: sp.Expr) -> bool:
         """Not so a sum whose root is in the ring too: what it divides, half its powers divide."""
