@@ -16,7 +16,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.formula.display import broken, widest
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.scalars import formula_of
+from rigidsym.formula.scalars import factored, formula_of
 
 _LETTERS = "khmb"  # of the names; one that nothing in the notation is called by is taken
 _OVERHEAD = 3.0  # ems that a definition takes beside its formula
@@ -42,7 +42,9 @@ class Namer:
         """The named parts in order of use, and the matrix in terms of them; every line of both
         is at most `room` ems wide."""
         self._known_before = len(self._known)
-        entries = [self.letters.shortened(entry) for entry in matrix]
+        factor, inside = factored(matrix)  # what stands before the matrix needs no name
+        before = self.letters.shortened(factor)
+        entries = [self.letters.shortened(entry) for entry in inside]
         moving = sp.Tuple(*entries).atoms(AppliedUndef, sp.Derivative)
         as_symbols = {part: sp.Symbol(f"at_{k}") for k, part in enumerate(sorted(moving, key=str))}
         still = [entry.xreplace(as_symbols) for entry in entries]  # a rate is not taken apart
@@ -51,7 +53,7 @@ class Namer:
         parts = [(symbol, value.xreplace(back)) for symbol, value in found]
         parts, entries = self._worth_a_name(parts, [e.xreplace(back) for e in short])
         parts, entries = self._breakable(parts, entries, room)
-        return tuple(parts), sp.ImmutableMatrix(*matrix.shape, entries)
+        return tuple(parts), sp.ImmutableMatrix(*matrix.shape, [before * e for e in entries])
 
     def forget(self) -> None:
         """Free the names that were given last, where they come to stand nowhere."""
