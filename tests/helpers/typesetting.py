@@ -28,6 +28,22 @@ def pages_of(latex: str) -> int:
     return len(re.findall(rb"/Type\s*/Page\b(?!s)", made.pdf))
 
 
+_COUNTED = re.compile(
+    r"\\setcounter\{equation\}\{(\d+)\}|\\(?:begin\{resultof\}|numbered)\{[^:}]*:(\w+)\}"
+)
+
+
+def numbered_by_tex(latex: str) -> dict[str, int]:
+    """The numbers that TeX gives to equations, by their labels without the name of the note."""
+    numbers: dict[str, int] = {}
+    count = 0
+    for jump, label in _COUNTED.findall(latex):
+        count = int(jump) if jump else count + 1
+        if label:
+            numbers[label] = count
+    return numbers
+
+
 def sheet_of(document: Document) -> str:
     """The summary of a note, with the numbers of equations but not the equations."""
     whole = print_latex(document)
