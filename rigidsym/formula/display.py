@@ -6,8 +6,9 @@ that typesets can write the result.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import sympy as sp
@@ -92,9 +93,18 @@ def display(
 ) -> Display:
     """The equation in the first form that fits into `width` ems; a listing where none does.
 
-    A result is in a box, which is part of its width. `pen` is that of LaTeX by default.
+    A result is in a box, which is part of its width. `pen` is that of LaTeX by default, in the
+    notation of the letters.
     """
-    setter = _Setter(letters, pen or LatexPen(letters.notation))
+    made: Callable[..., SheetPen] = type(pen) if pen else LatexPen
+    return _displayed(equation, letters, width, made)
+
+
+@lru_cache(maxsize=512)  # what was fitted is printed, often in several formats
+def _displayed(
+    equation: Equation, letters: Letters, width: float, pen: Callable[..., SheetPen]
+) -> Display:
+    setter = _Setter(letters, pen(letters.notation))
     if not equation.is_result:
         return setter.display(equation, width)
     inside = setter.display(equation, width - BOX)

@@ -177,7 +177,7 @@ class SheetPen(Pen):
         return atom(self.spelt_root(inside.text), inside.width + widths.ROOT, height=height)
 
     def matrix(self, node: Matrix) -> Piece:
-        rows = [[self.node(entry) for entry in line] for line in node.rows]
+        rows = [[self.write(entry) for entry in line] for line in node.rows]
         columns = [max(entry.width for entry in column) for column in zip(*rows, strict=True)]
         gaps = widths.COLUMN_GAP * (len(columns) - 1)
         width = sum(columns) + gaps + widths.TALL_BRACKETS

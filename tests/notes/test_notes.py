@@ -292,7 +292,7 @@ def test_names_of_entries():
     assert names["inverse_rate_matrix_space"][1] == formula("(W^{-1})_{12}")
     assert names["angular_velocity_body"][2] == formula(r"\Omega'_3")
     assert names["rates_from_angular_velocity_body"][1].text == "θ\u0307"
-    assert names["angular_acceleration_body"][0].latex == r"\dot{\Omega}'_1"
+    assert names["angular_acceleration_body"][0].latex == r"\dot{\Omega}{}'_1"
 
 
 # --- escaping ---
