@@ -259,6 +259,24 @@ def test_neither_threads_nor_the_place_in_a_batch_change_a_bit_of_numba():
     np.testing.assert_array_equal(rotation_rate(q[5:], q_dot[5:]), found[5:])
 
 
+@pytest.mark.skipif(bool(TARGETS["numba"].missing), reason=TARGETS["numba"].missing)
+def test_functions_of_numba_are_called_in_compiled_functions():
+    from numba import njit
+
+    velocity = module("ZXZ", "numba").angular_velocity_body
+
+    @njit
+    def both(q, q_dot):
+        return velocity(q[0], q_dot[0]), velocity(q, q_dot[0])
+
+    q, q_dot = np.random.default_rng(1).uniform(-3, 3, (2, 4, 3))
+    one, rows = both(q, q_dot)
+    np.testing.assert_allclose(one, velocity(q[0], q_dot[0]), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(rows, velocity(q, q_dot[0]), rtol=0, atol=1e-15)
+    with pytest.raises(ValueError, match="wrong number of components"):
+        both(q[:, :2], q_dot)
+
+
 def test_a_module_with_no_argument_but_those_of_conversions_is_printed():
     motion = rs.derive("axis_angle", only=["principal_axes"], body=rs.solid("cylinder"))
     for target in TARGETS:

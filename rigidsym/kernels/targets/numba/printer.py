@@ -65,6 +65,37 @@ def _compiled(kernel: Kernel) -> dict[str, Any]:
         "name": kernel.name,
         "rows": ", ".join(rows),
         "body": "\n".join(f"        {line}" for line in lines),
+        "in_njit": _in_njit(kernel) if _is_plain(kernel) else None,
+    }
+
+
+def _is_plain(kernel: Kernel) -> bool:
+    """Whether its arguments are vectors, and its result is one."""
+    kinds = (a.is_matrix or a.is_optional or a.is_scalar for a in kernel.arguments)
+    return not kernel.parts and not any(kinds)
+
+
+def _in_njit(kernel: Kernel) -> dict[str, str]:
+    """The function as other compiled functions call it, on one orientation or on rows."""
+    vectors = [(argument.name, len(argument.components)) for argument in kernel.arguments]
+    names = ", ".join(name for name, _ in vectors)
+    columns = [f"{name}[:, {k}]" for name, width in vectors for k in range(width)]
+    columns += [f"_found[:, {k}]" for k in range(len(kernel.outputs))]
+    called = ", ".join(f"np.atleast_2d({name})" for name, _ in vectors)
+    rows = f"_{kernel.name}_rows({called})"
+    shape = ", ".join(map(str, kernel.shape))
+    return {
+        "vectors": names,
+        "count": ", ".join(f"{name}.shape[0]" for name, _ in vectors),
+        "wide": "\n".join(
+            f"    {name} = np.broadcast_to({name}, (_count, {width}))" for name, width in vectors
+        ),
+        "fits": " and ".join(f"{name}.shape[1] == {width}" for name, width in vectors),
+        "columns": ", ".join(columns),
+        "entries": str(len(kernel.outputs)),
+        "is_one": " and ".join(f"{name}.ndim == 1" for name, _ in vectors),
+        "one": f"{rows}.reshape({shape})" if shape else f"{rows}[0, 0]",
+        "many": f"{rows}.reshape(-1, {shape})" if shape else f"{rows}[:, 0]",
     }
 
 
