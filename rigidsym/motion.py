@@ -34,6 +34,7 @@ from rigidsym.system.limits import time_limit
 if TYPE_CHECKING:
     from rigidsym.notes.document.own_text import OwnText
     from rigidsym.notes.note import Note
+    from rigidsym.simulation.ensemble import Ensemble
     from rigidsym.simulation.trajectory import Trajectory
 
 QUANTITIES = (
@@ -125,6 +126,21 @@ class Motion(Derivation):
         from rigidsym.simulation.solver import simulate
 
         return simulate(self, initial, parameters, t_end, **options)
+
+    def simulate_many(
+        self,
+        initial: Mapping[str, Any],
+        parameters: Mapping[str, Any],
+        t_end: float,
+        **options: Any,
+    ) -> Ensemble:
+        """Many motions at once: values of `initial` and `parameters` may be arrays, (m,).
+
+        For the options see `rigidsym.simulation.ensemble.simulate_ensemble`.
+        """
+        from rigidsym.simulation.ensemble import simulate_ensemble
+
+        return simulate_ensemble(self, initial, parameters, t_end, **options)
 
     def page(self, *, with_kernels: bool = True) -> str:
         """One HTML file that needs no network: the note, and a figure with sliders."""

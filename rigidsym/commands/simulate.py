@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
@@ -18,6 +18,10 @@ from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
 from rigidsym.simulation.solver import METHODS, OMEGA, no_rotation
 from rigidsym.system.progress import bar
+
+if TYPE_CHECKING:
+    from rigidsym.simulation.ensemble import Ensemble
+    from rigidsym.simulation.trajectory import Trajectory
 
 _NUMBERS = {"type": NAMED_NUMBER, "multiple": True, "metavar": "NAME=NUMBER"}
 
@@ -42,6 +46,15 @@ class SimulationOptions:
         help="lie takes steps in the rotation group; exact is for free bodies.",
     )
     samples: int = option("--samples", type=click.IntRange(2), default=1001, show_default=True)
+    ensemble: int | None = option(
+        "--ensemble", type=click.IntRange(1), help="Simulate this many motions at once."
+    )
+    spread: tuple[tuple[str, float], ...] = option(
+        "--spread",
+        **_NUMBERS,
+        help="With --ensemble: standard deviation of an initial value or a parameter.",
+    )
+    seed: int = option("--seed", type=int, default=0, show_default=True, help="Of --ensemble.")
     out: Path | None = option("--out", type=FILE, help="CSV, NPY or Parquet file.")
     plot: Path | None = option("--plot", type=FILE, help="PNG, SVG or PDF picture.")
 
@@ -62,6 +75,9 @@ def command(source: str, options: SimulationOptions) -> None:
         check_ending(options.out)
     motion = motion_of(read(source))
     start = _start(motion, dict(options.initial))
+    if options.ensemble is not None:
+        _ensemble(motion, start, options)
+        return
     with bar(motion.name) as progress:
         found = motion.simulate(
             start,
@@ -71,15 +87,40 @@ def command(source: str, options: SimulationOptions) -> None:
             method=options.method,
             progress=progress,
         )
-    click.echo(found.report())
-    if options.out is not None:
-        columns = found.columns()
-        rows = np.column_stack([*columns.values()])
-        with table_writer(options.out, tuple(columns), rows.dtype) as writer:
-            writer.append(rows)
-        click.echo(options.out)
+    _reported(found, options.out)
     if options.plot is not None:
         click.echo(found.plot(options.plot))
+
+
+def _ensemble(motion: Motion, start: dict[str, Any], options: SimulationOptions) -> None:
+    """Motions from initial values and parameters with normally distributed deviations."""
+    if options.plot is not None:
+        raise click.UsageError("--plot shows one motion; leave --ensemble out")
+    generator = np.random.default_rng(options.seed)
+    given: tuple[dict[str, Any], dict[str, Any]] = (start, dict(options.constants))
+    for name, deviation in options.spread:
+        place = next((values for values in given if name in values), None)
+        if place is None:
+            raise click.UsageError(f"--spread {name}: no value of it is given")
+        place[name] = generator.normal(place[name], deviation, options.ensemble)
+    if set(start).isdisjoint(name for name, _ in options.spread):
+        first = next(iter(start))
+        start[first] = np.full(options.ensemble or 1, start[first])
+    with bar(motion.name) as progress:
+        found = motion.simulate_many(
+            *given, options.t_end, samples=options.samples, progress=progress
+        )
+    _reported(found, options.out)
+
+
+def _reported(found: Trajectory | Ensemble, out: Path | None) -> None:
+    click.echo(found.report())
+    if out is not None:
+        columns = found.columns()
+        rows = np.column_stack([*columns.values()])
+        with table_writer(out, tuple(columns), rows.dtype) as writer:
+            writer.append(rows)
+        click.echo(out)
 
 
 def _start(motion: Motion, given: Mapping[str, float]) -> dict[str, Any]:

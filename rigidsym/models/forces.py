@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 from types import MappingProxyType
 from typing import Any
 
@@ -19,6 +20,7 @@ from rigidsym.text.names import check_name
 
 METHODS = ("lagrange", "euler")
 OMEGA_BODY = tuple(sp.Symbol(f"Omega_body_{k}") for k in (1, 2, 3))
+_LONG, _ALIKE = 4, 0.85  # letters of a name, and the share that two names have in common
 _NONE: Mapping[Any, sp.Expr] = MappingProxyType({})
 
 
@@ -137,5 +139,15 @@ def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
 def _read(given: sp.Expr | str | int, names: Mapping[str, sp.Expr]) -> sp.Expr:
     if not isinstance(given, str):
         return symbolic(given, "a potential or a force")
+    for name in set(names_in(given)) - set(names):
+        _check_spelling(name, names)
     used = {name: names.get(name) or sp.Symbol(check_name(name)) for name in names_in(given)}
     return parse_expression(given, used)
+
+
+def _check_spelling(name: str, names: Mapping[str, sp.Expr]) -> None:
+    """Raises ModelError for a constant whose name is all but that of a coordinate or rate."""
+    if len(name) >= _LONG and not any(letter.isdigit() for letter in name):
+        near = get_close_matches(name, names, n=1, cutoff=_ALIKE)
+        if near:
+            raise ModelError(f"unknown name {name}; did you mean {near[0]}?")

@@ -41,7 +41,7 @@ class Problem:
         self.is_alone = alone  # so that a quaternion can take the place of the coordinates
         self.kernels: ModuleType = generate(derivation, "numpy", conversions=alone).load()
         self.constants = self.given("state_derivative")
-        self.start = self._start(initial)
+        self.start = self.state_of(initial)
         if (
             np.abs(self.rotation(self.start) @ self.rotation(self.start).T - np.eye(3)).max()
             > _UNIT
@@ -71,7 +71,7 @@ class Problem:
         held += [body.inertia] if body else []
         return set().union(*(expression.free_symbols for expression in held))
 
-    def _start(self, initial: Mapping[str, Any]) -> Array:
+    def state_of(self, initial: Mapping[str, Any]) -> Array:
         """The state at t = 0, from coordinates and rates by name or the angular velocity."""
         rates = (OMEGA,) if OMEGA in initial else self.names["q_dot"]
         wanted = (*self.coordinates, *rates)

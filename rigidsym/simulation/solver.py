@@ -54,7 +54,7 @@ def simulate(
         import scipy.integrate  # noqa: F401
     except ModuleNotFoundError as error:
         raise MissingExtra("a simulation", "simulate") from error
-    problem = Problem(_with_motion(derivation), initial, parameters)
+    problem = Problem(with_motion(derivation), initial, parameters)
     times = np.linspace(0.0, t_end, samples)
     if method == "exact":
         return _exact(problem, times)
@@ -77,7 +77,7 @@ def no_rotation(model: RotationModel) -> dict[str, float]:
     return dict.fromkeys((x.func.__name__ for x in q), 0.0)
 
 
-def _with_motion(derivation: Derivation) -> Derivation:
+def with_motion(derivation: Derivation) -> Derivation:
     """The quantities that a simulation needs; a body on which nothing acts is free."""
     body = derivation.body
     if body is None:
