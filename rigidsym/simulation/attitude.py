@@ -12,8 +12,6 @@ from dataclasses import replace
 from math import cos, sin, sqrt, tan
 
 import numpy as np
-from scipy.integrate import DOP853
-from scipy.spatial.transform import Rotation
 
 from rigidsym.errors import ModelError
 from rigidsym.mechanics.derive import derive
@@ -114,10 +112,13 @@ class _Step:
     """One step in the group: the quaternion is multiplied by the exponential of a vector."""
 
     def __init__(self, motion: Attitude) -> None:
+        from scipy.integrate import DOP853
+
         self.motion = motion
         self.tensor = motion.problem.inertia
         self.inverse = np.linalg.inv(self.tensor)
         self.nodes = DOP853.C[: DOP853.n_stages]
+        self.sums = DOP853.B
         self.weights = DOP853.A[: DOP853.n_stages, : DOP853.n_stages]
 
     def __call__(
@@ -133,9 +134,9 @@ class _Step:
                 now = momentum + h * (self.weights[k, :k] @ torques[:k])
                 torques[k] = self._torque(t + node * h, turned, now)
             slopes[k] = _inverse_slope(vector, self.omega(turned, now))
-        found = _times(quaternion, _exponential(h * (DOP853.B @ slopes)))
+        found = _times(quaternion, _exponential(h * (self.sums @ slopes)))
         found /= np.linalg.norm(found)
-        return found, momentum + h * (DOP853.B @ torques)
+        return found, momentum + h * (self.sums @ torques)
 
     def omega(self, quaternion: Array, momentum: Array) -> Array:
         """Ω′ = I′⁻¹ Rᵀ L"""
@@ -198,5 +199,7 @@ def _cross(one: Array, other: Array) -> Array:
 
 def quaternions_of(rotation: Array) -> Array:
     """Unit quaternions of rotation matrices, (n, 4); SciPy's choice of the larger component."""
+    from scipy.spatial.transform import Rotation
+
     found = Rotation.from_matrix(rotation).as_quat()
     return np.asarray(found[:, [3, 0, 1, 2]])

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ellipj, ellipkinc, elliprf, elliprj
 
 Array = NDArray[np.float64]
 _ROUNDING = 1e-15  # relative: by which L and Ω may differ in direction and count as parallel
@@ -47,6 +46,8 @@ def _in_principal_axes(
     moments: Array, start: Array, places: tuple[int, int, int], t: Array
 ) -> tuple[tuple[Array, Array, Array], Array]:
     """Ω′ along a, b and c, and the angle by which c has precessed about L."""
+    from scipy.special import ellipj, ellipkinc
+
     a, b, c = places
     A, B, C = moments[[a, b, c]]
     # the combinations of E and L, from the components themselves so that no digits cancel
@@ -76,6 +77,8 @@ def _third_kind(n: float, amplitude: Array, m: float) -> Array:
 
 
 def _near(n: float, amplitude: Array, m: float) -> Array:
+    from scipy.special import elliprf, elliprj
+
     s, c = np.sin(amplitude), np.cos(amplitude)
     x, y = c * c, 1 - m * s * s
     return np.asarray(s * elliprf(x, y, 1.0) + n / 3 * s**3 * elliprj(x, y, 1.0, 1 - n * s * s))

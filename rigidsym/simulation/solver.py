@@ -14,6 +14,8 @@ from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel
+from rigidsym.simulation.attitude import Attitude, quaternions_of
+from rigidsym.simulation.free_body import free_motion
 from rigidsym.simulation.problem import OMEGA as OMEGA, POLE, Problem
 from rigidsym.simulation.trajectory import Array, Trajectory
 
@@ -59,8 +61,6 @@ def simulate(
     if method == "exact":
         return _exact(problem, times)
     if method == "lie":
-        from rigidsym.simulation.attitude import Attitude
-
         attitude = Attitude(problem)
         states = attitude.states(problem.start[None], attitude.in_group(times, progress))
         return problem.trajectory(times, states)
@@ -112,8 +112,6 @@ def _integrated(
             at, ended = times[-1], _ending(name, solved)
     rest = times[len(found[0]) if found else 0 :]
     if not ended and len(rest):
-        from rigidsym.simulation.attitude import Attitude
-
         attitude = Attitude(problem)
         remarks.append(
             f"near a pole of the coordinates at t = {at:.6g} s; from there on as a quaternion"
@@ -163,9 +161,6 @@ def _ending(name: str, solved: Any) -> str:
 
 def _exact(problem: Problem, times: Array) -> Trajectory:
     """The free body in elliptic functions."""
-    from rigidsym.simulation.attitude import Attitude, quaternions_of
-    from rigidsym.simulation.free_body import free_motion
-
     attitude = Attitude(problem)
     if not attitude.is_free:
         raise ModelError(f"{problem.derivation.name}: the exact solution is that of a free body")
