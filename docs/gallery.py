@@ -120,7 +120,10 @@ class Item:
         made = ENTRIES / f"{self._slug}.html"
         stamp, _, html = made.read_text("utf-8").partition("\n") if made.is_file() else ("", "", "")
         if stamp != state_of_the_code():
-            html = self._made(output_of(replace(self.spec(), kernels=("numpy",), note=("html",))))
+            spec = replace(self.spec(), kernels=(), note=("html",))
+            if self.kind != "file":  # a file may abbreviate what several quantities share
+                spec = replace(spec, quantities=(self.key,))
+            html = self._made(output_of(spec))
         title, _, rest = html.partition("\n")
         name, _, body = rest.partition("\n")
         return "\n\n".join([f"{'#' * level} {escaped(title)}", body, _links(name)])
