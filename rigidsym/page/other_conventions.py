@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from math import pi
 from typing import Any
 
@@ -26,10 +27,15 @@ _FROM_MATRIX = "from_rotation_matrix"
 def others(model: RotationModel) -> Iterator[tuple[dict[str, Any], tuple[Kernel, ...]]]:
     """What the script needs of each other convention, and the functions behind it."""
     for name in _COMPARED:
-        other = rotation_from(name)
-        if other.matrix != model.matrix:
-            derivation = derive(other, ("rotation_matrix",))
-            yield _data(name, derivation), tuple(_kernels(name, derivation))
+        if rotation_from(name).matrix != model.matrix:
+            yield _other(name)
+
+
+@cache
+def _other(name: str) -> tuple[dict[str, Any], tuple[Kernel, ...]]:
+    """Of one convention, once for all pages."""
+    derivation = derive(rotation_from(name), ("rotation_matrix",))
+    return _data(name, derivation), tuple(_kernels(name, derivation))
 
 
 def _data(name: str, derivation: Derivation) -> dict[str, Any]:
