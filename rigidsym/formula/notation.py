@@ -168,11 +168,11 @@ def _checked(frames: Sequence[str]) -> tuple[str, str]:
     """Two different names of letters, digits, blanks, points and hyphens."""
     names = [frames] if isinstance(frames, str) else list(frames)
     if len(names) != 2 or names[0] == names[1]:
-        raise ModelError(f"notation: frames are two different names, got {', '.join(names)}")
+        raise ModelError(f"frames are two different names, got {', '.join(names)}")
     for name in names:
         if not _A_FRAME_NAME.fullmatch(name):
             raise ModelError(
-                f"notation: {name!r} cannot name a frame: expected at most 30 letters, digits, "
+                f"{name!r} cannot name a frame: expected at most 30 letters, digits, "
                 "blanks, points and hyphens"
             )
     return names[0], names[1]
