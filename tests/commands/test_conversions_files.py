@@ -18,6 +18,7 @@ from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.document.document import Paragraph
+from rigidsym.notes.sections.styles import APPENDIX
 from rigidsym.pipeline import motion_of, output_of, read_record, read_spec
 
 FILE = """
@@ -133,7 +134,7 @@ def test_a_note_shows_them_before_the_proofs(text):
     motion = rs.derive(rotation_from(text))
     document = motion.note(conversions=True).document
     titles = [section.title for section in document.sections]
-    assert titles.index("Conversions") + 1 == titles.index("Symbols")
+    assert titles.index("Conversions") + 1 == titles.index(APPENDIX)
     number = document.number("quaternion")
     assert number == len(motion.steps) + 1
     module = motion.kernels(conversions=True).source

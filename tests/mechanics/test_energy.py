@@ -31,8 +31,6 @@ from rigidsym.errors import ModelError, QuantityError
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.models.body import general_inertia, principal_moments
 from rigidsym.models.library import PARAMETRISATIONS
-from rigidsym.notes.document.document import NoteTable
-from rigidsym.notes.formats.latex import paged
 from rigidsym.notes.formats.pdf import missing_programs, typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.text.expression import parse_expression
@@ -291,15 +289,3 @@ def test_a_note_of_every_quantity_through_tex_without_a_warning():
         pytest.skip(f"not installed: {missing_programs()}")
     motion = rs.derive("ZXZ", body=BODIES["six entries"])
     assert typeset(motion.note().latex()).warnings == ()
-
-
-def test_a_long_table_goes_on_with_every_row_once():
-    rows = tuple(((f"row {k}",), ("a word " * (1 + 12 * (k % 2)),)) for k in range(60))
-    parts = list(paged(NoteTable(caption="Rows", head=(("A",), ("B",)), rows=rows)))
-    assert tuple(row for part in parts for row in part.rows) == rows
-    assert [part.caption for part in parts] == ["Rows"] + ["Rows, continued"] * (len(parts) - 1)
-    assert len(parts) > 2
-    short = NoteTable(caption="Rows", head=(("A",), ("B",)), rows=rows[:9])
-    assert list(paged(short)) == [short]
-    one_more = NoteTable(caption="Rows", head=(("A",),), rows=((("row",),),) * 41)
-    assert [len(part.rows) for part in paged(one_more)] == [21, 20]  # and not 40 and 1

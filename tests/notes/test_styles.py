@@ -10,7 +10,7 @@ from helpers.motions import derived
 from helpers.typesetting import pages_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.tree import equal
-from rigidsym.notes.document.document import Equation
+from rigidsym.notes.document.document import Equation, NoteTable
 from rigidsym.notes.sections.styles import APPENDIX, STYLES, in_style
 from rigidsym.pipeline import output_of, read_spec
 
@@ -43,6 +43,14 @@ def test_an_audit_shows_identities_and_functions_beside_their_equations():
 @pytest.mark.usefixtures("tex")
 def test_a_lecture_on_three_turns_takes_four_pages():
     assert pages_of(derived("ZXZ").note().latex()) <= 4
+
+
+def test_a_narrow_table_stands_in_two_halves_with_every_row_once():
+    note = derived("ZXZ").note()
+    (table,) = [b for b in note.document.sections[-1].blocks if isinstance(b, NoteTable)]
+    lines = note.latex().split(r"\begin{ruled}")[1].split(r"\end{ruled}")[0].splitlines()[2:]
+    assert len(lines) == -(-len(table.rows) // 2)
+    assert sum(line.count(r"\eqref{") for line in lines) == len(table.rows)
 
 
 def test_a_lecture_ends_with_its_identities():
