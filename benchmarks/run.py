@@ -46,6 +46,7 @@ NAMES = (
     "fuzz",
     "kills",
     "mutation",
+    "certificates",
 )
 
 

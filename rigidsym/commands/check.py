@@ -15,6 +15,7 @@ from rigidsym.commands.output_folder import content_of
 from rigidsym.errors import CheckError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.pipeline import output_of, read_record
+from rigidsym.tools.certificate.checker import BROKEN, verify
 
 
 @make("rigidsym check out")
@@ -75,6 +76,18 @@ def _compare(record: Path) -> Iterator[Finding]:
     fresh = output_of(read_record(content.get("request"), source=str(record)))
     for name, text in fresh.files.items():
         yield _finding(record.parent / name, text)
+    certificate = record.with_suffix(".cert.json")
+    if certificate.is_file():
+        yield _certified(certificate, record)
+
+
+def _certified(path: Path, record: Path) -> Finding:
+    """What the independent checker says of a certificate."""
+    try:
+        verify(content_of(record), content_of(path))
+    except BROKEN as error:
+        return Finding(path=path, problem=f"refused: {error}")
+    return Finding(path=path)
 
 
 def _finding(path: Path, expected: str) -> Finding:

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.command import command as make, option, with_options
+from rigidsym.commands.command import command as make, message, option, with_options
 from rigidsym.commands.options import MOST_LINES, PrintingOptions, RotationOptions
 from rigidsym.commands.output_folder import with_existing_files, write
 from rigidsym.errors import RigidsymError
@@ -21,7 +21,7 @@ from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import PDF, Output, integrated, motion_of, output_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
-from rigidsym.system.files import write_bytes
+from rigidsym.system.files import write_bytes, write_text
 from rigidsym.system.progress import counter
 
 
@@ -61,6 +61,8 @@ def produce(specs: Iterable[DerivationSpec], options: PrintingOptions) -> None:
     for output in _outputs([with_existing_files(single, options.out) for single in singles]):
         written = write(output, options.out, force=options.force)
         written += _typeset(output, written[0].parent, missing)
+        if options.certificates:
+            written += _certified(output, written[0].parent)
         _show(output, written, options, is_only=len(singles) == 1)
     if missing:
         raise missing[0]
@@ -105,6 +107,18 @@ def _typeset(output: Output, folder: Path, missing: list[RigidsymError]) -> list
         missing.append(error)
         return []
     return [write_bytes(folder / f"{output.name}.pdf", paper.pdf)]
+
+
+def _certified(output: Output, folder: Path) -> list[Path]:
+    """The certificate of the record, and its theorems for Coq and Lean."""
+    from rigidsym.tools.certificate.certificate import certificate_of
+    from rigidsym.tools.certificate.formal import coq, lean
+
+    found = certificate_of(json.loads(output.record_text))
+    if found.uncovered:
+        message(f"{output.name}: the certificate does not cover {', '.join(found.uncovered)}")
+    texts = {"cert.json": found.json, "v": coq(found), "lean": lean(found)}
+    return [write_text(folder / f"{output.name}.{end}", text) for end, text in texts.items()]
 
 
 def _show(

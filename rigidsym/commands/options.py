@@ -164,6 +164,12 @@ class OutputOptions:
     fragment: bool = option(
         "--fragment", is_flag=True, help="Also write the note without a preamble, for \\input."
     )
+    certificates: bool = option(
+        "--certificates",
+        is_flag=True,
+        help="Also write NAME.cert.json, NAME.v and NAME.lean, with which others can check the "
+        "claims.",
+    )
     as_json: bool = option("--json", is_flag=True, help="Print the results as JSON.")
     quiet: bool = option("--quiet", is_flag=True, help="Print only the names of the files written.")
     full: bool = option(

@@ -1,0 +1,107 @@
+"""A certificate as theorems for Coq and for Lean, in which its names are any real numbers."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+from rigidsym.tools.certificate.certificate import Certificate, ProvedEquation, Terms
+from rigidsym.tools.certificate.checker import Poly
+
+_START = {"cos(": "cos_", "sin(": "sin_", "1/(": "inverse", "sqrt(": "root"}
+
+
+def coq(certificate: Certificate) -> str:
+    """A file for coqc: each equation by `field`, from the relations as hypotheses."""
+    work = _Writer(certificate)
+    lines = [
+        f"(* {certificate.name}: what each printed quantity says, entry by entry. *)",
+        *(f"(* {letter} is {name} *)" for name, letter in work.letters.items()),
+        "Require Import Reals.",
+        "Open Scope R_scope.",
+        "Section Claims.",
+        f"Variables {' '.join(work.letters.values())} : R.",
+        *(f"Hypothesis r{k} : {text} = 0." for k, text in enumerate(work.relations)),
+    ]
+    for name, entry in work.theorems():
+        used = "".join(f" rewrite r{k}." for k in entry.cofactors)
+        combination = work.combination(entry, "({})")
+        tactic = "field" if "/" in work.poly(entry.left - entry.right) + combination else "ring"
+        lines += [
+            f"Theorem {name} : {work.poly(entry.left)} = {work.poly(entry.right)}.",
+            "Proof.",
+            "  apply Rminus_diag_uniq.",
+            f"  transitivity ({combination}).",
+            f"  - {tactic}.",
+            f"  -{used} {tactic}.",
+            "Qed.",
+        ]
+    return "\n".join([*lines, "End Claims.", ""])
+
+
+def lean(certificate: Certificate) -> str:
+    """The same for Lean 4 with Mathlib; these theorems were not compiled when they were written."""
+    work = _Writer(certificate)
+    letters = " ".join(work.letters.values())
+    lines = [
+        f"-- {certificate.name}: what each printed quantity says, entry by entry.",
+        "-- Not compiled when it was written.",
+        *(f"-- {letter} is {name}" for name, letter in work.letters.items()),
+        "import Mathlib.Tactic",
+        f"variable ({letters} : ℝ)",
+    ]
+    for name, entry in work.theorems():
+        given = "".join(f"\n    (r{k} : {work.relations[k]} = 0)" for k in entry.cofactors)
+        lines += [
+            f"theorem {name}{given} :",
+            f"    {work.poly(entry.left)} = {work.poly(entry.right)} := by",
+            f"  linear_combination {work.combination(entry, 'r{}')}",
+        ]
+    return "\n".join([*lines, ""])
+
+
+class _Writer:
+    """Polynomials in letters that both languages take."""
+
+    def __init__(self, certificate: Certificate) -> None:
+        self.certificate = certificate
+        self.letters = {name: _letter(name, place) for place, name in enumerate(certificate.names)}
+        self.relations = list(map(self.terms, certificate.relations))
+
+    def theorems(self) -> Iterator[tuple[str, ProvedEquation]]:
+        for claim, entries in self.certificate.claims.items():
+            for place, entry in enumerate(entries, start=1):
+                yield f"{claim.replace(' ', '_')}_{place}", entry
+
+    def poly(self, poly: Poly) -> str:
+        return self._sum([(str(c), *names) for names, c in sorted(poly.terms.items())])
+
+    def terms(self, terms: Terms) -> str:
+        names = self.certificate.names
+        return self._sum([(str(c), *(names[int(k)] for k in places)) for c, *places in terms])
+
+    def _sum(self, terms: Sequence[Sequence[str]]) -> str:
+        return " + ".join(self._product(c, names) for c, *names in terms) or "0"
+
+    def _product(self, coefficient: str, names: Sequence[str]) -> str:
+        first = [] if coefficient == "1" and names else [f"({coefficient})"]
+        return " * ".join(first + [self.letters[name] for name in names])
+
+    def combination(self, entry: ProvedEquation, form: str) -> str:
+        """Σ cofactor · relation, each relation in a form that takes its place or its text."""
+        return (
+            " + ".join(
+                f"({self.terms(terms)}) * {form.format(self.relations[k] if form == '({})' else k)}"
+                for k, terms in entry.cofactors.items()
+            )
+            or "0"
+        )
+
+
+def _letter(name: str, place: int) -> str:
+    for start, letter in _START.items():
+        if name.startswith(start):
+            inside = name.removeprefix(start).removesuffix(")")
+            plain = re.fullmatch(r"\w+(/\d+)?", inside) and letter.endswith("_")
+            return letter + (inside.replace("/", "_over_") if plain else f"_{place}")
+    return f"v_{name}"

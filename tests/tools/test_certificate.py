@@ -1,0 +1,221 @@
+"""Certificates: what is printed is what was proved, as a program without rigidsym checks it."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import json
+import os
+import shutil
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import rigidsym as rs
+from helpers.command import call
+from rigidsym.errors import CheckError
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.notes.formats.record import record
+from rigidsym.tools.certificate import checker
+from rigidsym.tools.certificate.certificate import certificate_of
+from rigidsym.tools.certificate.formal import coq, lean
+
+NAME = "euler_zxz_intrinsic"
+CHECKER = Path(checker.__file__)
+BASIC = ("rotation_matrix", "angular_velocity_body", "rate_matrix_body")
+FEWER = (*BASIC, "angular_velocity_space", "inverse_rate_matrix_space")
+OTHERS = {
+    "quaternion": None,
+    "gibbs_vector": None,
+    "goldstein": None,
+    "axis_angle": BASIC,
+    "unit_quaternion": BASIC,
+    "cayley_klein": BASIC,
+    "modified_rodrigues": BASIC,
+    "rotation_vector": BASIC[:2],
+    "direction_cosines": ("rotation_matrix",),
+    "davenport": BASIC,
+    "z(phi) [1,1,0](theta) x(pi/4)": BASIC,
+    "z(2*phi - psi) x(theta) z(psi/3)": BASIC,
+    "x(a_1) y(a_2) z(a_3) x(a_4)": BASIC,
+}
+
+
+@cache
+def record_of(text: str, quantities: tuple[str, ...] | None = None) -> dict[str, Any]:
+    motion = rs.derive(rotation_from(text), *([quantities] if quantities else []))
+    return json.loads(json.dumps(record(motion, {"rotations": [{"sequence": text}]})))
+
+
+@cache
+def certified(text: str, quantities: tuple[str, ...] | None = None) -> str:
+    return certificate_of(record_of(text, quantities)).json
+
+
+def zxz() -> tuple[dict[str, Any], dict[str, Any]]:
+    """A record and its certificate, to be changed."""
+    return copy.deepcopy(record_of("ZXZ")), json.loads(certified("ZXZ"))
+
+
+def printed(found: dict[str, Any], name: str) -> dict[str, Any]:
+    return next(quantity for quantity in found["quantities"] if quantity["name"] == name)
+
+
+def test_all_conventions_are_proved_by_the_checker():
+    for text in rs.EULER_SEQUENCES:
+        quantities = None if text == "ZXZ" else FEWER
+        names = [quantity["name"] for quantity in record_of(text, quantities)["quantities"]]
+        certificate = json.loads(certified(text, quantities))
+        found = checker.verify(record_of(text, quantities), certificate)
+        assert list(found) == ["R is a rotation", *names]
+
+
+@pytest.mark.parametrize(("text", "quantities"), OTHERS.items())
+def test_other_rotations_are_proved_by_the_checker(text, quantities):
+    certificate = json.loads(certified(text, quantities))
+    found = checker.verify(record_of(text, quantities), certificate)
+    assert "rotation_matrix" in found
+    assert certificate["uncovered"] == []
+
+
+@pytest.mark.parametrize(
+    ("quantity", "place", "before", "after"),
+    [
+        ("rotation_matrix", (0, 0), "-sin", "sin"),
+        ("rotation_matrix", (2, 2), "cos", "sin"),
+        ("angular_velocity_body", (2,), "psi_dot", "phi_dot"),
+        ("inverse_rate_matrix_body", (0, 0), "/sin", "/cos"),
+        ("angular_acceleration_space", (2,), "phi_ddot", "2*phi_ddot"),
+    ],
+)
+def test_a_changed_expression_is_refused(quantity, place, before, after):
+    found, certificate = zxz()
+    *rows, last = place
+    row = printed(found, quantity)["expression"]
+    for index in rows:
+        row = row[index]
+    assert before in row[last]
+    row[last] = row[last].replace(before, after, 1)
+    with pytest.raises(checker.RefusedError, match=f"{quantity}: its cofactors do not prove entry"):
+        checker.verify(found, certificate)
+    with pytest.raises(CheckError, match="no cofactors were found"):
+        certificate_of(found)
+
+
+def test_a_right_expression_under_the_wrong_name_is_refused():
+    found, certificate = zxz()
+    space, body = (printed(found, f"angular_velocity_{frame}") for frame in ("space", "body"))
+    space["expression"], body["expression"] = body["expression"], space["expression"]
+    with pytest.raises(checker.RefusedError, match="angular_velocity_space"):
+        checker.verify(found, certificate)
+
+
+def test_another_convention_is_refused():
+    found, certificate = zxz()
+    found["request"]["rotations"][0]["sequence"] = "ZYZ"
+    with pytest.raises(checker.RefusedError, match="R is a rotation: its cofactors do not prove"):
+        checker.verify(found, certificate)
+    with pytest.raises(CheckError, match="rotation_matrix: no cofactors were found"):
+        certificate_of(found)
+
+
+def test_a_changed_cofactor_is_refused():
+    found, certificate = zxz()
+    cofactor = certificate["claims"]["R is a rotation"][0]["0"]
+    cofactor[0][0] = "7"
+    with pytest.raises(checker.RefusedError, match="R is a rotation: its cofactors"):
+        checker.verify(found, certificate)
+
+
+def test_a_relation_that_does_not_hold_is_refused():
+    found, certificate = zxz()
+    certificate["relations"][0] = [["1"]]
+    with pytest.raises(checker.RefusedError, match="1 = 0 is no relation of this record"):
+        checker.verify(found, certificate)
+
+
+def test_a_claim_without_cofactors_is_refused():
+    found, certificate = zxz()
+    del certificate["claims"]["spin_matrix"]
+    with pytest.raises(checker.RefusedError, match="spin_matrix: 9 entries, cofactors for 0"):
+        checker.verify(found, certificate)
+
+
+def test_a_rate_matrix_without_rates_is_asked_for():
+    found, certificate = zxz()
+    W = printed(found, "rate_matrix_body")["expression"]
+    W[2] = ["cos(theta) + psi_dot/phi_dot", "0", "0"]
+    with pytest.raises(checker.RefusedError, match="rate_matrix_body holds a rate"):
+        checker.verify(found, certificate)
+
+
+def test_a_division_by_zero_proves_nothing():
+    found, certificate = zxz()
+    entry = "phi/(sin(phi)**2 + cos(phi)**2 - 1)"
+    printed(found, "rotation_matrix")["expression"][0][0] = entry
+    with pytest.raises(checker.RefusedError, match="is a divisor, and vanishes"):
+        checker.verify(found, certificate)
+    printed(found, "rotation_matrix")["expression"][0][0] = "1/(2 - 2)"
+    with pytest.raises(checker.RefusedError, match="divides by zero"):
+        checker.verify(found, certificate)
+
+
+@pytest.mark.parametrize(
+    "text", ["__import__('os')", "phi.real", "phi[0]", "exp(phi)", "cos(phi", "2**phi", "2**(1/3)"]
+)
+def test_an_expression_in_another_language_is_refused(text):
+    found, certificate = zxz()
+    printed(found, "rotation_matrix")["expression"][0][0] = text
+    with pytest.raises(checker.RefusedError, match="cannot"):
+        checker.verify(found, certificate)
+
+
+def test_the_checker_needs_only_the_standard_library():
+    tree = ast.parse(CHECKER.read_text(encoding="utf-8"))
+    modules = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    modules |= {
+        a.name for node in ast.walk(tree) if isinstance(node, ast.Import) for a in node.names
+    }
+    assert {module.split(".")[0] for module in modules} <= sys.stdlib_module_names
+
+
+def test_the_files_are_written_and_checked(tmp_path):
+    call("derive", "ZXZ", "--certificates", cwd=tmp_path)
+    folder = tmp_path / "out" / NAME
+    assert {f"{NAME}.{ending}" for ending in ("cert.json", "v", "lean")} <= {
+        file.name for file in folder.iterdir()
+    }
+    assert f"{NAME}.cert.json: up to date" in call("check", "out", cwd=tmp_path).stdout
+    alone = [sys.executable, "-I", "-S", str(CHECKER), "out"]
+    done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert "proved: R is a rotation, rotation_matrix" in done.stdout
+    path = folder / f"{NAME}.json"
+    path.write_text(path.read_text().replace("-sin(phi)*sin(psi)", "sin(phi)*sin(psi)"))
+    done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "REFUSED: rotation_matrix" in done.stdout
+    done = call("check", "out", cwd=tmp_path, status=1)
+    assert f"{NAME}.cert.json: refused: rotation_matrix" in done.stdout
+
+
+def test_coq_accepts_the_theorems_and_refuses_a_wrong_one(tmp_path):
+    coqc = shutil.which("coqc")
+    if coqc is None and os.environ.get("RIGIDSYM_REQUIRE_COQ") != "1":
+        pytest.skip("Coq is not installed")
+    text = coq(certificate_of(record_of("ZXZ", BASIC)))
+    (tmp_path / "right.v").write_text(text)
+    subprocess.run([coqc, "right.v"], cwd=tmp_path, check=True, capture_output=True)
+    assert " = cos_theta.\n" in text
+    (tmp_path / "wrong.v").write_text(text.replace(" = cos_theta.\n", " = sin_theta.\n", 1))
+    done = subprocess.run([coqc, "wrong.v"], cwd=tmp_path, check=False, capture_output=True)
+    assert done.returncode != 0
+
+
+def test_lean_gets_each_entry_with_its_cofactors():
+    text = lean(certificate_of(record_of("ZXZ", BASIC)))
+    assert text.count("theorem ") == text.count("linear_combination") == 10 + 9 + 9 + 3
+    assert "Not compiled" in text
