@@ -23,6 +23,8 @@ from rigidsym.pipeline import PDF, Output, integrated, motion_of, output_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.system.files import write_bytes, write_text
 from rigidsym.system.progress import counter
+from rigidsym.tools.certificate.certificate import certificate_of
+from rigidsym.tools.certificate.formal import coq, lean
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,9 +113,6 @@ def _typeset(output: Output, folder: Path, missing: list[RigidsymError]) -> list
 
 def _certified(output: Output, folder: Path) -> list[Path]:
     """The certificate of the record, and its theorems for Coq and Lean."""
-    from rigidsym.tools.certificate.certificate import certificate_of
-    from rigidsym.tools.certificate.formal import coq, lean
-
     found = certificate_of(json.loads(output.record_text))
     if found.uncovered:
         message(f"{output.name}: the certificate does not cover {', '.join(found.uncovered)}")

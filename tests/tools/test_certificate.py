@@ -174,6 +174,13 @@ def test_an_expression_in_another_language_is_refused(text):
         checker.verify(found, certificate)
 
 
+def test_quantities_of_a_body_are_named_as_not_covered():
+    body = rs.solid("box")
+    found = record(rs.derive("ZXZ", ["rotation_matrix", "kinetic_energy"], body=body), {})
+    found["request"] = {"rotations": [{"sequence": "ZXZ"}]}
+    assert certificate_of(json.loads(json.dumps(found))).uncovered == ["kinetic_energy"]
+
+
 def test_the_checker_needs_only_the_standard_library():
     tree = ast.parse(CHECKER.read_text(encoding="utf-8"))
     modules = {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}

@@ -20,18 +20,17 @@ from functools import partial, reduce
 from pathlib import Path
 from typing import Any
 
-SQUARES = "({0}**2 + {1}**2 + {2}**2 + {3}**2)", "({0}**2 + {1}**2 + {2}**2)"
-QUATERNION = f"1 - 2/{SQUARES[0]}; 2*{{0}}/{SQUARES[0]}"
+THREE = "({0}**2 + {1}**2 + {2}**2)"
+FOUR = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
 FORMS = {  # a vector v and numbers c and s, in the coordinates: R = 1 + s C(v) + (1 - c) C(v)²
-    "quaternion": "{1}; {2}; {3}; " + QUATERNION,
-    "unit_quaternion": "{1}; {2}; {3}; " + QUATERNION,
-    "cayley_klein": "{3}; {2}; {1}; " + QUATERNION,
+    "quaternion": f"{{1}}; {{2}}; {{3}}; 1 - 2/{FOUR}; 2*{{0}}/{FOUR}",
+    "unit_quaternion": f"{{1}}; {{2}}; {{3}}; 1 - 2/{FOUR}; 2*{{0}}/{FOUR}",
+    "cayley_klein": f"{{3}}; {{2}}; {{1}}; 1 - 2/{FOUR}; 2*{{0}}/{FOUR}",
     "axis_angle": "{0}; {1}; {2}; cos({3}); sin({3})",
-    "rotation_vector": "{0}/L; {1}/L; {2}/L; cos(L); sin(L)".replace("L", f"sqrt{SQUARES[1]}"),
-    "gibbs_vector": "{0}; {1}; {2}; 1 - 2/(1 + x); 2/(1 + x)".replace("x", SQUARES[1]),
-    "modified_rodrigues": "2*{0}; 2*{1}; 2*{2}; 1 - 2/(1 + x)**2; 2*(1 - x)/(1 + x)**2".replace(
-        "x", SQUARES[1]
-    ),
+    "rotation_vector": "{0}/L; {1}/L; {2}/L; cos(L); sin(L)".replace("L", f"sqrt{THREE}"),
+    "gibbs_vector": f"{{0}}; {{1}}; {{2}}; 1 - 2/(1 + {THREE}); 2/(1 + {THREE})",
+    "modified_rodrigues": f"2*{{0}}; 2*{{1}}; 2*{{2}}; 1 - 2/(1 + {THREE})**2;"
+    f"2*(1 - {THREE})/(1 + {THREE})**2",
 }
 UNIT = {"unit_quaternion": 4, "cayley_klein": 4, "axis_angle": 3}  # coordinates of length one
 PRESETS = {  # turns from left to right; the record says whether Rᵀ is presented
@@ -39,7 +38,7 @@ PRESETS = {  # turns from left to right; the record says whether Rᵀ is present
     **{"aerospace": "ZYX", "rpy": "xyz", "davenport": "z({0}) x({1}) [0,b,c]({2})"},
 }
 AXES = {"x": "1,0,0", "y": "0,1,0", "z": "0,0,1"}
-COSINES = {0: "1", 2: "sqrt(3)/2", 3: "sqrt(2)/2", 4: "1/2", 6: "0"}  # of multiples of π/12
+COSINES: dict[Any, str] = {0: "1", 2: "sqrt(3)/2", 3: "sqrt(2)/2", 4: "1/2", 6: "0"}  # of kπ/12
 TURN = r"\s*(?:\[([^][]+)\]|([xyz]))\s*\(([^()]+)\)\s*"
 
 
@@ -152,20 +151,16 @@ class Language:
                 return math.prod([self._inverse(base)] * times, start=ONE)
         return self.inverse(self._value(node))
 
-    def relate(self, relation: Poly) -> None:
-        self.relations[str(relation)] = relation
-
     def sample(self, value: Poly) -> float:
         """Its value at a point that satisfies the relations."""
-        terms = value.terms.items()
-        return sum(float(c) * math.prod(self.at[name] for name in m) for m, c in terms)
+        return sum(float(c) * math.prod(self.at[n] for n in m) for m, c in value.terms.items())
 
     def new(self, name: str, at: float, relation: Change, rate: Change) -> Poly:
         """A name x with relation(x) = 0 and dx/dt = rate(x), and its value at the point."""
         self.at[name] = at
         found = Poly({(name,): 1})
         self.rates[name] = lambda: rate(found)
-        self.relate(relation(found))
+        self.relations[str(relation(found))] = relation(found)
         return found
 
     def inverse(self, value: Poly) -> Poly:
@@ -212,7 +207,8 @@ class Language:
         parts = self.parts[name] = math.lcm(self.parts.get(name, 1), times.denominator)
         text = name if parts == 1 else f"{name}/{parts}"
         c, s = (Poly({(f"{function}({text})",): 1}) for function in ("cos", "sin"))
-        self.relate(c * c + s * s - 1)
+        relation = c * c + s * s - 1
+        self.relations[str(relation)] = relation
         self.at[f"cos({text})"] = math.cos(self.at[name] / parts)
         self.at[f"sin({text})"] = math.sin(self.at[name] / parts)
         self.rates[f"cos({text})"] = lambda: s * self.rates[name]() * Fraction(-1, parts)
@@ -224,26 +220,20 @@ class Language:
 
     def _cosine(self, twelfths: Fraction) -> Poly:
         size = min(twelfths % 24, -twelfths % 24)
-        cosines = {Fraction(k): text for k, text in COSINES.items()}
-        text = cosines.get(size) or f"-({cosines.get(12 - size)})"
-        return self.read(text)
+        return self.read(COSINES[size] if size <= 6 else f"-({COSINES[12 - size]})")
 
     def rate(self, value: Poly) -> Poly:
         """d/dt; raises KeyError for a name whose rate is not known."""
         return sum((value.derivative(n) * self.rates[n]() for n in sorted(value.names)), ZERO)
 
-    def rates_of(self, matrix: Matrix) -> Matrix:
-        return [[self.rate(entry) for entry in row] for row in matrix]
-
     def assume(self, value: Poly) -> None:
         """Take an expression to vanish at all times, and with it its first two derivatives."""
         for _ in range(3):
             if value.terms:
-                self.relate(value)
-            try:
-                value = self.rate(value)
-            except KeyError:
+                self.relations[str(value)] = value
+            if not value.names <= self.rates.keys():
                 return
+            value = self.rate(value)
 
     def assume_unit(self, vector: Sequence[Poly]) -> None:
         length = sum(self.sample(part) ** 2 for part in vector) ** 0.5
@@ -281,10 +271,10 @@ class Language:
             axis = [self.read(part) for part in (vector or AXES[letter]).split(",")]
             if dot(axis, axis).names:  # letters in an axis make it a unit vector
                 self.assume_unit(axis)
-                length = ONE
-            else:
-                length = self.inverse(self.root(dot(axis, axis)))
-            yield turned([part * length for part in axis], *self.turn(self.read(angle)))
+            length = ONE if dot(axis, axis).names else self.root(dot(axis, axis))
+            yield turned(
+                [part * self.inverse(length) for part in axis], *self.turn(self.read(angle))
+            )
 
 
 def dot(first: Sequence[Poly], second: Sequence[Poly]) -> Poly:
@@ -329,44 +319,45 @@ UNITS = [[ONE if j == k else ZERO for k in range(3)] for j in range(3)]
 def claims(record: Mapping[str, Any], known: Language) -> Iterator[tuple[str, list[Equation]]]:
     """What each printed quantity says, entry by entry."""
     R = known.rotation(record["request"]["rotations"][0])
-    R_dot = known.rates_of(R)
+    R_dot = [[*map(known.rate, row)] for row in R]
     yield "R is a rotation", orthogonal(R)
     spins = {"space": product(R_dot, transposed(R)), "body": product(transposed(R), R_dot)}
     is_passive = record["presentation"] == "passive"
     shown, shown_dot = map(transposed, (R, R_dot)) if is_passive else (R, R_dot)
-    rates = [[known.values[name]] for name in known.arguments["q_dot"]]
+    shown_spin, q_dot = product(shown_dot, transposed(shown)), known.arguments["q_dot"]
     for definition in record["definitions"]:
         known.values[definition["name"]] = known.read(definition["expression"])
     for quantity in record["quantities"]:
         name, rows = quantity["name"], quantity["expression"]
-        rows = rows if len(quantity["shape"]) == 2 else [[entry] for entry in rows]
         frame = "body" if name.endswith("body") else "space"
-        spin, given = spins[frame], known.arguments[f"omega_{frame}"]
+        kind, spin = name.removesuffix(f"_{frame}"), spins[frame]
         omega = [[spin[j][k]] for j, k in ((2, 1), (0, 2), (1, 0))]
-        W = [[entry.derivative(dot) for dot in known.arguments["q_dot"]] for (entry,) in omega]
-        printed = [[known.read(entry) for entry in row] for row in rows]
-        match name.removesuffix(f"_{frame}"):
-            case "rotation_matrix":
-                yield name, sides(printed, shown)
-            case "rotation_rate":
-                yield name, sides(printed, shown_dot)
-            case "spin_matrix":
-                yield name, sides(printed, product(shown_dot, transposed(shown)))
-            case "angular_velocity":
-                yield name, sides(hat(*transposed(printed)), spin)
-            case "angular_acceleration":
-                yield name, sides(hat(*transposed(printed)), known.rates_of(spin))
-            case "rate_matrix":
-                words = {
-                    word for row in printed for e in row for word in re.findall(r"\w+", str(e))
-                }
-                if words.intersection(known.arguments["q_dot"]):
-                    raise RefusedError(f"{name} holds a rate")
-                yield name, sides(product(printed, rates), omega)
-            case "inverse_rate_matrix":
-                yield name, sides(product(W, printed), UNITS)
-            case "rates_from_angular_velocity":
-                yield name, sides(product(W, printed), [[known.values[n]] for n in given])
+        right = {
+            "rotation_matrix": shown,
+            "rotation_rate": shown_dot,
+            "spin_matrix": shown_spin,
+            "angular_velocity": spin,
+            "rate_matrix": omega,
+            "inverse_rate_matrix": UNITS,
+            "rates_from_angular_velocity": [
+                [known.values[f"omega_{frame}_{k}"]] for k in (1, 2, 3)
+            ],
+            "angular_acceleration": [[*map(known.rate, row)] for row in spin if "accel" in kind],
+        }
+        if kind not in right:
+            continue
+        rows = rows if len(quantity["shape"]) == 2 else [[entry] for entry in rows]
+        left = [[known.read(entry) for entry in row] for row in rows]
+        words = re.findall(r"\w+", " ".join(str(entry) for row in left for entry in row))
+        if kind == "rate_matrix" and not set(words).isdisjoint(q_dot):
+            raise RefusedError(f"{name} holds a rate")
+        if kind in ("angular_velocity", "angular_acceleration"):
+            left = hat(*transposed(left))
+        elif kind == "rate_matrix":
+            left = product(left, [[known.values[rate]] for rate in q_dot])
+        elif kind in ("inverse_rate_matrix", "rates_from_angular_velocity"):
+            left = product([[entry.derivative(rate) for rate in q_dot] for (entry,) in omega], left)
+        yield name, sides(left, right[kind])
 
 
 def verify(record: Mapping[str, Any], certificate: Mapping[str, Any]) -> dict[str, list[Equation]]:

@@ -13,7 +13,7 @@ _START = {"cos(": "cos_", "sin(": "sin_", "1/(": "inverse", "sqrt(": "root"}
 
 def coq(certificate: Certificate) -> str:
     """A file for coqc: each equation by `field`, from the relations as hypotheses."""
-    work = _Writer(certificate)
+    work = _Theorems(certificate)
     lines = [
         f"(* {certificate.name}: what each printed quantity says, entry by entry. *)",
         *(f"(* {letter} is {name} *)" for name, letter in work.letters.items()),
@@ -41,7 +41,7 @@ def coq(certificate: Certificate) -> str:
 
 def lean(certificate: Certificate) -> str:
     """The same for Lean 4 with Mathlib; these theorems were not compiled when they were written."""
-    work = _Writer(certificate)
+    work = _Theorems(certificate)
     letters = " ".join(work.letters.values())
     lines = [
         f"-- {certificate.name}: what each printed quantity says, entry by entry.",
@@ -60,7 +60,7 @@ def lean(certificate: Certificate) -> str:
     return "\n".join([*lines, ""])
 
 
-class _Writer:
+class _Theorems:
     """Polynomials in letters that both languages take."""
 
     def __init__(self, certificate: Certificate) -> None:
