@@ -46,9 +46,6 @@ class RefusedError(Exception):
     """A claim that is not proved, or a record that this program cannot read."""
 
 
-BROKEN = (RefusedError, LookupError, ArithmeticError, AttributeError, TypeError, ValueError)
-
-
 class Poly:
     """Coefficients of monomials; a monomial is its names in order, as often as they are factors."""
 
@@ -86,6 +83,7 @@ class Poly:
 Matrix = list[list[Poly]]
 Equation = tuple[Poly, Poly]
 Change = Callable[[Poly], Poly]
+BROKEN = (RefusedError, LookupError, ArithmeticError, AttributeError, TypeError, ValueError)
 ZERO, ONE = Poly({}), Poly({(): 1})
 
 
