@@ -79,12 +79,15 @@ def _by_half_turns(places: Sequence[Place]) -> list[Place]:
 
 def _point(recursion: Recursion, places: tuple[Place, ...]) -> Singularity:
     first, second = recursion.axes[:2]
-    before_last, last = recursion.axes[-2:]
+    in_space = in_body = first.cross(second)
+    values = {place.coordinate: place.value for place in places}
+    for turn in recursion.plain[1:-1]:
+        in_body = turn.subs(values).T * in_body
     return Singularity(
         places=places,
         rank=2,
-        lost_axis_space=_short(recursion.plain[0] * first.cross(second)),
-        lost_axis_body=_short(recursion.plain[-1].T * before_last.cross(last)),
+        lost_axis_space=_short(recursion.plain[0] * in_space),
+        lost_axis_body=_short(recursion.plain[-1].T * in_body),
         null_rates=sp.ImmutableMatrix(sp.Matrix.hstack(*_null_rates(recursion))),
     )
 
