@@ -266,7 +266,9 @@ def test_the_note_prints_scalars_and_their_proofs():
     latex = derived("ZXZ", "symmetric").note(style="audit").latex()
     squares = r"\frac{1}{2}\,A\,(\dot{\phi}^2 \sin^2\theta + \dot{\theta}^2)"
     squares += r" + \frac{1}{2}\,C\,(\dot{\phi} \cos\theta + \dot{\psi})^2"
-    assert rf"\mathbf{{I}}'\,\boldsymbol{{\Omega}}' = {squares}" in latex
+    moments = r"\frac{1}{2}\,(A\,{\Omega'_1}^2 + A\,{\Omega'_2}^2 + C\,{\Omega'_3}^2)"
+    assert rf"\mathbf{{I}}'\,\boldsymbol{{\Omega}}' = {moments} \\[7pt]" in latex
+    assert f"&= {squares}" in latex
     assert r"Proved: $\mathbf{L}'_R \cdot \boldsymbol{\Omega}' = 2 E_R$" in latex
 
 
