@@ -26,6 +26,7 @@ from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.text import remarks
 from rigidsym.kernels.targets.text.infix import guard_arguments, infix
 from rigidsym.system import resources
+from rigidsym.version import OWNERSHIP
 
 TEMPLATE = "javascript/module.mjs.jinja"
 _WORDS = (
@@ -43,7 +44,7 @@ def render(program: Program) -> dict[str, str]:
     """The module, and its types for TypeScript."""
     name, kernels = program.name, program.kernels
     declared = "\n".join(line for kernel in kernels for line in _declared(kernel))
-    types = f"// The types of {name}.mjs.\n\n{_TYPES}\n\n{declared}\n"
+    types = f"// The types of {name}.mjs. {OWNERSHIP}\n\n{_TYPES}\n\n{declared}\n"
     return {f"{name}.mjs": _module(_about(program), kernels), f"{name}.d.mts": types}
 
 
