@@ -43,7 +43,7 @@ from rigidsym.tools.evaluate.evaluation import evaluation
 from rigidsym.tools.identify.identification import identify_file
 
 SECONDS, GIGABYTES = 10.0, 1.0
-SLACK = 2.0  # seconds beyond the limit: one step of SymPy is not interrupted
+SLACK = 5.0  # seconds beyond the limit: one step of SymPy is not interrupted
 DERIVED = 50  # one derivation file in so many is run
 MESSAGES = (RigidsymError, click.ClickException, click.exceptions.Exit, click.Abort, OSError)
 
