@@ -131,9 +131,9 @@ class Problem:
         """I′ in numbers, (3, 3)."""
         body = self.derivation.body
         assert body is not None
-        symbols = map(sp.Symbol, self.names.get("parameters", ()))
-        values = dict(zip(symbols, self.parameters, strict=True))
-        return np.array(body.inertia.xreplace(values).tolist(), float)
+        values = dict(zip(self.names.get("parameters", ()), self.parameters, strict=True))
+        known = {symbol: values[str(symbol)] for symbol in body.inertia.free_symbols}
+        return np.array(body.inertia.xreplace(known).tolist(), float)
 
     def trajectory(
         self, t: Array, states: Array, ended: str = "", remarks: Sequence[str] = ()
