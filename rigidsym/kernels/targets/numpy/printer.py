@@ -24,6 +24,10 @@ TEMPLATE = "numpy/module.py.jinja"
 RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError"}
 OPTIONS = ("out: Array | None = None", "threads: int = 1")  # of every function of arrays
 
+_BY_SIZE = (
+    "Batches of at least 200 orientations take sines and cosines by another formula than smaller "
+    "ones, so that the last bits of a row may depend on the number of rows."
+)
 _SPELLED = len("float, float, float, float")  # longer types are those of tuples of any length
 
 _SCALAR = python.Statements(
@@ -71,7 +75,7 @@ def module_text(
         resources.environment()
         .get_template(template)
         .render(
-            about=docstring(_about(program)),
+            about=docstring(_about(program, is_plain=template == TEMPLATE)),
             imports=f"from math import {', '.join(sorted(_imports(kernels)))}\n",
             exports=python.lines(f'"{name}",' for name in sorted(exports)),
             components=python.components(program),
@@ -229,8 +233,9 @@ def _tuple(indent: int, head: str, items: Sequence[str]) -> str:
     return exploded(indent, f"{head}(", items, ")")
 
 
-def _about(program: Program) -> list[remarks.Paragraph]:
-    """The paragraphs of the module's docstring."""
+def _about(program: Program, *, is_plain: bool) -> list[remarks.Paragraph]:
+    """The paragraphs of the module's docstring; in a plain module NumPy takes the sines."""
+    has_sines = is_plain and any(kernel.sines for kernel in program.kernels)
     return remarks.about_module(
         program,
         "functions of NumPy arrays",
@@ -242,5 +247,6 @@ def _about(program: Program) -> list[remarks.Paragraph]:
         "`threads` sets the number of worker threads (about 4 MB each). No warnings are issued. "
         "Each function has a twin `..._scalar` for one orientation in plain floats, and an "
         "attribute `signature`, its signature as a generalised ufunc.",
+        *([_BY_SIZE] if has_sines else []),
         unwrap="",
     )
