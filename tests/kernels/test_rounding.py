@@ -109,7 +109,14 @@ def test_measured_errors_are_within_the_bounds_over_the_catalogue(rotation):
 @pytest.mark.parametrize(
     ("rotation", "target"),
     # NumPy has all rotations above
-    [*product(["ZXZ", "rotation_vector"], EVERY), (TURNS[1], "c"), (TURNS[1], "javascript")],
+    [
+        *(
+            pytest.param(rotation, *target.values, marks=target.marks)
+            for rotation, target in product(["ZXZ", "rotation_vector"], EVERY)
+        ),
+        (TURNS[1], "c"),
+        (TURNS[1], "javascript"),
+    ],
 )
 def test_measured_errors_are_within_the_bounds_in_every_target(rotation, target):
     for dtype in (np.float64, np.float32)[: 1 + TARGETS[target].has_single]:
