@@ -61,7 +61,7 @@ class SimulationOptions:
 
 @make(
     "rigidsym simulate heavy_symmetric_top --set A=1 --set C=0.5 --set m=1\n"
-    "         --set g=9.81 --set l=1 --initial theta=0.5 --initial psi_dot=20 --time 5"
+    "         --set g=9.81 --set l=0.5 --initial theta=0.5 --initial psi_dot=20 --time 5"
 )
 @click.argument("source", metavar="NAME|FILE")
 @with_options(SimulationOptions)

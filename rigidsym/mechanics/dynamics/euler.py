@@ -90,7 +90,7 @@ class EulerEquations(Flow):
 
     def potential_energy(self) -> Found:
         return Found(
-            sp.ImmutableMatrix([[self.forces.potential]]), "The potential energy is given."
+            sp.ImmutableMatrix([[self.forces.potential]]), "The body has the potential energy:"
         )
 
     def torque_body(self) -> Found:

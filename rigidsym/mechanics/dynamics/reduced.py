@@ -130,12 +130,16 @@ class Reduced:
 
     def _polynomial(self, value: sp.Expr) -> Consequence:
         angle = self.coordinate
+        kind = "cubic polynomial" if sp.degree(sp.cancel(value), _U) == 3 else "polynomial"
         residual = (sp.sin(angle) * self.rate) ** 2 - value.xreplace({_U: sp.cos(angle)})
         return Consequence(
             title="The equation for the cosine",
-            text="With {} the equation of energy is an equation for a polynomial in {}:",
-            spans=(formula("u = #1", formula(r"\cos #1", claims.name_of(angle))), _U),
-            left=formula(r"\dot{u}^2"),
+            text=f"With {{}} the equation of energy becomes {{}}, with the {kind} $f$:",
+            spans=(
+                formula("u = #1", formula(r"\cos #1", claims.name_of(angle))),
+                formula(r"\dot{u}^2 = f(u)"),
+            ),
+            left=formula("f(u)"),
             value=value,
             proofs=(self._proved(residual, r"\dot{u}^2 = f(u)"),),
         )
@@ -167,10 +171,10 @@ class Reduced:
             spans=(
                 self.coordinate,
                 formula("#1 = #2 = p", *map(claims.momentum_of, self.ignorable)),
-                formula("k"),
+                formula(r"\kappa"),
                 self.coordinate**2,
             ),
-            left=formula("k"),
+            left=formula(r"\kappa"),
             value=min(sp.expand(-slope), sp.factor(-slope), key=sp.count_ops),
             proofs=(identity(residual, claims.NEAR_UPRIGHT, self.name),),
         )

@@ -65,7 +65,7 @@ class _Energy:
         residual = summed - self._scalar(twice)
         return Found(
             sp.ImmutableMatrix([[self._translational]]),
-            "The centre of mass has the kinetic energy of a particle of mass M.",
+            "The centre of mass has the kinetic energy of a particle with the mass of the body.",
             (self.prove.vanishes(residual, claims.TRANSLATION_OF_PARTICLES),),
         )
 
@@ -101,7 +101,7 @@ class _Energy:
         summed = self._of_particles(self._crossed(self.centre, self.velocity))
         return Found(
             self.present.matrix(momentum),
-            "The centre of mass has the angular momentum of a particle of mass M.",
+            "The centre of mass has the angular momentum of a particle with the mass of the body.",
             (self.prove.vanishes(summed - momentum, claims.MOMENTUM_OF_CENTRE),),
         )
 

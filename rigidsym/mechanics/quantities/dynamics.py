@@ -215,7 +215,7 @@ def is_constant(symbol: Formula) -> Formula:
 
 
 PRECESSION = formula(r"\dot{\Omega}'_1 + i\dot{\Omega}'_2 = i\kappa(\Omega'_1 + i\Omega'_2)")
-NEAR_UPRIGHT = formula("#1 = #1(0) + k(1 - u) + O((1 - u)^2)", EFFECTIVE)
+NEAR_UPRIGHT = formula(r"#1 = #1(0) + \kappa(1 - u) + O((1 - u)^2)", EFFECTIVE)
 
 
 def name_of(coordinate: sp.Expr) -> Formula:

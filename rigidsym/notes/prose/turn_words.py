@@ -55,6 +55,8 @@ def angles_in_words(model: RotationModel, letters: Letters) -> Iterator[Text]:
     first, middle, last = (formula_of(turn.angle, letters) for turn in model.turns)
     found = names_of_angles(model)
     called = [f"the {name} angle {{}}" if found is PROPER else f"the {name} {{}}" for name in found]
+    if found and found == tuple(turn.angle.func.__name__ for turn in model.turns):
+        called = ["{}"] * 3
     if found:
         text = f"The angles are {called[0]}, {called[1]} and {called[2]}; "
         yield words(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import groupby
 
 import sympy as sp
 
@@ -16,7 +17,7 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.mechanics.mass.numbers import in_numbers
 from rigidsym.mechanics.quantities.mass import PLACE
-from rigidsym.models.body import RigidBody
+from rigidsym.models.body import Parameter, RigidBody
 from rigidsym.models.distribution import (
     UPRIGHT,
     Composite,
@@ -75,8 +76,17 @@ def _parameters(body: RigidBody, letters: Letters) -> Iterator[NoteBlock]:
     """What the letters of the body are; those with a value are in the table of numbers."""
     told = [p for p in body.parameters if p.about and p.value is None]
     if told:
-        first, *others = [(formula_of(p.symbol, letters), f" is the {p.about}") for p in told]
-        yield Paragraph(("Here ", *listed([first, *others]), "."))
+        yield Paragraph(("Here ", *listed([*_called(told, letters)], ", and "), "."))
+
+
+def _called(told: Sequence[Parameter], letters: Letters) -> Iterator[Text]:
+    """m is the mass, A and C are the principal moments of inertia."""
+    for about, alike in groupby(told, key=lambda p: p.about):
+        names = [(formula_of(p.symbol, letters),) for p in alike]
+        if about == "principal moment of inertia" and len(names) > 1:
+            yield (*listed(names), " are the principal moments of inertia")
+        else:
+            yield from ((*name, f" is the {about}") for name in names)
 
 
 def _solid(solid: Solid, letters: Letters) -> Iterator[NoteBlock]:

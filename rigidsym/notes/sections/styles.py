@@ -29,8 +29,9 @@ _LEFT_OUT = {
     "paper": (FUNCTIONS, SYMBOLS, SUMMARY, IDENTITIES),
 }
 _VERIFIED = {
-    "lecture": "Each numbered equation has been verified exactly, as listed in the appendix.",
-    "paper": "Each numbered equation has been verified exactly.",
+    "lecture": "Each equation listed in the appendix has been verified exactly; the others are "
+    "definitions or are given.",
+    "paper": "Each numbered equation has been verified exactly, unless it is a definition or is given.",
 }
 
 
