@@ -33,13 +33,6 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
-def names_for(names: Sequence[str], width: int) -> tuple[str, ...]:
-    """Names that a user gives for all columns; raises DataError for too few or too many."""
-    if len(names) != width:
-        raise DataError(f"{counted(width, 'column')}, but {counted(len(names), 'name')}")
-    return tuple(names)
-
-
 class ColumnNames:
     """The header of a table: where a name is, and in which unit its numbers are.
 
@@ -90,8 +83,27 @@ class ColumnNames:
             return conversion(stated, expected)
         except DataError as error:
             raise DataError(
-                f"column {self.names[column]}: {error}; --columns gives it another name"
+                f"column {self.names[column]}: {error}; --columns gives it another name and unit"
             ) from None
+
+
+def names_for(
+    names: Sequence[str], width: int, former: Sequence[str] | None = None
+) -> tuple[str, ...]:
+    """Names that a user gives for all columns, in their order.
+
+    A unit that the `former` name of a column states, in the file, holds unless the new name
+    states one. Raises DataError for too few names or too many.
+    """
+    if len(names) != width:
+        raise DataError(f"{counted(width, 'column')}, but {counted(len(names), 'name')}")
+    if former is None:
+        return tuple(names)
+    before, after = ColumnNames(former), ColumnNames(names)
+    return tuple(
+        f"{name} [{before.unit(k)}]" if before.unit(k) and not after.unit(k) else name
+        for k, name in enumerate(names)
+    )
 
 
 def _other_keys(name: str) -> Iterator[tuple[str, str]]:

@@ -6,7 +6,7 @@ from math import pi
 
 import pytest
 
-from rigidsym.data.columns import ColumnNames
+from rigidsym.data.columns import ColumnNames, names_for
 from rigidsym.data.units import conversion, is_angular, unit_of
 from rigidsym.errors import DataError
 
@@ -134,3 +134,10 @@ def test_a_name_that_occurs_twice_is_refused(names):
 def test_the_full_name_is_preferred_to_the_end_of_a_path():
     assert ColumnNames(["desired.yaw", "yaw"]).find(["yaw"]) == 1
     assert ColumnNames(["position.x", "orientation.x"]).find(["x"]) is None
+
+
+def test_a_new_name_of_a_column_keeps_the_unit_of_the_file():
+    former = ("time [ms]", "yaw [mrad]", "roll_deg")
+    assert names_for(["t", "psi", "phi"], 3, former) == ("t [ms]", "psi [mrad]", "phi [deg]")
+    assert names_for(["t", "psi [deg]", "phi [rad]"], 3, former)[1:] == ("psi [deg]", "phi [rad]")
+    assert names_for(["psi"], 1) == ("psi",)

@@ -164,7 +164,8 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
          "of the file, outside the tables"),
         (
             f'{ZXZ}[output]\nnote = ["tex", "docx"]',
-            'line 4: output.note[1]: unknown name "docx"; known: tex, html, md, ipynb, page, pdf',
+            'line 4: output.note[1]: unknown name "docx"; '
+            "known: tex, fragment.tex, html, md, ipynb, page, pdf",
         ),
         (
             f'{ZXZ}[output]\nkernels = ["nunpy"]',
@@ -219,13 +220,13 @@ def test_the_name_of_the_file_names_folder_and_module(name, fault):
 
 def test_a_wrong_text_does_not_turn_the_message_around():
     (fault,) = faults(f'{ZXZ}[output]\nnote = ["\u202efdp"]')
-    known = "tex, html, md, ipynb, page, pdf"
+    known = "tex, fragment.tex, html, md, ipynb, page, pdf"
     assert fault == f'line 4: output.note[0]: unknown name "\\u202efdp"; known: {known}'
 
 
 def test_a_long_wrong_text_is_cut():
     (fault,) = faults(f'{ZXZ}[output]\nnote = ["{"x" * 900}"]')
-    known = "tex, html, md, ipynb, page, pdf"
+    known = "tex, fragment.tex, html, md, ipynb, page, pdf"
     assert fault == f'line 4: output.note[0]: unknown name "{"x" * 40}…"; known: {known}'
 
 

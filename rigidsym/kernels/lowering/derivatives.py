@@ -33,7 +33,7 @@ _EXPECTED = (
     '"angular_velocity_body by q", "angular_velocity_body by q jvp"'
 )
 
-Asked = Iterable[str] | Mapping[str, str | Iterable[str]]
+Asked = str | Iterable[str] | Mapping[str, str | Iterable[str]]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,6 +70,8 @@ def read_requests(asked: Asked) -> tuple[DerivativeRequest, ...]:
 
     Raises KernelError for a text that is none.
     """
+    if isinstance(asked, str):
+        asked = [asked]
     if isinstance(asked, Mapping):
         vectors = {q: (v,) if isinstance(v, str) else v for q, v in asked.items()}
         asked = [f"{quantity} by {vector}" for quantity in vectors for vector in vectors[quantity]]

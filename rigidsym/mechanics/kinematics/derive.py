@@ -140,8 +140,10 @@ class Expanded(Kinematics):
                 matrix = values.omega(frame)
             case "rate_matrix":
                 matrix = values.rate_matrix(frame)
-            case _:
+            case "angular_acceleration":
                 matrix = values.omega(frame).dt()
+            case _:
+                raise LookupError(f"no rule finds {kind}")
         return matrix, values.ring.one
 
     def _holds(self, law: str, claim: Formula, below: PolyElement) -> Proof:

@@ -173,8 +173,11 @@ class Document:
         return self.sources.index(cited.citation.text) + 1
 
     def number(self, label: str) -> int:
-        """The number of an equation, by its label."""
-        return next(e.number for e in self.equations if e.label == label and e.number)
+        """The number of an equation, by its label; raises LookupError if the note lacks it."""
+        for equation in self.equations:
+            if equation.label == label and equation.number:
+                return equation.number
+        raise LookupError(f"no section of the note shows {label}: notes/sections/compose.py")
 
     @property
     def formulas(self) -> tuple[Formula, ...]:
