@@ -27,6 +27,7 @@ _ANGLE_RATES = (40.0, 25.0, 60.0, 20.0, 35.0)  # degrees per second
 _FLOW_RATES = (30.0, 0.0, 720.0)
 _MOMENTS = (1.0, 0.6, 0.8)  # each is less than the sum of the others
 _GRAVITY = sp.Symbol("g")
+_ARM = sp.Symbol("l")  # of a weight: short, since moments about a fixed point are at least m l²
 _ANGLE = 40.0  # degrees, where no figure says better
 
 
@@ -151,7 +152,8 @@ def starts_of(body: RigidBody | None) -> dict[sp.Symbol, float]:
     values = {p.symbol: p.value for p in body.parameters}
     lengths = lengths_of(body.distribution, values) if body.distribution is not None else None
     moments = dict(zip(dict.fromkeys(body.inertia.diagonal()), _MOMENTS, strict=False))
-    chosen = {_GRAVITY: 9.81} | moments | {s: float(x) for s, x in (lengths or {}).items()}
+    chosen = {_GRAVITY: 9.81, _ARM: 0.5} | moments
+    chosen |= {s: float(x) for s, x in (lengths or {}).items()}
     return {s: chosen.get(s, 1.0) if value is None else value for s, value in values.items()}
 
 

@@ -115,7 +115,9 @@ class LagrangeEquations(Flow):
         return ROTATIONAL if alone else claims.KINETIC
 
     def potential_energy(self) -> Found:
-        return Found(sp.ImmutableMatrix([[self.work.potential]]), "The body has the potential energy:")
+        return Found(
+            sp.ImmutableMatrix([[self.work.potential]]), "The body has the potential energy:"
+        )
 
     def lagrangian(self) -> Found:
         if not self.is_holonomic:

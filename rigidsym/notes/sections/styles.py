@@ -31,7 +31,8 @@ _LEFT_OUT = {
 _VERIFIED = {
     "lecture": "Each equation listed in the appendix has been verified exactly; the others are "
     "definitions or are given.",
-    "paper": "Each numbered equation has been verified exactly, unless it is a definition or is given.",
+    "paper": "Each numbered equation has been verified exactly, unless it is a definition or is "
+    "given.",
 }
 
 
