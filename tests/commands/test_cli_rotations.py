@@ -68,6 +68,8 @@ def test_every_named_rotation_runs_from_derive(name, tmp_path):
     assert shown["singularities"]["is_solved"] is True
     motion = rs.derive(rotation_from(name))
     mine = json.loads(json.dumps(record(motion, shown["request"])))
+    written = shown.pop("files")  # and their digests, which a record from Python has not
+    assert set(written) == {f"{motion.name}.{ending}" for ending in ("py", "tex", "html")}
     assert mine == shown
 
 
