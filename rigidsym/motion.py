@@ -41,6 +41,12 @@ QUANTITIES = (
     *(*QUANTITY_NAMES, BODY_ALONE, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES),
     *dict.fromkeys((*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES)),
 )
+_MEANT = {"omega_body": "angular_velocity_body", "omega_space": "angular_velocity_space"}
+
+
+def offered(name: str) -> str:
+    """The end of a message about an unknown quantity, perhaps the name of an input."""
+    return f"did you mean {_MEANT[name]}?" if name in _MEANT else offer(name, QUANTITIES)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -238,7 +244,7 @@ def derive(
         if not isinstance(name, str):
             raise TypeError(f"only: expected names of quantities, got {name!r}")
         if name not in QUANTITIES:
-            raise QuantityError(f"no quantity {name!r}; {offer(name, QUANTITIES)}")
+            raise QuantityError(f"no quantity {name!r}; {offered(name)}")
     with nullcontext() if timeout is None else time_limit(timeout):
         acting = None
         given: dict[str, Any] = {

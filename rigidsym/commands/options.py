@@ -11,11 +11,11 @@ from typing import Any
 import click
 
 from rigidsym.commands.command import NAMES, option, unique
-from rigidsym.errors import KernelError, QuantityError, offer
+from rigidsym.errors import KernelError, QuantityError
 from rigidsym.formula.notation import CHOICES, DEFAULT
 from rigidsym.kernels.lowering.derivatives import read_requests
 from rigidsym.kernels.targets import check_target
-from rigidsym.motion import QUANTITIES
+from rigidsym.motion import QUANTITIES, offered
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.resources import overridden_by
 
@@ -210,4 +210,4 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, SelectionOp
 
 def _check_quantity(name: str, flag: str) -> None:
     if name not in QUANTITIES:
-        raise QuantityError(f"{flag}: no quantity {name!r}\n{offer(name, QUANTITIES)}")
+        raise QuantityError(f"{flag}: no quantity {name!r}\n{offered(name)}")

@@ -7,10 +7,12 @@ from pathlib import Path
 import click
 
 from rigidsym.commands.command import command as make
+from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats import FORMATS
+from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.problems.exercise import sheet_of
 from rigidsym.notes.problems.subjects import SUBJECTS
-from rigidsym.system.files import write_text
+from rigidsym.system.files import write_bytes, write_text
 
 _ENDINGS = ("tex", "html")
 
@@ -25,6 +27,9 @@ _ENDINGS = ("tex", "html")
     show_default=True,
     help="The same variant is the same sheet; others have other numbers.",
 )
+@click.option("--author", default="", help="A name below the title.")
+@click.option("--course", default="", help="A course below the title.")
+@click.option("--pdf", is_flag=True, help="Also typeset the sheet and solutions; needs TeX.")
 @click.option("--moodle", is_flag=True, help="Also write a question bank in Moodle XML.")
 @click.option(
     "--out",
@@ -33,16 +38,30 @@ _ENDINGS = ("tex", "html")
     show_default=True,
     help="The folder for the results.",
 )
-def command(subject: str, number: int, variant: int, moodle: bool, out: Path) -> None:
+def command(
+    subject: str,
+    number: int,
+    variant: int,
+    author: str,
+    course: str,
+    pdf: bool,
+    moodle: bool,
+    out: Path,
+) -> None:
     """Write a problem sheet and its worked solutions.
 
     SUBJECT is euler (Euler angles), bodies (moments of inertia) or all. Every answer is derived.
     The files are LaTeX and HTML.
     """
     sheet = sheet_of(subject, SUBJECTS, count=number, variant=variant)
-    for document in (sheet.document(solved=False), sheet.document(solved=True)):
+    own = OwnText(author=author, course=course)
+    documents = [own.applied(sheet.document(solved=solved)) for solved in (False, True)]
+    for document in documents:
         for ending in _ENDINGS:
             path = out / sheet.name / f"{document.name}.{ending}"
             click.echo(write_text(path, FORMATS[ending].render(document)))
     if moodle:
         click.echo(write_text(out / sheet.name / f"{sheet.name}.xml", sheet.moodle))
+    for document in documents if pdf else ():
+        paper = typeset(FORMATS["tex"].render(document))
+        click.echo(write_bytes(out / sheet.name / f"{document.name}.pdf", paper.pdf))

@@ -47,9 +47,14 @@ OMEGAS: tuple[Names, ...] = (
 )
 
 
+def _quantity(name: str) -> Names:
+    """The columns of a vector that `eval` or `simulate` has written."""
+    return (f"{name}_1", f"{name}_2", f"{name}_3")
+
+
 _GROUPS = {
-    "omega_space": OMEGAS,
-    "omega_body": OMEGAS,
+    "omega_space": (_quantity("angular_velocity_space"), *OMEGAS),
+    "omega_body": (_quantity("angular_velocity_body"), *OMEGAS),
     "quaternion": QUATERNIONS[:5],
     "matrix": MATRICES,
 }

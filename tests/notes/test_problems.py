@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import re
+from itertools import combinations
 from random import Random
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from scipy.spatial.transform import Rotation
 
+from rigidsym.commands import problems
+from rigidsym.commands.cli import commands
 from rigidsym.notes.document.document import Equation, Paragraph, plain
 from rigidsym.notes.formats import FORMATS
+from rigidsym.notes.formats.pdf import Typeset
 from rigidsym.notes.problems import body_problems as bodies, euler_problems as euler
-from rigidsym.notes.problems.exercise import Exercise, Sheet, sheet_of
+from rigidsym.notes.problems.exercise import Asked, Exercise, Sheet, sheet_of
 from rigidsym.notes.problems.subjects import SUBJECTS
 
 
@@ -34,6 +39,56 @@ def test_a_variant_is_the_same_sheet_every_time_and_another_has_other_numbers():
     assert first.moodle == again.moodle != other.moodle
     render = FORMATS["tex"].render
     assert render(first.document(solved=True)) == render(again.document(solved=True))
+
+
+@pytest.mark.parametrize("variant", [3, 6])
+def test_no_two_problems_of_a_sheet_have_one_question_or_the_same_answers(variant):
+    made = sheet_of("euler", SUBJECTS, count=8, variant=variant).problems
+    for one, other in combinations(made, 2):
+        assert one.question != other.question
+        assert one.answer != other.answer or one.answers[0].choices != other.answers[0].choices
+
+
+def test_where_a_kind_has_no_more_questions_the_next_one_follows():
+    def few(rng: Random) -> Exercise:
+        return drawn("few", rng.randrange(2))
+
+    def many(rng: Random) -> Exercise:
+        return drawn("many", rng.randrange(10**6))
+
+    def drawn(title: str, number: int) -> Exercise:
+        asked = (Paragraph((f"{title} {number}",)),)
+        return Exercise(
+            title=title,
+            question=asked,
+            solution=asked,
+            answers=(Asked(choices=(f"{title} {number}",)),),
+        )
+
+    made = sheet_of("x", {"x": ("X", (few, many))}, count=9, variant=1)
+    assert len({problem.question for problem in made.problems}) == 9
+    assert 1 <= [problem.title for problem in made.problems].count("few") <= 2
+
+
+def test_the_convention_is_asked_of_the_candidates_that_are_compared():
+    problem = euler.identify(Random(1))
+    (compared,) = (plain(block.text) for block in problem.solution)
+    candidates = sorted(problem.answers[0].choices)
+    assert re.findall("[XYZ]{3}", asked(problem)) == candidates
+    assert re.findall("[XYZ]{3}", compared) == candidates
+
+
+def test_the_command_typesets_sheet_and_solutions_with_author_and_course(monkeypatch, tmp_path):
+    monkeypatch.setattr(problems, "typeset", lambda tex: Typeset(tex.encode(), ()))
+    options = ["--number", "1", "--pdf", "--author", "Ada", "--course", "Tops", "--out", tmp_path]
+    done = CliRunner().invoke(commands, ["problems", "bodies", *map(str, options)])
+    assert done.exit_code == 0, done.output
+    for name in ("problems_bodies_1", "problems_bodies_1_solutions"):
+        folder = tmp_path / "problems_bodies_1"
+        tex = (folder / f"{name}.tex").read_bytes()
+        assert b"Ada" in tex
+        assert b"Tops" in tex
+        assert (folder / f"{name}.pdf").read_bytes() == tex
 
 
 def test_only_the_solutions_hold_answers():

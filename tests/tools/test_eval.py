@@ -80,6 +80,31 @@ def test_rates_are_named_after_the_coordinates(motion, table, tmp_path):
     assert work.run().columns == ("phi_dot [deg/s]", "theta_dot [deg/s]", "psi_dot [deg/s]")
 
 
+@pytest.mark.parametrize("frame", ["space", "body"])
+def test_an_angular_velocity_that_was_written_is_read_again(motion, table, tmp_path, frame):
+    velocity, log = f"angular_velocity_{frame}", tmp_path / "log.csv"
+    WRITERS[".csv"](log, table)
+    work = evaluation(motion, (velocity,), log, tmp_path / "o.csv", keep=("phi", "theta", "psi"))
+    assert f"{velocity}_1 [rad/s]" in work.run().columns
+    name = f"rates_from_{velocity}"
+    evaluation(motion, (name,), tmp_path / "o.csv", tmp_path / "rates.npy").run()
+    np.testing.assert_allclose(np.load(tmp_path / "rates.npy"), table[:, 3:], atol=1e-10)
+
+
+def test_other_names_of_coordinates_are_said_to_be_given_by_angles(motion, tmp_path):
+    (tmp_path / "log.csv").write_text("yaw,pitch,roll\n1,2,3\n", encoding="utf-8")
+    work = ("rotation_matrix",), tmp_path / "log.csv", tmp_path / "result.npy"
+    with pytest.raises(DataError, match=r"no column phi.* `--angles yaw,pitch,roll`"):
+        evaluation(motion, *work)
+
+
+def test_the_name_of_an_input_offers_the_quantity(tmp_path):
+    (tmp_path / "log.csv").write_text("1,2,3\n", encoding="utf-8")
+    done = run("ZXZ", tmp_path / "log.csv", "--only", "omega_body", "--out", "-")
+    assert done.returncode == 2
+    assert "did you mean angular_velocity_body?" in done.stderr
+
+
 def test_constants_are_given_as_numbers(table, tmp_path):
     motion = rs.derive("z(phi) x(alpha0)", only=VELOCITY)
     np.save(tmp_path / "given.npy", table[:, :2])

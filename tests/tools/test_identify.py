@@ -347,6 +347,12 @@ def test_angles_are_taken_to_be_rounded_where_nothing_fits_otherwise():
     assert "those of the angles too" in found.tolerance.because
 
 
+def test_data_without_any_rounding_are_said_to_be_exact():
+    found = rs.identify((0, 0, 90), matrix=[[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    assert found.tolerance.orientation == 1e-6
+    assert found.tolerance.because == "the data taken to be exact"
+
+
 def test_round_angles_in_radians_stay_exact():
     found_alone(Reading(sequence="xyz"), **sample(Reading(sequence="xyz"), (0.1, 0.2, 0.3)))
 

@@ -104,7 +104,7 @@ def gimbal_lock(rng: Random) -> Exercise:
     found = derive(EulerAngles(sequence))
     assert found.singularities is not None
     determinant = found.singularities.determinant
-    near = rng.choice((1, 2, 3, 5))
+    near = rng.randrange(1, 16)
     theta = near if sequence[0] == sequence[2] else 90 - near
     matrix = sp.ImmutableMatrix([determinant])
     (value,) = _in_numbers(matrix, found, [0, theta, 0], [0, 0, 0])
@@ -116,8 +116,8 @@ def gimbal_lock(rng: Random) -> Exercise:
             said(
                 f"Show where the rates of {sequence} Euler angles do not follow from the angular "
                 "velocity, and what is lost there. How large is the determinant of the rate "
-                f"matrix at $\\theta = {theta}$°, and by which factor may rates exceed the angular "
-                "velocity there?"
+                f"matrix at $\\theta = {theta}$°, and by which factor may a single rate exceed "
+                "the angular velocity there?"
             ),
         ),
         solution=(
@@ -156,7 +156,7 @@ def identify(rng: Random) -> Exercise:
                 (" and, for the same moment, the rotation matrix",),
             ),
             Equation(sides=(ROTATION, Matrix(tuple(map(tuple, rows))))),
-            said("of three turns about axes of the body. Which sequence of axes is it?"),
+            said(f"of three turns about axes of the body. Which of {_words(sorted(apart))} is it?"),
         ),
         solution=(
             _paragraph(
@@ -168,6 +168,12 @@ def identify(rng: Random) -> Exercise:
         answers=(Asked(choices=(right, *wrong)),),
         arguments=arguments,
     )
+
+
+def _words(names: Sequence[str]) -> str:
+    """XYZ, XZY and ZXZ."""
+    *others, last = names
+    return f"{', '.join(others)} and {last}"
 
 
 def _paragraph(*texts: Text) -> Paragraph:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -25,6 +26,7 @@ from rigidsym.notes.document.document import (
 from rigidsym.notes.formula.derivation_letters import letters_of
 
 _WIDTH = 40.0  # ems of a display in a quiz
+_DRAWS = 8  # of one kind, before the next one is tried
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -68,6 +70,11 @@ class Exercise:
     @property
     def answer(self) -> Paragraph:
         return Paragraph((Strong("Answer:"), " ", *listed([a.text for a in self.answers]), "."))
+
+    def is_like(self, other: Exercise) -> bool:
+        """Whether the question is the same, or all answers are, as they are printed."""
+        mine, theirs = ([(a.text, a.choices) for a in e.answers] for e in (self, other))
+        return self.question == other.question or mine == theirs
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -113,7 +120,8 @@ class Sheet:
         return f'<?xml version="1.0" encoding="UTF-8"?>\n<quiz>\n{questions}</quiz>\n'
 
 
-Subject = tuple[str, Sequence[Callable[[Random], Exercise]]]  # its title, and its kinds in turn
+_Kind = Callable[[Random], Exercise]
+Subject = tuple[str, Sequence[_Kind]]  # its title, and its kinds in turn
 
 
 def sheet_of(
@@ -125,13 +133,24 @@ def sheet_of(
 ) -> Sheet:
     """`count` problems of a subject, its kinds in turn; the same variant is the same sheet.
 
+    No two are alike: a problem is drawn again, and where a kind has no more, of the next kind.
     Raises ModelError for a subject that is not among the kinds.
     """
     if subject not in kinds:
         raise ModelError(f"no problems on {subject!r}; there are {', '.join(kinds)}")
     title, made = kinds[subject]
-    problems = (made[k % len(made)](Random(f"{subject} {variant} {k}")) for k in range(count))
+    problems: list[Exercise] = []
+    for k in range(count):
+        drawn = _drawn(made, k, f"{subject} {variant} {k}")
+        problems.append(next(p for p in drawn if not any(map(p.is_like, problems))))
     return Sheet(subject=subject, title=title, variant=variant, problems=tuple(problems))
+
+
+def _drawn(kinds: Sequence[_Kind], start: int, seed: str) -> Iterator[Exercise]:
+    """Problems to choose from: several of one kind, then of the next, without end."""
+    for attempt in itertools.count():
+        kind = kinds[(start + attempt // _DRAWS) % len(kinds)]
+        yield kind(Random(f"{seed} {attempt}" if attempt else seed))
 
 
 def _solution(problem: Exercise) -> Iterator[NoteBlock]:

@@ -86,8 +86,11 @@ def _by_name(arguments: Sequence[FunctionArgument], header: ColumnNames) -> tupl
             else:
                 columns.append(column)
     if missing:
-        raise DataError(
-            f"no column {', '.join(missing)} among {', '.join(header.names)}; "
-            "--columns names the columns in their order"
-        )
+        remedy = "--columns names the columns in their order"
+        if any(a.name == "q" and len(a.names) == 3 and {*a.names} <= {*missing} for a in arguments):
+            remedy += (
+                ", or --angles the coordinates in the order of the turns, "
+                "such as `--angles yaw,pitch,roll`"
+            )
+        raise DataError(f"no column {', '.join(missing)} among {', '.join(header.names)}; {remedy}")
     return tuple(columns)

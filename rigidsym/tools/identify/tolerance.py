@@ -58,7 +58,9 @@ def tolerances(
         radians=attitude,
         degrees=attitude,
         velocity=velocity,
-        because="from the digits of the data",
+        because="from the digits of the data"
+        if max(attitude, velocity) > FLOOR
+        else "the data taken to be exact",
     )
     rounding = 3 * _largest(rounding_of(block.angles))
     slow = 0.0 if block.rates is None else 3 * _largest(rounding_of(block.rates))
