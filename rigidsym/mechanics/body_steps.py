@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import replace
 
 import sympy as sp
 
 from rigidsym.errors import QuantityError
-from rigidsym.mechanics.derivation import Found, OfBody
+from rigidsym.mechanics.derivation import OF_CENTRE, Found, OfBody, Quantity
 from rigidsym.mechanics.dynamics.derive import equations_of_motion
 from rigidsym.mechanics.energy import derive as energy
 from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn
@@ -37,14 +38,20 @@ def steps_of_body(
     whole = rigid_body(body)
     if forces is not None:
         whole = forces.with_parameters(whole, model)
+    is_fixed = forces is not None and forces.fix_a_point and whole.distribution is None
+    is_fixed = is_fixed and OF_CENTRE.isdisjoint(only)
+    wanted = only or {*INERTIA_QUANTITIES, *ENERGY_QUANTITIES} - (OF_CENTRE if is_fixed else set())
     values = (NamedRotation if turns else Values)(model, whole, also=energy.OF_PARTICLES)
-    found = dict(mass.steps(values, [n for n in INERTIA_QUANTITIES if not only or n in only]))
+    found = dict(mass.steps(values, [n for n in INERTIA_QUANTITIES if n in wanted]))
     asked = set(only) - (set(OF_BODY_ALONE) if BODY_ALONE in only else set())
     absent = [name for name in INERTIA_QUANTITIES if name in asked and name not in found]
     if absent:
         reasons = (f"no quantity {name}: {mass.WITHOUT[name]}" for name in absent)
         raise QuantityError(f"{whole.name} has {'; '.join(reasons)}")
-    found |= energy.steps(values, [n for n in ENERGY_QUANTITIES if not only or n in only])
+    if is_fixed and "inertia_tensor" in found:
+        because = "The inertia tensor of the body is given, about the fixed point."
+        found["inertia_tensor"] = found["inertia_tensor"]._replace(because=because)
+    found |= energy.steps(values, [n for n in ENERGY_QUANTITIES if n in wanted])
     if turns is not None:
         found = {name: _renamed(step, turns) for name, step in found.items()}
     if forces is None:
@@ -61,8 +68,17 @@ def steps_of_body(
         functions={n: f for n, f in functions.items() if not only or n in only},
         first_integrals=motion.first_integrals,
         consequences=tuple(motion.consequences()) if follows else (),
-        table=motion.table,
+        table={**motion.table, **(_about_fixed_point() if is_fixed else {})},
     )
+
+
+def _about_fixed_point() -> dict[str, Quantity]:
+    """The quantities that are otherwise about the centre of mass."""
+    return {
+        name: replace(q, about=q.about.replace("the centre of mass", "the fixed point"))
+        for name, q in {**INERTIA_QUANTITIES, **ENERGY_QUANTITIES}.items()
+        if "about the centre of mass" in q.about
+    }
 
 
 def _renamed(step: Found, turns: TurnByTurn) -> Found:

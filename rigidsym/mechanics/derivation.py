@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 
 Status = Literal["exact", "unproved"]
 
+OF_CENTRE = frozenset(  # they have no place where a body turns about a fixed point
+    {
+        *("translational_energy", "kinetic_energy", "angular_momentum_centre", "angular_momentum"),
+        *("inertia_tensor_point", "moment_of_inertia", "radii_of_gyration"),
+    }
+)
 OF_RATES = frozenset(  # the quantities that the singularities are about
     f"{quantity}_{frame}"
     for quantity in ("rate_matrix", "inverse_rate_matrix", "rates_from_angular_velocity")
@@ -336,6 +342,18 @@ class Derivation:
         if self.theory:
             return "The equations of the lecture, each with its proof"
         return "Kinematics of a rotation" if self.body is None else "Motion of a rigid body"
+
+    @property
+    def about_fixed_point(self) -> bool:
+        """Whether the given inertia tensor is about a fixed point, and nothing about the centre."""
+        names = {step.quantity.name for step in self.steps}
+        return (
+            self.forces is not None
+            and self.forces.fix_a_point
+            and self.body is not None
+            and self.body.distribution is None
+            and names.isdisjoint(OF_CENTRE)
+        )
 
     def argument(self, name: str) -> Argument:
         return next(argument for argument in self.arguments if argument.name == name)

@@ -53,6 +53,11 @@ class Forces:
     parts: tuple[MovingPart, ...] = ()
     frame_rate: tuple[sp.Expr, ...] = ()  # rad/s, of the frame of R, constant in it; three or none
 
+    @property
+    def fix_a_point(self) -> bool:
+        """Whether the body and its parts turn about a point at rest."""
+        return not self.frame_rate and all(part.rotation is not None for part in self.parts)
+
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
 

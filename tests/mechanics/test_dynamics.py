@@ -87,6 +87,17 @@ def test_first_integrals_of_the_heavy_symmetric_top_are_found_and_proved():
     assert [i.name for i in asymmetric.first_integrals] == ["energy", "momentum_phi"]
 
 
+def test_a_given_tensor_is_about_the_fixed_point_unless_the_centre_is_asked_for():
+    motion = top()
+    names = {step.quantity.name for step in motion.steps}
+    assert motion.about_fixed_point
+    assert names.isdisjoint({"translational_energy", "kinetic_energy", "angular_momentum"})
+    assert motion.step("inertia_tensor").quantity.about.startswith("inertia tensor about the fixed")
+    asked = rs.derive("ZXZ", ["kinetic_energy"], body=rs.principal_moments(A, A, C), potential=TOP)
+    assert not asked.about_fixed_point
+    assert asked.kinetic_energy
+
+
 def test_first_integrals_do_not_change_along_the_motion():
     motion = top(moments=(A, B, C), potential=ANYWHERE)
     values = values_for(motion)

@@ -71,7 +71,10 @@ def lower(
     return ir.Program(
         name=derivation.name,
         title=derivation.title,
-        convention=(*_convention(model), *body_in_words(derivation.body)),
+        convention=(
+            *_convention(model),
+            *body_in_words(derivation.body, about_fixed_point=derivation.about_fixed_point),
+        ),
         source=str(model.source),
         arguments=tuple(a for name, a in kernels.arguments.items() if name in used),
         kernels=found,

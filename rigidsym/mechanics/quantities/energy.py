@@ -72,10 +72,18 @@ MOMENTA = tuple(name for name in ENERGY_QUANTITIES if name.startswith("angular_m
 ENERGIES = tuple(name for name in ENERGY_QUANTITIES if name not in MOMENTA)
 
 
-def body_in_words(body: RigidBody | None) -> tuple[str, ...]:
+ABOUT_FIXED_POINT = (
+    "The body turns about a fixed point, which may be its centre of mass, and its inertia tensor "
+    "is about this point, along the axes of the body."
+)
+
+
+def body_in_words(body: RigidBody | None, *, about_fixed_point: bool) -> tuple[str, ...]:
     """A body in plain sentences, to follow the convention of its rotation."""
     if body is None:
         return ()
+    if about_fixed_point:
+        return (f"{body.title}. {ABOUT_FIXED_POINT}",)
     return (
         f"{body.title}, of mass {body.mass}; its inertia tensor is about the centre of mass, "
         "along the axes of x′.",

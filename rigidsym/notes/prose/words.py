@@ -16,7 +16,7 @@ from rigidsym.formula.sentence import by_text
 from rigidsym.formula.tree import Formula, Symbol, equal
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.mechanics.quantities.claims import transpose_of
-from rigidsym.mechanics.quantities.energy import CENTRE
+from rigidsym.mechanics.quantities.energy import ABOUT_FIXED_POINT, CENTRE
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, POINT
 from rigidsym.models.rotation import Citation
@@ -128,6 +128,9 @@ def _body(derivation: Derivation, notation: Notation) -> Iterator[Text]:
     if body is None:
         return
     letters = letters_of(derivation.arguments, notation)
+    if derivation.about_fixed_point:
+        yield (ABOUT_FIXED_POINT,)
+        return
     centre = listed([(name,) for name in derivation.argument("centre").notation], ", ")
     head = words(
         "The body has the mass {}, and its inertia tensor is about the centre of mass, along the "

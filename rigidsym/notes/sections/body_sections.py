@@ -48,7 +48,7 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
     body = derivation.body
     if body is None:
         return
-    yield from _parameters(body, letters)
+    yield from _parameters(derivation, body, letters)
     match body.distribution:
         case Solid():
             yield from _solid(body.distribution, letters)
@@ -72,9 +72,15 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
     yield from _numbers(body, letters)
 
 
-def _parameters(body: RigidBody, letters: Letters) -> Iterator[NoteBlock]:
-    """What the letters of the body are; those with a value are in the table of numbers."""
+def _parameters(derivation: Derivation, body: RigidBody, letters: Letters) -> Iterator[NoteBlock]:
+    """What the letters of the body are; those with a value are in the table of numbers.
+
+    About a fixed point the mass of the body may not be in any equation.
+    """
     told = [p for p in body.parameters if p.about and p.value is None]
+    if derivation.about_fixed_point:
+        shown = [step.expression for step in derivation.steps]
+        told = [p for p in told if any(entry.has(p.symbol) for entry in shown)]
     if told:
         yield Paragraph(("Here ", *listed([*_called(told, letters)], ", and "), "."))
 
