@@ -97,14 +97,11 @@ def test_floating_point_moments_are_refused_when_the_body_is_made():
 
 
 def test_a_new_solid_is_one_entry(monkeypatch):
-    def wedge(u, v, w, side, height):
-        return (u, v, w), (u, v, w), ((0, side), (0, side - u), (0, height)), None
-
     lengths = tuple(
         solids.Length(key=key, names=(name,), about=key)
         for key, name in (("side", "a"), ("h", "h"))
     )
-    entry = solids.Shape(title="Wedge", about="at the origin", lengths=lengths, form=wedge)
+    entry = solids.Shape("Wedge", "at the origin", lengths, "u, v, w", "0..a, 0..a - u, 0..h")
     monkeypatch.setattr(solids, "SHAPES", {**solids.SHAPES, "wedge": entry})
     body = rs.solid("wedge")
     assert rs.derive("ZXZ", ["inertia_tensor"], body=body).is_proved
