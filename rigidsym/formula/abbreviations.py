@@ -53,7 +53,9 @@ class Namer:
         parts = [(symbol, value.xreplace(back)) for symbol, value in found]
         parts, entries = self._worth_a_name(parts, [e.xreplace(back) for e in short])
         parts, entries = self._breakable(parts, entries, room)
-        return tuple(parts), sp.ImmutableMatrix(*matrix.shape, [before * e for e in entries])
+        # a fraction before them may have to go below each, where no line can break
+        parts, entries = self._breakable(parts, [before * entry for entry in entries], room)
+        return tuple(parts), sp.ImmutableMatrix(*matrix.shape, entries)
 
     def forget(self) -> None:
         """Free the names that were given last, where they come to stand nowhere."""
