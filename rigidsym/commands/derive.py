@@ -23,8 +23,6 @@ from rigidsym.pipeline import PDF, Output, integrated, motion_of, output_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.system.files import write_bytes, write_text
 from rigidsym.system.progress import counter
-from rigidsym.tools.certificate.certificate import certificate_of
-from rigidsym.tools.certificate.formal import coq, lean
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,10 +111,12 @@ def _typeset(output: Output, folder: Path, missing: list[RigidsymError]) -> list
 
 def _certified(output: Output, folder: Path) -> list[Path]:
     """The certificate of the record, and its theorems for Coq and Lean."""
-    found = certificate_of(json.loads(output.record_text))
+    from rigidsym.tools.certificate import certificate, formal  # few derivations ask for one
+
+    found = certificate.certificate_of(json.loads(output.record_text))
     if found.uncovered:
         message(f"{output.name}: the certificate does not cover {', '.join(found.uncovered)}")
-    texts = {"cert.json": found.json, "v": coq(found), "lean": lean(found)}
+    texts = {"cert.json": found.json, "v": formal.coq(found), "lean": formal.lean(found)}
     return [write_text(folder / f"{output.name}.{end}", text) for end, text in texts.items()]
 
 
