@@ -53,8 +53,9 @@ class Namer:
         parts = [(symbol, value.xreplace(back)) for symbol, value in found]
         parts, entries = self._worth_a_name(parts, [e.xreplace(back) for e in short])
         parts, entries = self._breakable(parts, entries, room)
-        # a fraction before them may have to go below each, where no line can break
-        parts, entries = self._breakable(parts, [before * entry for entry in entries], room)
+        if before != 1:  # a fraction may have to go below each entry, where no line can break
+            more, entries = self._breakable((), [before * entry for entry in entries], room)
+            parts = list(dict.fromkeys([*parts, *more]))
         return tuple(parts), sp.ImmutableMatrix(*matrix.shape, entries)
 
     def forget(self) -> None:
