@@ -88,13 +88,15 @@ class ColumnNames:
 
 
 def names_for(
-    names: Sequence[str], width: int, former: Sequence[str] | None = None
-) -> tuple[str, ...]:
-    """Names that a user gives for all columns, in their order.
+    names: Sequence[str] | None, width: int, former: Sequence[str] | None
+) -> tuple[str, ...] | None:
+    """Names that a user gives for all columns, in their order; without them those of the file.
 
     A unit that the `former` name of a column states, in the file, holds unless the new name
     states one. Raises DataError for too few names or too many.
     """
+    if names is None:
+        return None if former is None else tuple(former)
     if len(names) != width:
         raise DataError(f"{counted(width, 'column')}, but {counted(len(names), 'name')}")
     if former is None:

@@ -140,4 +140,5 @@ def test_a_new_name_of_a_column_keeps_the_unit_of_the_file():
     former = ("time [ms]", "yaw [mrad]", "roll_deg")
     assert names_for(["t", "psi", "phi"], 3, former) == ("t [ms]", "psi [mrad]", "phi [deg]")
     assert names_for(["t", "psi [deg]", "phi [rad]"], 3, former)[1:] == ("psi [deg]", "phi [rad]")
-    assert names_for(["psi"], 1) == ("psi",)
+    assert names_for(["psi"], 1, None) == ("psi",)
+    assert names_for(None, 3, former) == former

@@ -44,7 +44,7 @@ class ParticleColumns:
         and for units that are not of length and mass.
         """
         try:
-            named = reader.names if names is None else names_for(names, reader.width, reader.names)
+            named = names_for(names, reader.width, reader.names)
             if named is None:
                 if reader.width not in (3, 4):
                     raise BodyError(

@@ -101,7 +101,7 @@ def evaluation(
     reader, path, output = _opened(source, path)
     work, arguments = functions_of(motion, quantities, target, degrees=degrees)
     try:
-        names = reader.names if columns is None else names_for(columns, reader.width, reader.names)
+        names = names_for(columns, reader.width, reader.names)
         header = None if names is None else ColumnNames(names)
         used, inputs = inputs_of(
             arguments, header, reader.width, given=given or {}, degrees=degrees

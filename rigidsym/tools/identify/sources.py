@@ -81,7 +81,7 @@ def from_file(
     """
     try:
         reader = reader_of(path)
-        named = reader.names if names is None else names_for(names, reader.width, reader.names)
+        named = names_for(names, reader.width, reader.names)
         columns = by_width(reader.width) if named is None else by_name(named)
     except SampleError:
         raise
