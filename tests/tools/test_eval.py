@@ -10,20 +10,10 @@ from numpy.testing import assert_array_equal
 from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
-from helpers.log_files import COUNT, NAMES, VELOCITY, WRITERS, logged, read, run, velocities
+from helpers.log_files import COUNT, NAMES, VELOCITY, WRITERS, read, run, velocities
 from rigidsym.data.readers import reader_of
 from rigidsym.errors import DataError
 from rigidsym.tools.evaluate.evaluation import evaluation
-
-
-@pytest.fixture(scope="module")
-def motion() -> rs.Motion:
-    return rs.derive("ZXZ")
-
-
-@pytest.fixture(scope="module")
-def table() -> np.ndarray:
-    return logged()
 
 
 @pytest.fixture(scope="module")

@@ -19,16 +19,6 @@ from rigidsym.data import writers
 from rigidsym.tools.evaluate.evaluation import evaluation
 
 
-@pytest.fixture(scope="module")
-def motion() -> rs.Motion:
-    return rs.derive("ZXZ")
-
-
-@pytest.fixture(scope="module")
-def table() -> np.ndarray:
-    return logged()
-
-
 class _Stopped(Exception):
     pass
 
