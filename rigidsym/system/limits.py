@@ -49,7 +49,15 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
         if is_shown and not is_drawing():
             os.write(2, f"\r{label}: {passed:.0f} s".encode())
 
+    lost = sys.unraisablehook
+
+    def ignored(unraisable: sys.UnraisableHookArgs) -> None:
+        """Say nothing of a stop that a finalizer lost; the next tick stops the work."""
+        if unraisable.exc_type is not _TimeIsUp:
+            lost(unraisable)
+
     first = min(_TICK, seconds)
+    sys.unraisablehook = ignored
     handler = signal.signal(signal.SIGALRM, tick)
     before = signal.setitimer(signal.ITIMER_REAL, first, first if isfinite(first) else _TICK)
     try:
@@ -61,6 +69,7 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
     finally:
         signal.setitimer(signal.ITIMER_REAL, *before)
         signal.signal(signal.SIGALRM, handler)
+        sys.unraisablehook = lost
         if is_shown and monotonic() - start > _TICK:
             os.write(2, b"\r\x1b[K")
 

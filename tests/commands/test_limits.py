@@ -51,6 +51,22 @@ def test_a_time_limit_holds_in_python():
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
 
 
+def test_a_stop_that_a_finalizer_loses_is_made_again_without_a_word(monkeypatch):
+    said = []
+    monkeypatch.setattr(sys, "unraisablehook", said.append)
+
+    class Slow:
+        def __del__(self):
+            sleep(0.2)
+
+    with pytest.raises(LimitReached), time_limit(0.1):
+        slow = Slow()
+        del slow
+        sleep(60)
+    assert not said
+    assert sys.unraisablehook == said.append
+
+
 @pytest.mark.parametrize("seconds", [0, -1, float("nan")])
 def test_a_time_limit_is_positive(seconds):
     with pytest.raises(RequestError, match="expected a positive number of seconds"):
