@@ -217,7 +217,7 @@ def derive(
     A rotation may be a text, as on the command line: "ZXZ", "z(phi) x(theta)", "quaternion". With
     a `body`, its kinetic energy and angular momentum follow, in principal axes or any others; a
     description or a distribution of mass is integrated first.
-    With a `potential` V(q) or `forces` by coordinate ("theta": "-c*theta_dot") its equations of
+    With a `potential` V(q, t) or `forces` by coordinate ("theta": "-c*theta_dot") its equations of
     motion about a fixed point follow; the inertia tensor is then about that point. The same
     follows from a `torque` in body components. `method` is "lagrange", for free coordinates, or
     "euler", with the state (q, Ω′); `first_integrals` are claims to be proved, by name; `parts`

@@ -33,7 +33,7 @@ class Kind(IntEnum):
     SINE = 2  # with s² + c² = 1
     COSINE = 3
     OPAQUE = 4  # any other function: its relations are not known
-    TIME_FUNCTION = 5  # a coordinate or one of its derivatives
+    TIME_FUNCTION = 5  # a coordinate, one of its derivatives, or the time itself
     CONSTANT = 6
 
 
@@ -214,10 +214,8 @@ def _sine_and_cosine(atom: sp.Expr, fraction: sp.Rational) -> tuple[tuple[sp.Exp
 def _kind(expression: sp.Expr) -> Kind:
     if expression is sp.I:
         return Kind.RADICAL
-    if is_time_function(expression):
+    if expression == TIME or is_time_function(expression):
         return Kind.TIME_FUNCTION
-    if expression == TIME:
-        raise AlgebraError("the time t stands by itself; the ring holds functions of t only")
     if expression.is_Symbol or isinstance(expression, sp.NumberSymbol):
         return Kind.CONSTANT
     if expression.is_Float:

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import sympy as sp
 
@@ -45,6 +46,7 @@ from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.distribution import Distribution
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel
+from rigidsym.models.so3 import depends_on_time
 
 _STUDIED = 5  # turns up to which the minors of W are few enough to solve for their zeros
 
@@ -101,13 +103,14 @@ def derive(
     definitions = turns.definitions(named) if turns else ()
     constants = set(arguments["parameters"].symbols) if "parameters" in arguments else set()
     constants |= _resting_on(constants, definitions)
+    inputs = _Inputs(constants, is_driven=forces is not None and forces.depend_on_time)
     return Derivation(
         name=model.name,
         title=model.title,
         model=model,
         arguments=tuple(arguments.values()),
-        steps=tuple(_numbered(found, {**_table(values), **of_body.table}, constants)),
-        functions=tuple(_with_parameters(step, constants) for step in of_body.functions.values()),
+        steps=tuple(map(inputs.of, _numbered(found, {**_table(values), **of_body.table}))),
+        functions=tuple(map(inputs.of, of_body.functions.values())),
         singularities=singularities,
         body=of_body.body,
         forces=forces,
@@ -160,14 +163,12 @@ def _table(values: Values) -> dict[str, Quantity]:
     return {**of_rotation, **INERTIA_QUANTITIES, **ENERGY_QUANTITIES}
 
 
-def _numbered(
-    found: Mapping[str, Found], table: Mapping[str, Quantity], constants: Collection[sp.Symbol]
-) -> Iterator[Step]:
+def _numbered(found: Mapping[str, Found], table: Mapping[str, Quantity]) -> Iterator[Step]:
     for number, (name, step) in enumerate(found.items(), start=1):
         quantity = table[name]
         if step.definition is not None:
             quantity = replace(quantity, definition=step.definition)
-        made = Step(
+        yield Step(
             number=number,
             quantity=quantity,
             expression=step.expression,
@@ -176,12 +177,19 @@ def _numbered(
             vector_form=step.vector_form,
             recursion=step.recursion,
         )
-        yield _with_parameters(made, constants)
 
 
-def _with_parameters(step: Step, constants: Collection[sp.Symbol]) -> Step:
-    """The step with the parameters among its inputs if it depends on any."""
-    if step.expression.free_symbols.isdisjoint(constants):
-        return step
-    inputs = (*step.quantity.inputs, "parameters")
-    return replace(step, quantity=replace(step.quantity, inputs=inputs))
+class _Inputs(NamedTuple):
+    """What quantities may depend on besides the inputs that their table names."""
+
+    constants: Collection[sp.Symbol]
+    is_driven: bool  # whether the time may occur by itself
+
+    def of(self, step: Step) -> Step:
+        """The step with the time and the parameters among its inputs if it depends on them."""
+        inputs = step.quantity.inputs
+        if self.is_driven and "t" not in inputs and depends_on_time(step.expression):
+            inputs += ("t",)
+        if not step.expression.free_symbols.isdisjoint(self.constants):
+            inputs += ("parameters",)
+        return replace(step, quantity=replace(step.quantity, inputs=inputs))

@@ -14,7 +14,7 @@ from rigidsym.errors import ModelError, offer
 from rigidsym.models.body import Parameter, RigidBody
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.models.so3 import TIME, symbolic
+from rigidsym.models.so3 import TIME, depends_on_time, symbolic
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 
@@ -42,7 +42,7 @@ class Forces:
     """A potential energy V(q, t), in joules, and generalised forces Q by coordinate, in N m.
 
     Symbols that are no coordinates are constants; they become parameters of the body. Forces may
-    depend on the rates as well, and the torque on Ω′ by the symbols OMEGA_BODY.
+    depend on the rates as well, and the torque on Ω′ by the symbols OMEGA_BODY; both on the time.
     """
 
     potential: sp.Expr = sp.S.Zero
@@ -58,13 +58,26 @@ class Forces:
         """Whether the body and its parts turn about a point at rest."""
         return not self.frame_rate and all(part.rotation is not None for part in self.parts)
 
+    @property
+    def depend_on_time(self) -> bool:
+        """Whether the time occurs by itself in what acts, or in a claimed first integral."""
+        return any(map(depends_on_time, self._given()))
+
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
 
-        Raises ModelError for a potential that depends on the rates.
+        Raises ModelError for a potential that depends on the rates, and for parts and a frame that
+        depend on the time.
         """
         if self.potential.has(sp.Derivative):
-            raise ModelError(f"the potential {self.potential} depends on rates; expected V(q)")
+            raise ModelError(f"the potential {self.potential} depends on rates; expected V(q, t)")
+        moving = (e for part in self.parts for e in (*part.velocity, *part.inertia))
+        for expression in (*self.frame_rate, *moving):
+            if depends_on_time(expression):
+                raise ModelError(
+                    f"{expression} depends on t; expected a part, or a rate of the frame, that "
+                    "does not"
+                )
         known = {p.symbol for p in body.parameters} | {*model.constants, *OMEGA_BODY, TIME}
         symbols = set().union(*(expression.free_symbols for expression in self._given())) - known
         more = (Parameter(symbol=s, positive=False) for s in sp.ordered(symbols))

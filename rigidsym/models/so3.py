@@ -6,11 +6,15 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.adjoin import TIME
 from rigidsym.errors import ModelError
 
-__all__ = ["AXES", "TIME", "elementary", "hat", "rodrigues", "symbolic", "time_function"]
+__all__ = [
+    *("AXES", "TIME", "depends_on_time", "elementary", "hat", "rodrigues", "symbolic"),
+    "time_function",
+]
 
 AXES = ("x", "y", "z")
 
@@ -18,6 +22,12 @@ AXES = ("x", "y", "z")
 def time_function(name: str) -> sp.Expr:
     """The function of time `name`(t), the same object that dynamicsymbols(name) gives."""
     return sp.Function(name)(TIME)
+
+
+def depends_on_time(value: sp.Basic) -> bool:
+    """Whether t occurs in it by itself, not only as the argument of a coordinate."""
+    moving = value.atoms(sp.Derivative, AppliedUndef)
+    return bool(value.xreplace({function: sp.Dummy() for function in moving}).has(TIME))
 
 
 def symbolic(value: object, what: str) -> sp.Expr:

@@ -1,14 +1,14 @@
 import { readFileSync } from "node:fs";
 import * as kernels from "./kernels.mjs";
 
-const [name, first, parted, ...sizes] = process.argv.slice(2);
+const [name, time, parted, ...sizes] = process.argv.slice(2);
 const numbers = new Float64Array(Uint8Array.from(readFileSync(0)).buffer);
 const count = sizes.reduce((sum, size) => sum + Number(size), 0);
 const results = [];
 for (let start = 0; start < Math.max(numbers.length, 1); start += Math.max(count, 1)) {
   let place = start;
   const vectors = sizes.map((size) => numbers.subarray(place, (place += Number(size))));
-  if (first === "t" && !name.endsWith("_batch")) vectors[0] = vectors[0][0]; // a number
+  if (time && !name.endsWith("_batch")) vectors[time] = vectors[time][0]; // a number
   results.push(kernels[name](...vectors));
 }
 const shape = (value) => (Array.isArray(value) ? [value.length, ...shape(value[0])] : []);

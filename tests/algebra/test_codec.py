@@ -271,7 +271,6 @@ def test_floats_are_refused_with_the_fraction_to_write(expression, fraction):
 @pytest.mark.parametrize(
     ("expression", "part"),
     [
-        (TIME * sin(a), "the time t stands by itself"),
         (sin(a + 1), "not in the ring"),
         (sin(sp.Integer(2)), "not in the ring"),
         (cos(a + pi / 7), "pi/7"),

@@ -39,6 +39,7 @@ def values_for(motion: rs.Motion, seed: int = 3) -> dict:
         ("ZXZ", (A, B, C), ANYWHERE, {"theta": "-c*theta_dot", "psi": "k"}),
         ("ZYX", (A, B, C), "m*g*l*sin(theta)*cos(psi)", {}),
         ("zyz", (A, B, C), "0", {"phi": "-c*phi_dot**2"}),
+        ("ZXZ", (A, A, C), "m*(g + a*sin(omega*t))*cos(theta) - b*t*psi", {"phi": "k*exp(-t)"}),
     ],
 )
 def test_accelerations_are_those_of_sympy(sequence, moments, potential, forces):
@@ -148,31 +149,37 @@ def test_kernels_hold_the_equations_of_motion():
 
 @pytest.mark.parametrize("target", ["numpy", "c", "numba", "jax", "javascript"])
 def test_every_language_has_the_derivative_of_the_state_for_one_and_for_many(target):
-    """state_derivative(t, y, parameters) = (q̇, q̈), its Jacobian, and the first integrals"""
+    """state_derivative(t, y, parameters) = (q̇, q̈), its Jacobian, and the first integrals; the
+    accelerations of a driven top take the time as well
+    """
     motion = flowing()
     kernels = motion.kernels(target).load()
     values = {s: float(v) for s, v in values_for(motion).items()}
     y, parameters = ([values[s] for s in motion.argument(n).symbols] for n in ("y", "parameters"))
+    time = values[sp.Symbol("t")]
     rel = 1e-5 if target == "jax" else 1e-12  # float32 unless jax_enable_x64 is set
 
     def at(name):
         return np.array(evaluate(motion.step(name).expression, values).tolist(), float)
 
     for name, given in (
-        ("state_derivative", (0.0, y, parameters)),
-        ("state_jacobian", (0.0, y, parameters)),
+        ("state_derivative", (time, y, parameters)),
+        ("state_jacobian", (time, y, parameters)),
         ("first_integrals", (y, parameters)),
+        ("accelerations", (y[:3], y[3:], time, parameters)),
     ):
         exact = at(name)
         exact = exact if name == "state_jacobian" else exact.ravel()
         assert np.asarray(getattr(kernels, name)(*given)) == pytest.approx(exact, rel, abs=rel)
-    many = kernels.state_derivative(np.zeros(2), [y, y], parameters)
+    many = kernels.state_derivative([0.0, time], [y, y], parameters)
     assert np.asarray(many)[1] == pytest.approx(at("state_derivative").ravel(), rel)
 
 
 @cache
 def flowing() -> rs.Motion:
-    return top(only=["state_derivative", "state_jacobian", "first_integrals"])
+    """A top whose support vibrates."""
+    only = ["state_derivative", "state_jacobian", "first_integrals", "accelerations"]
+    return top(potential="m*(g - a*omega**2*cos(omega*t))*l*cos(theta)", only=only)
 
 
 def test_the_jacobian_of_the_state_derivative_is_the_derivative():
@@ -184,6 +191,51 @@ def test_the_jacobian_of_the_state_derivative_is_the_derivative():
         for k, symbol in enumerate(motion.argument("y").symbols):
             moved = evaluate(motion.state_derivative, values | {symbol: values[symbol] + step})
             assert mp.norm((moved - slopes) / step - jacobian[:, k]) < 1e-15
+
+
+@pytest.mark.parametrize(
+    ("rotation", "potential"),
+    [("ZXZ", "m*g*cos(theta)*(1 + a*t)"), ("unit_quaternion", "m*g*cos(omega*t)*(w*x + w*z)")],
+)
+def test_the_energy_in_a_potential_that_depends_on_the_time_is_no_first_integral(
+    rotation, potential
+):
+    """dE/dt = ∂V/∂t along the motion, which is proved"""
+    only = ["energy", "state_derivative", "potential_energy", "effective_potential"]
+    body = rs.principal_moments(A, B, C)
+    model = (
+        rs.EulerAngles(rotation, angles=("phi", "theta", "psi")) if rotation == "ZXZ" else rotation
+    )
+    motion = rs.derive(
+        model, only if rotation == "ZXZ" else only[:3], body=body, potential=potential
+    )
+    assert "energy" not in [integral.name for integral in motion.first_integrals]
+    assert all(proof.is_exact for proof in motion.step("energy").proofs)
+    time = sp.Symbol("t")
+    known = {s: sp.Dummy() for s in reversed(motion.argument("y").symbols)}
+    energy, driven = (e.xreplace(known) for e in (motion.energy, motion.potential_energy))
+    rate = sp.diff(energy, time) + sum(
+        sp.diff(energy, known[symbol]) * slope.xreplace(known)
+        for symbol, slope in zip(motion.argument("y").symbols, motion.state_derivative, strict=True)
+    )
+    values = {s: mp.mpf(k + 2) / 7 for k, s in enumerate(sp.ordered(rate.free_symbols))}
+    values |= {known[q]: mp.mpf(1) / 2 for q in motion.model.coordinates}  # |q| = 1
+    assert agree(
+        evaluate(sp.Matrix([rate]), values), evaluate(sp.Matrix([sp.diff(driven, time)]), values)
+    )
+
+
+def test_an_integral_that_depends_on_the_time_is_proved():
+    """E − ω p_φ in a potential that turns about the vertical, and nothing near it"""
+    energy = "A*(theta_dot**2 + phi_dot**2*sin(theta)**2)/2 + k*sin(theta)*cos(phi - omega*t)"
+    energy += " + C*(psi_dot + phi_dot*cos(theta))**2/2"
+    momentum = "(A*phi_dot*sin(theta)**2 + C*cos(theta)*(psi_dot + phi_dot*cos(theta)))"
+    potential = "k*sin(theta)*cos(phi - omega*t)"
+    claimed = {"J": f"{energy} - omega*{momentum}"}
+    found = top(potential=potential, only=["first_integrals"], first_integrals=claimed)
+    assert {i.name: i.proof.is_exact for i in found.first_integrals}["J"]
+    with pytest.raises(rs.RigidsymError, match="dJ/dt = 0 is false"):
+        top(potential=potential, only=["first_integrals"], first_integrals={"J": energy})
 
 
 def test_a_wrong_bias_is_refuted():
@@ -199,6 +251,7 @@ def test_a_wrong_bias_is_refuted():
         ({"potential": "m*g*theta_dot"}, "depends on rates"),
         ({"potential": TOP, "forces": {"chi": "1"}}, "a force on chi, which is none of phi, theta"),
         ({"potential": "m*g*("}, "expected a number"),
+        ({"frame_rate": ["0", "0", "n*t"]}, "n\\*t depends on t; expected a part, or a rate of"),
     ],
 )
 def test_forces_that_cannot_be_are_refused(given, message):

@@ -70,6 +70,14 @@ def test_the_angular_velocity_of_a_free_symmetric_body_turns_at_a_constant_rate(
     assert np.abs(omega[:, 2] - omega[0, 2]).max() < 1e-9
 
 
+def test_a_torque_that_grows_with_the_time_turns_as_its_cube():
+    """V = −k t φ gives C φ̈ = k t"""
+    driven = rs.derive("z(phi)", body=rs.principal_moments(A, B, C), potential="-k*t*phi")
+    found = driven.simulate({"phi": 0, "phi_dot": 0}, {"A": 1, "B": 1, "C": 1.5, "k": 2.0}, 3.0)
+    assert np.abs(found.q[:, 0] - 2.0 * found.t**3 / 9).max() < 1e-10
+    assert not found.first_integrals
+
+
 def test_rotation_about_the_intermediate_axis_grows_at_the_known_rate():
     """Small deviations grow as exp(σt), σ² = Ω² (B − A)(C − B)/(A C) about the axis of B"""
     values = {"A": 1.0, "B": 1.5, "C": 2.1}

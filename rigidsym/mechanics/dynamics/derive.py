@@ -136,14 +136,15 @@ class LagrangeEquations(Flow):
             "The energy changes at the power of the generalised forces."
             if not self.work.acting.frame_rate
             else "In a turning frame the energy is replaced by Jacobi's integral.",
-            (self.prove.vanishes(self._energy_rate, claims.ENERGY_RATE),),
+            (self.prove.vanishes(self._energy_rate, self.energy_claim),),
             definition=claims.total(self._symbol, is_jacobi=bool(self.work.acting.frame_rate)),
         )
 
     @cached_property
     def _energy_rate(self) -> RingMatrix:
-        """dE/dt − q̇·(M q̈ + h)."""
-        return self._scalar(self.whole).dt() - self.work.q_dot.T @ self._left_side
+        """dE/dt − q̇·(M q̈ + h) − ∂V/∂t."""
+        power = self.work.q_dot.T @ self._left_side
+        return self._scalar(self.whole).dt() - power - self.driving
 
     def generalised_momenta(self) -> Found:
         if not self.is_holonomic:
@@ -294,8 +295,9 @@ class LagrangeEquations(Flow):
         )
 
     def consequences(self) -> Iterator[Consequence]:
+        yield from super().consequences()
         k = self._single
-        if k is None:
+        if k is None or not self.driving.is_zero():  # then the energy is not constant
             return
         q = self.model.coordinates
         momenta = self.present.matrix(self.work.momenta)
@@ -321,7 +323,7 @@ class LagrangeEquations(Flow):
 
     def own_integrals(self) -> Iterator[FirstIntegral]:
         work = self.work
-        if not any(work.forces):
+        if not any(work.forces) and self.driving.is_zero():
             yield FirstIntegral(
                 name="energy",
                 symbol=claims.ENERGY,

@@ -105,14 +105,15 @@ class EulerEquations(Flow):
         below = self.codec.encode(self._divisor)
         forced = encoded(self.codec, self._inverse).T @ self.column(self._forces)
         power = self.omega.T @ (self.column(self._torque).scale(below) + forced)
-        residual = rate.scale(below) - power.scale(divisor)
+        residual = (rate - self.driving.scale(divisor)).scale(below) - power.scale(divisor)
         return Found(
             sp.ImmutableMatrix([[self._energy]]),
             "The energy changes at the power of the other torques.",
-            (self.prove.vanishes(residual, claims.POWER, divided_by=divisor),),
+            (self.prove.vanishes(residual, self.energy_claim, divided_by=divisor),),
         )
 
     def consequences(self) -> Iterator[Consequence]:
+        yield from super().consequences()
         if self.torque[0].is_zero():
             slopes = self.present.matrix(*self.blocks[1][1:])
             yield from of_free_body(self.body.inertia, list(slopes), self.model.name)

@@ -1,7 +1,7 @@
 """ẏ = f(t, y): equations of motion as an integrator takes them, and what they keep constant.
 
 The state y is made of two blocks, (q, q̇) in Lagrange's form and (q, Ω′) in Euler's. The rate of a
-function F of the state is ∇F·f, reduced in the ring: F is a first integral if it vanishes.
+function F of the state is ∇F·f + ∂F/∂t, reduced in the ring: F is a first integral if it vanishes.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import (
     Consequence,
     FirstIntegral,
@@ -36,6 +37,7 @@ from rigidsym.mechanics.quantities.arguments import (
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel
+from rigidsym.models.so3 import TIME
 
 
 class StateBlock(NamedTuple):
@@ -87,7 +89,20 @@ class Flow:
             slopes = self.column(_slopes(value, block.symbols, self.arguments["y"].symbols))
             parts.append((slopes.T @ block.numerators).scale(prod(others, start=ring.one)))
         divisor = prod((block.divisor for block in self.blocks), start=ring.one)
-        return parts[0] + parts[1], ring.reduce(divisor)
+        return parts[0] + parts[1] + self.explicit_rate(value).scale(divisor), ring.reduce(divisor)
+
+    def explicit_rate(self, value: sp.Expr) -> RingMatrix:
+        """∂F/∂t, the state being held."""
+        return self.column(_slopes(value, [TIME], [TIME, *self.arguments["y"].symbols]))
+
+    @cached_property
+    def driving(self) -> RingMatrix:
+        """∂V/∂t, at which a potential that depends on the time changes the energy."""
+        return self.explicit_rate(self.forces.potential)
+
+    @property
+    def energy_claim(self) -> Formula:
+        return claims.energy_rate(self.second, is_driven=not self.driving.is_zero())
 
     @cached_property
     def first_integrals(self) -> tuple[FirstIntegral, ...]:
@@ -100,7 +115,15 @@ class Flow:
 
     def consequences(self) -> Iterator[Consequence]:
         """What follows of the motion as a whole."""
-        return iter(())
+        if not self.driving.is_zero():
+            yield Consequence(
+                title="The energy",
+                text="The potential depends on the time, so that the energy is not constant: {} "
+                "with",
+                spans=(self.energy_claim,),
+                left=claims.DRIVING,
+                value=self.present.matrix(self.driving)[0],
+            )
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
         """The value with Ω′ written in the state."""

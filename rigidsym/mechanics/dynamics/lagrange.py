@@ -50,9 +50,6 @@ class Lagrange:
                 f"{model.name}: Lagrange's equations need free coordinates, such as the "
                 "Euler angles; expected such a rotation, or Euler's equations"
             )
-        fixed = dict.fromkeys(model.coordinates, sp.S.Zero)
-        if TIME in forces.potential.xreplace(fixed).free_symbols:
-            raise ModelError(f"{model.name}: the potential {forces.potential} depends on t")
         self.model, self.body, self.acting = model, body, forces
         self.potential = forces.potential
         self.rates = [sp.diff(q, TIME) for q in model.coordinates]

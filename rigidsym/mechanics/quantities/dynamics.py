@@ -203,11 +203,17 @@ SKEW = formula(
     *(MASS_MATRIX, CORIOLIS_MATRIX),
 )
 EQUATIONS = formula("#1#2 + #3 = #4", MASS_MATRIX, ACCELERATIONS, BIAS, FORCES)
-ENERGY_RATE = formula(r"\frac{d#1}{dt} = #2\,#3", ENERGY, transpose_of(RATES), FORCES)
 HAMILTONIAN_IS_ENERGY = formula("#1 = #2", HAMILTONIAN, ENERGY)
 EULER = formula(r"#1\,#2 + #3\times#1\,#3 = #4", INERTIA, ALPHA_BODY, BODY.omega, TORQUE)
-POWER = formula(r"\frac{d#1}{dt} = #2\,#3", ENERGY, transpose_of(BODY.omega), TORQUE)
+DRIVING = formula(r"\frac{\partial #1}{\partial t}", POTENTIAL)
+_POWERS = {"q_dot": (transpose_of(RATES), FORCES), "omega_body": (transpose_of(BODY.omega), TORQUE)}
 MOMENTUM_SQUARED = formula(r"\mathbf{L}^2")
+
+
+def energy_rate(second: str, *, is_driven: bool) -> Formula:
+    """dE/dt = power of the forces + ∂V/∂t; `second` is the argument beside q in the state."""
+    typed = r"\frac{d#1}{dt} = #2\,#3"
+    return formula(typed + (" + #4" if is_driven else ""), ENERGY, *_POWERS[second], DRIVING)
 
 
 def is_constant(symbol: Formula) -> Formula:

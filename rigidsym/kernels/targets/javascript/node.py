@@ -21,8 +21,8 @@ from rigidsym.errors import MissingTool
 from rigidsym.system import resources
 
 _EXPORTED = re.compile(
-    r"^export function (\w+)\((\w*).*\n(?:  const values = .*\n  return (\[))?", re.MULTILINE
-)  # name, first parameter, and whether two results are returned
+    r"^export function (\w+)\((.*)\) \{\n(?:  const values = .*\n  return (\[))?", re.MULTILINE
+)  # name, parameters, and whether two results are returned
 
 Numbers = NDArray[np.float64]
 Run = Callable[[list[Numbers]], list[Numbers]]
@@ -40,25 +40,25 @@ def module(name: str, source: str) -> ModuleType:
             "no program `node` (on Debian: apt install nodejs) to run JavaScript with"
         )
     made = ModuleType(name)
-    for function, first, parted in _EXPORTED.findall(source):
-        first = first.rstrip("_")
-        run = partial(_run, source, function, first, parted)
+    for function, listed, parted in _EXPORTED.findall(source):
+        names = [name.split(" ")[0].rstrip("_") for name in listed.split(", ")]
+        time = str(names.index("t")) if "t" in names else ""
+        run = partial(_run, source, function, time, parted)
         is_flat = function.endswith("_batch")
-        setattr(made, function, _caller(run, first, is_flat=is_flat))
+        setattr(made, function, _caller(run, names, is_flat=is_flat))
         if is_flat:
-            setattr(made, f"{function}_each", _caller(run, first, is_flat=False))
+            setattr(made, f"{function}_each", _caller(run, names, is_flat=False))
     return made
 
 
-def _caller(run: Run, first: str, *, is_flat: bool) -> Callable[..., Any]:
+def _caller(run: Run, names: list[str], *, is_flat: bool) -> Callable[..., Any]:
     def call(*vectors: ArrayLike) -> Any:
         arrays = [np.asarray(vector, float) for vector in vectors]
         if is_flat:
             return run([array.reshape(1, -1) for array in arrays])[0][0]
-        if first == "matrix":
+        if names[0] == "matrix":
             arrays[0] = arrays[0].reshape(*arrays[0].shape[:-2], 9)
-        if first == "t":
-            arrays[0] = arrays[0][..., None]
+        arrays = [a[..., None] if n == "t" else a for n, a in zip(names, arrays, strict=False)]
         leading = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
         rows = [
             np.broadcast_to(a, (*leading, a.shape[-1])).reshape(-1, a.shape[-1]) for a in arrays
@@ -69,14 +69,14 @@ def _caller(run: Run, first: str, *, is_flat: bool) -> Callable[..., Any]:
     return call
 
 
-def _run(source: str, function: str, first: str, parted: str, rows: list[Numbers]) -> list[Numbers]:
+def _run(source: str, function: str, time: str, parted: str, rows: list[Numbers]) -> list[Numbers]:
     """The results for all rows, in one run: of a function that gives several, all of them."""
     sizes = [str(array.shape[-1]) for array in rows]
     with TemporaryDirectory(prefix="rigidsym-") as folder:
         (Path(folder) / "kernels.mjs").write_text(source, encoding="utf-8")
         (Path(folder) / "run.mjs").write_text(resources.text("templates", "javascript/run.mjs"))
         done = subprocess.run(
-            ["node", "run.mjs", function, first, parted, *sizes],
+            ["node", "run.mjs", function, time, parted, *sizes],
             cwd=folder,
             input=np.hstack(rows).astype("<f8").tobytes(),
             capture_output=True,
