@@ -56,6 +56,7 @@ class RigidBody:
     centre: sp.ImmutableMatrix = field(default_factory=lambda: sp.ImmutableMatrix.zeros(3, 1))
     parameters: tuple[Parameter, ...] = ()  # every symbol above, in the order of kernels
     source: Citation = SOURCE
+    declared: tuple[Parameter, ...] = ()  # descriptions, also of symbols that only forces hold
     allow: bool = False
     distribution: Distribution | None = None  # of its mass, if that is known
     request: Mapping[str, Any] = field(
@@ -181,6 +182,7 @@ def principal_moments(
         parameters=described(
             parameters, mass_slot(total), *((m, "principal moment of inertia") for m in moments)
         ),
+        declared=tuple(parameters),
         allow=allow,
     )
 
@@ -215,6 +217,7 @@ def given_inertia(
             *zip(inertia, _ENTRIES, strict=True),
             *((entry, "coordinate of the centre of mass") for entry in place),
         ),
+        declared=tuple(parameters),
         allow=allow,
     )
 
@@ -252,7 +255,11 @@ def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[
                 unit=_UNITS.get(about, "") if expression == symbol else "",
                 positive=expression == symbol and about not in _SIGNED,
             )
-            own = known.get(symbol, alone)
-            named = replace(own, about=own.about or alone.about, unit=own.unit or alone.unit)
-            found.setdefault(symbol, named)
+            own = known.get(symbol) or found.get(symbol, alone)
+            found[symbol] = replace(
+                own,
+                about=own.about or alone.about,
+                unit=own.unit or alone.unit,
+                positive=own.positive or (symbol not in known and alone.positive),
+            )
     return tuple(found.values())

@@ -80,7 +80,15 @@ class Forces:
                 )
         known = {p.symbol for p in body.parameters} | {*model.constants, *OMEGA_BODY, TIME}
         symbols = set().union(*(expression.free_symbols for expression in self._given())) - known
-        more = (Parameter(symbol=s, positive=False) for s in sp.ordered(symbols))
+        own = {p.symbol: p for p in body.declared}
+        moments = {moment for part in self.parts for moment in part.inertia}
+
+        def described(symbol: sp.Symbol) -> Parameter:
+            about, unit = ("moment of inertia", "kg m^2") if symbol in moments else ("", "")
+            given = own.get(symbol, Parameter(symbol=symbol, positive=False))
+            return replace(given, about=given.about or about, unit=given.unit or unit)
+
+        more = map(described, sp.ordered(symbols))
         return replace(body, parameters=(*body.parameters, *more))
 
     def _given(self) -> Iterator[sp.Expr]:

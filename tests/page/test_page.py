@@ -52,6 +52,13 @@ def test_every_shipped_derivation_has_a_page_of_bounded_size_with_its_whole_note
             assert f'id="{quantity}-value"' in page, name
 
 
+def test_every_constant_of_a_shipped_derivation_has_its_unit_beside_the_slider():
+    named = re.compile(r'<label for="parameters-.*?<span class="spoken">(.*?)</span>')
+    names = [name for page in pages() for name in named.findall(page)]
+    assert "g, in m per second²" in names
+    assert [name for name in names if ", in " not in name] == []
+
+
 def test_the_script_is_one_module_without_names_declared_twice(tmp_path: Path):
     node = shutil.which("node")
     if node is None:

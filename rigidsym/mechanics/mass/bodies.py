@@ -84,6 +84,7 @@ def _integrated(
         inertia=inertia,
         centre=centre,
         parameters=described(parameters, *symbols),
+        declared=tuple(parameters),
         allow=allow,
         distribution=distribution,
     )
