@@ -183,6 +183,13 @@ def _distribution() -> Schema:
         "scale": number("of a mesh: metres in one unit of the file"),
         "inertia": listed("the inertia tensor, three rows", listed("a row", NUMBER, 3), 3),
         "centre": listed("the centre of mass, with `inertia`", NUMBER, 3),
+        "outline": obj(
+            "what the body looks like, with `inertia`: records have it in place of a mesh",
+            {
+                "corners": listed("three coordinates each", {"type": "array"}),
+                "faces": listed("each a list of corner numbers", {"type": "array"}),
+            },
+        ),
     }
 
 

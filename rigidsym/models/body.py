@@ -59,6 +59,7 @@ class RigidBody:
     declared: tuple[Parameter, ...] = ()  # descriptions, also of symbols that only forces hold
     allow: bool = False
     distribution: Distribution | None = None  # of its mass, if that is known
+    drawn: Distribution | None = None  # its distribution, where only moments in numbers are kept
     request: Mapping[str, Any] = field(
         default_factory=dict, hash=False
     )  # what asks for it in a file

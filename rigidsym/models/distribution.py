@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from operator import index
 from types import MappingProxyType
+from typing import Any
 
 import sympy as sp
 
@@ -143,6 +145,30 @@ class Composite:
             raise BodyError("expected at least one part")
 
 
+@dataclass(frozen=True, slots=True)
+class Outline:
+    """Roughly the surface of a body, to draw it: corners in m, and faces by their numbers."""
+
+    corners: tuple[tuple[float, float, float], ...] = ()
+    faces: tuple[tuple[int, ...], ...] = ()
+
+    def __post_init__(self) -> None:
+        if not all(0 <= k < len(self.corners) for face in self.faces for k in face):
+            raise BodyError("the faces of an outline name corners that it does not have")
+
+
+def outline_from(data: Mapping[str, Any]) -> Outline:
+    """The outline in a file: corners = [[x, y, z], ...], faces = [[0, 1, 2], ...]."""
+    try:
+        return Outline(
+            tuple((float(x), float(y), float(z)) for x, y, z in data.get("corners", ())),
+            tuple(tuple(map(index, face)) for face in data.get("faces", ())),
+        )
+    except (TypeError, ValueError, OverflowError):
+        message = "expected an outline of corners [x, y, z], and faces by numbers of corners"
+        raise BodyError(message) from None
+
+
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Known:
     """A part of which only mass, centre and inertia tensor about the centre are given."""
@@ -150,6 +176,7 @@ class Known:
     mass: sp.Expr
     centre: sp.ImmutableMatrix
     inertia: sp.ImmutableMatrix
+    outline: Outline = Outline()
 
 
 Distribution = Particles | Solid | Polyhedron | Composite | Known

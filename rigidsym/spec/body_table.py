@@ -24,11 +24,13 @@ from rigidsym.models.distribution import (
     Composite,
     Distribution,
     Known,
+    Outline,
     Part,
     Particle,
     Particles,
     Polyhedron,
     Solid,
+    outline_from,
 )
 from rigidsym.models.placement import turned_by
 from rigidsym.models.solids import SHAPES, Length, check_lengths, shape_of, shaped
@@ -39,12 +41,14 @@ from rigidsym.spec.tables import Table
 if TYPE_CHECKING:
     from rigidsym.data.mass.properties import MassProperties
 
+    Measured = tuple[MassProperties, Mapping[str, object]]  # with the outline of the body
+
 _OF_PARTS = ("shape", "particles", "mesh", "inertia", "parts")
 _KINDS = ("principal_moments", "inertia", "shape", "particles", "mesh", "parts")
 _OF_MASS = ("mass", "density")
 _KEYS = {  # that go with a kind
     "principal_moments": ("mass",),
-    "inertia": ("mass", "centre"),
+    "inertia": ("mass", "centre", "outline"),
     "mesh": (*_OF_MASS, "scale"),
     "particles": ("columns",),
     "given": ("coordinates", "place", "bounds", "element", *_OF_MASS),
@@ -54,7 +58,6 @@ _AXES = ("x", "y", "z")
 _POINT = 'three coordinates, such as [0, 0, "h"]'
 _MOMENTS = ("A", "B", "C")
 _TENSOR = (("I_11", "I_12", "I_13"), ("I_12", "I_22", "I_23"), ("I_13", "I_23", "I_33"))
-_ROUNDING = 1e-14  # relative to the largest moment: smaller numbers are rounding errors
 
 
 def read_body(body: Table, parameters: Table | None, name: str, folder: Path | None) -> Body | None:
@@ -69,7 +72,8 @@ def read_body(body: Table, parameters: Table | None, name: str, folder: Path | N
     reader, allow = BodyReader(body, declared, folder), bool(body.flag("allow"))
     given: RigidBody | Distribution | None = None
     with body.noting(kind):
-        if kind in ("principal_moments", "inertia"):
+        is_given = kind == "inertia" and body.value("outline") is None
+        if kind == "principal_moments" or is_given:
             given = _rigid_body(reader, kind, name, allow=allow)
         else:
             given = _READERS[kind](reader)
@@ -290,6 +294,7 @@ def _turned(reader: BodyReader) -> tuple[sp.ImmutableMatrix, tuple[sp.Expr, ...]
 def _read_known(reader: BodyReader) -> Known:
     """inertia = [[...], [...], [...]] about the centre of mass, with mass and centre."""
     note = reader.declared.note
+    drawn = reader.table.table("outline")
     inertia = reader.rows("inertia", _TENSOR, 'three rows of three expressions, or "general"')
     centre: list[sp.Expr] = [sp.S.Zero] * 3
     if reader.table.value("centre") is not None:
@@ -299,7 +304,12 @@ def _read_known(reader: BodyReader) -> Known:
     note([*chain.from_iterable(inertia)], "product of inertia, with its sign", "kg m^2")
     note(centre, "coordinate of the centre of mass", "m")
     note([mass], "mass", "kg")
-    return Known(mass=mass, centre=sp.ImmutableMatrix(centre), inertia=sp.ImmutableMatrix(inertia))
+    return Known(
+        mass=mass,
+        centre=sp.ImmutableMatrix(centre),
+        inertia=sp.ImmutableMatrix(inertia),
+        outline=Outline() if drawn is None else outline_from(drawn.data),
+    )
 
 
 def _readers() -> tuple[Any, Any]:
@@ -314,9 +324,9 @@ def _read_cloud(reader: BodyReader) -> Known:
     columns = [*reader.table.texts("columns", "names of the columns").values()] or None
     allow = bool(reader.table.flag("allow"))
     particles, _ = _readers()
-    return _in_file(
-        reader, "particles", lambda path: particles.inertia_of(path, columns=columns, allow=allow)
-    )
+
+    options = {"columns": columns, "allow": allow}
+    return _in_file(reader, "particles", lambda path: (particles.inertia_of(path, **options), {}))
 
 
 def _read_mesh(reader: BodyReader) -> Known:
@@ -326,15 +336,15 @@ def _read_mesh(reader: BodyReader) -> Known:
     allow = bool(table.flag("allow"))
     _, meshes = _readers()
 
-    def measured(path: Path) -> MassProperties:
+    def measured(path: Path) -> tuple[MassProperties, Mapping[str, object]]:
         mesh = meshes.read_mesh_file(path, scale=1.0 if scale is None else scale)
-        found: MassProperties = meshes.mesh_inertia(mesh, mass=mass, density=density, allow=allow)
-        return found
+        found = meshes.mesh_inertia(mesh, mass=mass, density=density, allow=allow)
+        return found, meshes.outline_of(mesh)
 
     return _in_file(reader, "mesh", measured)
 
 
-def _in_file(reader: BodyReader, key: str, measure: Callable[[Path], MassProperties]) -> Known:
+def _in_file(reader: BodyReader, key: str, measure: Callable[[Path], Measured]) -> Known:
     """The body in the file that a key names, read as if the table itself held its numbers.
 
     The record keeps the numbers, so that it can be checked without the file. A file outside the
@@ -344,14 +354,14 @@ def _in_file(reader: BodyReader, key: str, measure: Callable[[Path], MassPropert
         raise BodyError("expected numbers: a record names no files")
     path = reader.folder / (reader.table.text(key) or "")
     try:
-        found = measure(path)
+        found, outline = measure(path)
     except MissingExtra:
         raise
     except RigidsymError:
         if path.resolve().is_relative_to(reader.folder.resolve()):
             raise
         raise BodyError(f"expected a file with a body, got {_described(path)}") from None
-    numbers = _cleaned(found.mass, found.centre.tolist(), found.inertia.tolist())
+    numbers = found.as_table() | {"outline": outline}
     table = reader.table.instead(numbers)
     reader.declared.files[table.path] = numbers
     return _read_known(BodyReader(table, reader.declared, reader.folder, reader.suffix))
@@ -366,21 +376,6 @@ def _described(path: Path) -> str:
     if not stat.S_ISREG(status.st_mode):
         return "a folder" if stat.S_ISDIR(status.st_mode) else "a device"
     return f"a file of {status.st_size} bytes"
-
-
-def _cleaned(mass: float, centre: list[float], inertia: list[list[float]]) -> dict[str, object]:
-    """The values of [body]; rounding errors in place of zeros are removed."""
-
-    def clean(value: float, scale: float) -> float | int:
-        return 0 if abs(value) <= scale * _ROUNDING else value
-
-    scale = max(abs(entry) for row in inertia for entry in row)
-    size = max(map(abs, centre)) + (scale / mass) ** 0.5
-    return {
-        "inertia": [[clean(entry, scale) for entry in row] for row in inertia],
-        "mass": mass,
-        "centre": [clean(value, size) for value in centre],
-    }
 
 
 _READERS: Mapping[str, Callable[[BodyReader], Distribution]] = {

@@ -1,7 +1,7 @@
 // The page: sliders, numbers, the figure, and the address that holds their state.
 
 import { kernels, page } from "./generated.mjs";
-import { STANDARD, dot, length, minus, scaled, within } from "./vectors.mjs";
+import { STANDARD, dot, length, minus, plus, scaled, within } from "./vectors.mjs";
 import { posed, wholeTurn } from "./scene.mjs";
 import { cameraAt, draw } from "./drawing.mjs";
 import { bind, evaluated, settle, state } from "./state.mjs";
@@ -112,7 +112,11 @@ function grown() {
     const placed = corners.map(([part, ...share]) =>
       minus(kernels[`place_${part}`]([...share, 0, 0].slice(0, 3), state.parameters), centre));
     const reach = Math.max(...placed.map(length));
-    own = { of, body: { points: placed.map((point) => scaled(0.95 / reach, point)), colors, faces } };
+    const points = placed.map((point, k) => {
+      const offset = corners[k].slice(4); // of the corners of lines and particles
+      return plus(scaled(0.95 / reach, point), offset.length ? offset : [0, 0, 0]);
+    });
+    own = { of, body: { points, colors, faces } };
   }
   return own.body;
 }

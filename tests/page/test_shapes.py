@@ -6,7 +6,7 @@ import json
 import shutil
 import subprocess
 from collections import Counter
-from itertools import pairwise
+from itertools import combinations, pairwise
 from math import hypot, pi
 
 import numpy as np
@@ -15,13 +15,16 @@ import sympy as sp
 from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
+from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.models.distribution import Composite, Part, Particle, Particles
 from rigidsym.models.solids import SHAPES as SOLIDS, shaped
 from rigidsym.notes.figure.body_mesh import HOLE, Shape, lengths_of, meshed, own_shape
+from rigidsym.page.growing_body import SHARE, growing, places_of
 from rigidsym.page.shapes import SHAPES, as_data
 from rigidsym.system import resources
 
 LINES = ("rod", "ring")
+TURNED = ((1, 0, 0), (0, 0, -1), (0, 1, 0))
 CORNERS = (0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1)
 
 
@@ -164,3 +167,40 @@ def test_every_shape_can_be_drawn_from_any_side(name):
     for angles in ([0, 0], [90, 0], [37, 58]):
         frame = Rotation.from_euler("ZX", angles, degrees=True).as_matrix().T
         assert colors_from_the_back(shape, frame)
+
+
+def test_particles_are_drawn_apart_however_small_the_body_is():
+    """A molecule of water, in metres."""
+    near, far = sp.Rational(96, 10**12), sp.Rational(152, 10**12)
+    at = [(0, 0, 0), (near, 0, 0), (0, far, 0)]
+    masses = [Particle(mass=sp.S.One, position=sp.ImmutableMatrix(p)) for p in at]
+    shape = own_shape(rigid_body(Particles(particles=tuple(masses))))
+    assert len(shape) == 24
+    parts = [np.array([face.corners for face in shape[k : k + 8]]) for k in (0, 8, 16)]
+    centres = [part.mean(axis=(0, 1)) for part in parts]
+    sizes = [np.ptp(part, axis=(0, 1)).max() for part in parts]
+    assert max(sizes) < min(np.linalg.norm(a - b) for a, b in combinations(centres, 2)) / 2
+
+
+def test_a_rod_and_particles_follow_their_lengths():
+    a, m = sp.symbols("a m", positive=True)
+    pair = [Particle(mass=m, position=sp.ImmutableMatrix([k * a, 0, 0])) for k in (0, 1)]
+    turned = Part(what=shaped("rod", (a,), mass=m), turned=sp.ImmutableMatrix(TURNED))
+    for what in (
+        Particles(particles=tuple(pair)),
+        shaped("rod", (a,), mass=m),
+        Composite(parts=(turned,)),
+    ):
+        body = rigid_body(what)
+        found, places = growing(body), places_of(body)
+        assert found is not None
+        ends = []
+        for part, *shares in found["corners"]:
+            values = dict(zip(SHARE.symbols, (*shares, 0, 0), strict=False)) | {a: 2}
+            ends.append([float(x) for x in places[f"place_{part}"].xreplace(values)])
+        assert np.linalg.norm(np.ptp(ends, axis=0)) == pytest.approx(2)
+        offsets = np.array([shares[3:] for _, *shares in found["corners"]])
+        along = np.ptp(ends, axis=0)
+        if what.__class__ is not Particles:
+            assert np.abs(offsets @ along).max() < 1e-9  # a tube about the line
+        assert np.linalg.norm(offsets, axis=1).min() > 0.01

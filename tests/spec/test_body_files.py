@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from importlib.util import module_from_spec, spec_from_file_location
+from math import hypot
 from pathlib import Path
 from textwrap import dedent
 from types import ModuleType
@@ -16,8 +17,10 @@ from click.testing import CliRunner
 
 import rigidsym as rs
 from rigidsym.commands.cli import commands
+from rigidsym.data.mass.mesh import MOST_DRAWN, Mesh, outline_of
 from rigidsym.errors import BodyError, KernelError, SpecError
 from rigidsym.models.body import RigidBody, general_inertia, principal_moments
+from rigidsym.notes.figure.body_mesh import own_shape
 from rigidsym.pipeline import integrated, motion_of, output_of, read_file, read_record, read_spec
 from rigidsym.spec.derivation_spec import DerivationSpec
 
@@ -283,6 +286,24 @@ def test_one_command_from_a_file_to_energies_kernels_and_note(folder, name):
     assert [p.value for p in again.parameters] == pytest.approx(values, rel=1e-15)
 
 
+@pytest.mark.parametrize("name", ["mesh", "composite", "both"])
+def test_a_body_in_numbers_is_drawn_also_from_its_record(folder, name):
+    spec = read_file(str(folder / f"{name}.toml"))
+    shape = own_shape(integrated(spec).body)
+    assert shape
+    assert max(hypot(*p) for face in shape for p in face.corners) == pytest.approx(0.95)
+    assert own_shape(integrated(read_record(spec.to_data())).body) == shape
+
+
+def test_a_fine_mesh_is_drawn_with_few_faces():
+    ball = trimesh.creation.icosphere(subdivisions=5)
+    outline = outline_of(Mesh(vertices=np.array(ball.vertices), faces=np.array(ball.faces)))
+    corners, faces = map(np.array, outline.values())
+    assert 100 < len(faces) <= MOST_DRAWN
+    assert np.linalg.norm(corners, axis=1).max() <= 1
+    assert np.linalg.det(corners[faces]).sum() / 6 > 0.8 * 4 / 3 * np.pi
+
+
 def load(path: Path) -> ModuleType:
     spec = spec_from_file_location(path.stem, path)
     assert spec is not None
@@ -386,3 +407,9 @@ def test_roots_of_numbers_in_a_body_stand_beside_any_rotation(rotation):
     radii = module.radii_of_gyration(values)
     mass = float(spec.body.mass.xreplace(numbers))
     assert np.allclose(radii**2 * mass, np.diag(tensor))
+
+
+@pytest.mark.parametrize("wrong", ["corners = [[1, 2]]", "faces = [[0, 1, 2]]", "corners = 3"])
+def test_an_outline_that_is_none_is_refused(wrong):
+    given = "inertia = [[2, 0, 0], [0, 2, 0], [0, 0, 2]]\nmass = 1"
+    assert "outline" in "".join(faults_of(f"[body]\n{given}\noutline = {{ {wrong} }}"))

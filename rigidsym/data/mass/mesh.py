@@ -36,6 +36,7 @@ _FAILURES = (  # of trimesh, whose readers trust the counts and types in a file
     ValueError,
     struct.error,
 )
+MOST_DRAWN, _MOST_CELLS = 400, 24
 _SIMPLEX = 1 / 6, 1 / 24, 1 / 120  # ∫ 1, ∫ u, ∫ u v over the unit simplex; ∫ u² is twice the last
 
 
@@ -125,6 +126,29 @@ def mesh_inertia(
         centre=inside + first / volume,
         inertia=inertia,
     )
+
+
+def outline_of(mesh: Mesh) -> dict[str, list[list[float]] | list[list[int]]]:
+    """Corners, in m, and at most MOST_DRAWN faces that show what the mesh looks like.
+
+    The vertices of a finer mesh are merged in cells of a grid (Rossignac and Borrel, 1993).
+    """
+    vertices, faces = mesh.vertices, mesh.faces
+    low, size = vertices.min(axis=0), float(np.ptp(vertices, axis=0).max())
+    cells = _MOST_CELLS
+    while len(faces) > MOST_DRAWN:
+        places = np.floor((mesh.vertices - low) * (cells / size))
+        _, cell, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+        cell = cell.ravel()
+        merged = cell[mesh.faces]
+        merged = merged[(merged != np.roll(merged, 1, axis=1)).all(axis=1)]
+        first = merged.argmin(axis=1)[:, None]  # each triangle from its least corner
+        faces = np.unique(np.take_along_axis(merged, (first + np.arange(3)) % 3, axis=1), axis=0)
+        sums = [np.bincount(cell, weights=column) for column in mesh.vertices.T]
+        vertices = np.stack(sums, axis=1) / count[:, None]
+        cells -= 1
+    corners = [[float(f"{x:.4g}") for x in vertex] for vertex in vertices.tolist()]
+    return {"corners": corners, "faces": faces.tolist()}
 
 
 def check_closed(mesh: Mesh) -> None:

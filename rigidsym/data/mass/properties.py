@@ -13,6 +13,7 @@ from rigidsym.data.columns import counted
 from rigidsym.data.mass.principal_axes import PrincipalAxes, principal_axes_of
 
 Array = NDArray[np.float64]
+_ROUNDING = 1e-14  # relative to the largest moment: smaller numbers are rounding errors
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -54,6 +55,20 @@ class MassProperties:
             f"radii of gyration    {_row(self.radii)} m",
         ]
         return "\n".join([*lines, *([principal.repeated] if principal.repeated else [])])
+
+    def as_table(self) -> dict[str, object]:
+        """The values of [body] in a derivation file, without rounding errors of zeros."""
+
+        def clean(values: Array, scale: float) -> list[float]:
+            return [0 if abs(v) <= scale * _ROUNDING else v for v in values.tolist()]
+
+        scale = float(np.abs(self.inertia).max())
+        size = float(np.abs(self.centre).max()) + (scale / self.mass) ** 0.5
+        return {
+            "inertia": [clean(row, scale) for row in self.inertia],
+            "mass": self.mass,
+            "centre": clean(self.centre, size),
+        }
 
     def record(self) -> dict[str, Any]:
         """The properties as plain data."""

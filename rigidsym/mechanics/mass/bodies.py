@@ -17,7 +17,11 @@ from rigidsym.models.distribution import KEYS, Distribution, Solid
 from rigidsym.models.so3 import symbolic
 from rigidsym.models.solids import shape_of, shaped
 
-_TITLES = {"Particles": "System of particles", "Composite": "Composite body"}
+_TITLES = {
+    "Particles": "System of particles",
+    "Composite": "Composite body",
+    "Known": "Body with a given inertia tensor",
+}
 
 
 def rigid_body(body: RigidBody | BodyDescription | Distribution) -> RigidBody:
@@ -37,7 +41,8 @@ def rigid_body(body: RigidBody | BodyDescription | Distribution) -> RigidBody:
         allow=given.allow,
     )
     if not given.keeps_numbers and is_measured(made):
-        made = in_parameters(made)
+        of_all = (*made.declared, *made.parameters)
+        made = replace(in_parameters(made), drawn=made.distribution, declared=of_all)
     return replace(made, request=given.request)
 
 

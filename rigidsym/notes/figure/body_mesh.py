@@ -16,7 +16,15 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.models.body import RigidBody
-from rigidsym.models.distribution import Composite, Distribution, Part, Particles, Polyhedron, Solid
+from rigidsym.models.distribution import (
+    Composite,
+    Distribution,
+    Known,
+    Part,
+    Particles,
+    Polyhedron,
+    Solid,
+)
 from rigidsym.notes.figure.camera import Vector, combined, cross, dot, scaled, unit
 
 Color = tuple[int, int, int]
@@ -51,11 +59,15 @@ _PARTICLE = 0.09  # radius
 
 def own_shape(body: RigidBody | None) -> Shape:
     """The faces of a body, its centre of mass at the origin; none if only its moments are known."""
-    if body is None or body.distribution is None:
+    what = None if body is None else body.distribution or body.drawn
+    if body is None or what is None:
         return ()
-    values = {p.symbol: p.value for p in body.parameters}
-    numbers = lengths_of(body.distribution, values)
-    return _fitted(meshed(body.distribution, numbers), body, numbers) if numbers is not None else ()
+    values = {p.symbol: p.value for p in (*body.declared, *body.parameters)}
+    numbers = lengths_of(what, values)
+    size = 0.0 if numbers is None else _size(what, numbers)
+    if numbers is None or not size:
+        return ()
+    return _fitted(meshed(what, numbers, size), body, numbers, size)
 
 
 def lengths_of(
@@ -75,9 +87,45 @@ def lengths_of(
     return None
 
 
-def meshed(what: Distribution, numbers: Numbers) -> Shape:
-    """The faces of what has mass, in its own axes and in metres."""
-    return tuple(_faces(what, numbers, BLUE))
+def meshed(what: Distribution, numbers: Numbers, unit: float = 1.0) -> Shape:
+    """The faces of what has mass, in its own axes; `unit` is their unit of length, in metres."""
+    return tuple(_faces(what, Scale(numbers, unit), BLUE))
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """The parameters in numbers, and the unit of length in metres."""
+
+    numbers: Numbers
+    unit: float = 1.0
+
+    def point(self, column: sp.MatrixBase) -> Vector:
+        return scaled(1 / self.unit, vector_of(column.xreplace(self.numbers)))
+
+
+def _size(what: Distribution, numbers: Numbers) -> float:
+    """The distance of the farthest point from the first, in metres, without any thickness."""
+    points = [*_points(what, Scale(numbers))]
+    far = max((hypot(*combined((1, -1), (p, points[0]))) for p in points), default=0.0)
+    return far or float(bool(points))
+
+
+def _points(what: Distribution, scale: Scale) -> Iterator[Vector]:
+    """Enough points to tell the size of a body."""
+    match what:
+        case Particles():
+            yield from (scale.point(particle.position) for particle in what.particles)
+        case Polyhedron():
+            yield from map(scale.point, what.vertices)
+        case Solid():
+            at = _map(what, scale)
+            yield from (at(*s) for s in product((0.0, 0.5, 1.0), repeat=len(what.coordinates)))
+        case Composite():
+            for part in what.parts:
+                moved = _mover(part, scale)
+                yield from map(moved, _points(part.what, scale))
+        case Known():
+            yield from (scaled(1 / scale.unit, corner) for corner in what.outline.corners)
 
 
 def _geometry(what: Distribution) -> Iterator[sp.Basic]:
@@ -107,8 +155,9 @@ def _solids(what: Distribution) -> Iterator[Solid]:
         yield what
 
 
-def _map(solid: Solid, numbers: Numbers) -> Map:
+def _map(solid: Solid, scale: Scale) -> Map:
     """The point of a solid for coordinates that run from 0 to 1."""
+    numbers = scale.numbers
     places = [_evaluator(part.xreplace(numbers), solid.coordinates) for part in solid.place]
     bounds = [
         [_evaluator(sp.S(bound).xreplace(numbers), solid.coordinates) for bound in pair]
@@ -120,7 +169,7 @@ def _map(solid: Solid, numbers: Numbers) -> Map:
         for share, pair in zip(shares, bounds, strict=True):
             low, high = (bound(values) for bound in pair)
             values.append(low + share * (high - low))
-        x, y, z = (place(values) for place in places)
+        x, y, z = (place(values) / scale.unit for place in places)
         return (x, y, z)
 
     return point
@@ -148,7 +197,7 @@ def _evaluator(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> Evaluator:
 
 def _is_proper(solid: Solid, numbers: Numbers) -> bool:
     """Whether bounds are in order, and the map never turns inside out."""
-    point, count = _map(solid, numbers), len(solid.coordinates)
+    point, count = _map(solid, Scale(numbers)), len(solid.coordinates)
     lengths = (sp.S(high - low).xreplace(numbers) for low, high in solid.bounds)
     ordered = all(float(length) >= 0 for length in lengths if length.is_number)
     shares = product((0.1, 0.5, 0.9), repeat=count)
@@ -166,19 +215,22 @@ def _orientation(point: Map, shares: Sequence[float]) -> float:
     return dot(cross(a, b), c)
 
 
-def _faces(what: Distribution, numbers: Numbers, color: Color) -> Iterator[Face]:
+def _faces(what: Distribution, scale: Scale, color: Color) -> Iterator[Face]:
     match what:
         case Particles():
             for particle in what.particles:
-                yield from _octahedron(vector_of(particle.position.xreplace(numbers)), color)
+                yield from octahedron(scale.point(particle.position), color)
         case Polyhedron():
-            corners = [vector_of(vertex.xreplace(numbers)) for vertex in what.vertices]
+            corners = [scale.point(vertex) for vertex in what.vertices]
             yield from (Face(tuple(corners[k] for k in face), color) for face in what.faces)
         case Solid():
-            yield from of_solid(what, numbers, color)
+            yield from of_solid(what, scale, color)
         case Composite():
             for part, tint in zip(what.parts, PALETTE * len(what.parts), strict=False):
-                yield from _placed(part, numbers, HOLE if part.hole else tint)
+                yield from _placed(part, scale, HOLE if part.hole else tint)
+        case Known():
+            corners = [scaled(1 / scale.unit, corner) for corner in what.outline.corners]
+            yield from (Face(tuple(corners[k] for k in f), color) for f in what.outline.faces)
 
 
 def vector_of(column: Iterable[Any]) -> Vector:
@@ -187,16 +239,20 @@ def vector_of(column: Iterable[Any]) -> Vector:
     return (x, y, z)
 
 
-def _placed(part: Part, numbers: Numbers, color: Color) -> Iterator[Face]:
-    at = vector_of(part.at.xreplace(numbers))
-    axes = [vector_of(part.turned[:, k].xreplace(numbers)) for k in range(3)]
-    swell = float(SWELL) if part.hole else 1.0
-    for face in _faces(part.what, numbers, color):
-        moved = (combined((1, swell), (at, combined(corner, axes))) for corner in face.corners)
-        yield Face(tuple(moved), HOLE if part.hole else face.color)
+def _placed(part: Part, scale: Scale, color: Color) -> Iterator[Face]:
+    moved = _mover(part, scale)
+    for face in _faces(part.what, scale, color):
+        yield Face(tuple(map(moved, face.corners)), HOLE if part.hole else face.color)
 
 
-def _octahedron(centre: Vector, color: Color) -> Iterator[Face]:
+def _mover(part: Part, scale: Scale) -> Callable[[Vector], Vector]:
+    """From the axes of a part to those of the body."""
+    at, swell = scale.point(part.at), float(SWELL) if part.hole else 1.0
+    axes = [vector_of(part.turned[:, k].xreplace(scale.numbers)) for k in range(3)]
+    return lambda point: combined((1, swell), (at, combined(point, axes)))
+
+
+def octahedron(centre: Vector, color: Color) -> Iterator[Face]:
     for i, j, k in product((1, -1), repeat=3):
         signs = ((i, 0, 0), (0, j, 0), (0, 0, k))
         corners = tuple(combined((1, _PARTICLE), (centre, sign)) for sign in signs)
@@ -205,12 +261,15 @@ def _octahedron(centre: Vector, color: Color) -> Iterator[Face]:
 
 def of_solid(
     solid: Solid,
-    numbers: Numbers,
+    scale: Scale,
     color: Color,
     seen: dict[Vector, tuple[float, ...]] | None = None,
 ) -> Iterator[Face]:
-    """The faces of a solid; `seen` is told the coordinates, from 0 to 1, of every point."""
-    mapped, known = _map(solid, numbers), {} if seen is None else seen
+    """The faces of a solid; `seen` is told the coordinates, from 0 to 1, of every point.
+
+    On the tube of a line, the offset from the line follows: (u, 0, 0, x, y, z).
+    """
+    mapped, known = _map(solid, scale), {} if seen is None else seen
 
     def point(*shares: float) -> Vector:
         found = mapped(*shares)
@@ -219,7 +278,8 @@ def of_solid(
 
     counts = [_divisions(solid, symbol) for symbol in solid.coordinates]
     if len(counts) == 1:
-        yield from _tube([point(k / (2 * _ROUND)) for k in range(2 * _ROUND + 1)], color)
+        count = 2 * _ROUND if counts[0] > 1 else 1
+        yield from _tube(point, [k / count for k in range(count + 1)], color, known)
     elif len(counts) == 2:
         grid = _grid(point, counts)
         yield from _tiles(grid, color)
@@ -288,26 +348,35 @@ def _area(corners: Sequence[Vector]) -> float:
     return hypot(*combined((1,) * (len(edges) - 1), [cross(a, b) for a, b in pairwise(edges)]))
 
 
-def _tube(line: Sequence[Vector], color: Color) -> Iterator[Face]:
-    """A thin square tube along a line."""
-    for start, end in pairwise(line):
+def _tube(
+    line: Map, shares: Sequence[float], color: Color, known: dict[Vector, tuple[float, ...]]
+) -> Iterator[Face]:
+    """A thin square tube along a line; `known` is told where its points are."""
+    is_open = near(line(0.0)) != near(line(1.0))
+    for ends in pairwise(shares):
+        start, end = map(line, ends)
         along = unit(combined((1, -1), (end, start)))
         axis: Vector = (1.0, 0.0, 0.0) if abs(along[0]) < 0.8 else (0.0, 1.0, 0.0)
         u = unit(cross(along, axis))
         v = cross(along, u)
         around = [combined((p, q), (u, v)) for p, q in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
-        grid = [
-            [combined((1, _THICK), (centre, side)) for side in (*around, around[0])]
-            for centre in (start, end)
-        ]
+        offsets = [scaled(_THICK, side) for side in (*around, around[0])]
+        grid = [[combined((1, 1), (c, off)) for off in offsets] for c in (start, end)]
+        for share, row in zip(ends, grid, strict=True):
+            known.update(
+                {near(p): (share, 0.0, 0.0, *off) for p, off in zip(row, offsets, strict=True)}
+            )
         yield from _tiles([row[::-1] for row in grid], color)
+        first, last = (tuple(map(near, row[:-1])) for row in grid)
+        yield from (Face(first[::-1], color) for _ in range(ends[0] == 0.0 and is_open))
+        yield from (Face(last, color) for _ in range(ends[1] == 1.0 and is_open))
 
 
-def _fitted(faces: Sequence[Face], body: RigidBody, numbers: Numbers) -> Shape:
-    """About the centre of mass, in the size of the figure."""
+def _fitted(faces: Sequence[Face], body: RigidBody, numbers: Numbers, size: float) -> Shape:
+    """About the centre of mass, in the size of the figure; lengths are in units of `size`."""
     middle = [part.xreplace(numbers) for part in body.centre]
     is_known = all(part.is_number for part in middle)
-    x, y, z = (float(part) if is_known else 0.0 for part in middle)  # else about its origin
+    x, y, z = (float(part) / size if is_known else 0.0 for part in middle)  # else its origin
     moved = [
         Face(tuple(combined((1, -1), (p, (x, y, z))) for p in face.corners), face.color)
         for face in faces
