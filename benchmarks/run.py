@@ -38,6 +38,7 @@ NAMES = (
     "sizes",
     "accuracy",
     "precision",
+    "bounds",
     "identify",
     "bodies",
     "notes",

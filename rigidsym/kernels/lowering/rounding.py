@@ -2,14 +2,16 @@
 
 Every value of a kernel gets a bound on its size and one on its error in units of eps, for inputs
 that are exact as given: angles, of which only sines and cosines are taken, of any size, and other
-inputs of at most one. An operation rounds by half an eps of what it gives and passes on the errors
-of what it takes (Higham, Accuracy and Stability of Numerical Algorithms, chapter 3); terms in eps²
-are covered by rounding the result up. Where a kernel divides, there is no such bound.
+inputs of at most one. An operation rounds by half a unit in the last place of what it gives, which
+is 2^p eps/4 for results of at most 2^p, and passes on the errors of what it takes (Higham, Accuracy
+and Stability of Numerical Algorithms, chapters 2 and 3); terms in eps² are covered by rounding the
+result up. Sines and cosines are taken to be at most one, and within `SINE`. Where a kernel divides,
+there is no such bound. `benchmarks/bounds.py` has the same bounds proved by Gappa.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
@@ -31,18 +33,28 @@ from rigidsym.kernels.ir import (
 
 SINE = 1.1  # eps: of a sine or a cosine, what every target keeps; tests measure it
 _ENTIRE = 3.0  # eps of its size: of c0, c1 and c2
+_HALF = 0.5  # the mantissa of a power of two
 _SLACK = 1 + 2.0**-15  # for terms in eps², of single precision too, and for rounding here
 
 
 @dataclass(frozen=True, slots=True)
-class _Bounded:
+class Bounded:
     """Bounds on a value."""
 
     size: float
     error: float  # in eps
+    is_scale: bool = False  # a power of two, by which products and quotients are exact
+
+    @classmethod
+    def rounded(cls, size: float, error: float = 0.0) -> Bounded:
+        """The float nearest to a number that is at most `size` and has an error already."""
+        mantissa, exponent = frexp(size)
+        power = 2.0 ** (exponent - (mantissa == _HALF))
+        is_float = (mantissa * 2**24).is_integer()  # in single precision too
+        return cls(size if is_float else min(power, size * _SLACK), error + power / 4)
 
 
-class _NoBound(Exception):
+class NoBoundError(Exception):
     """The error of a value is not bounded, or not by this analysis."""
 
 
@@ -65,16 +77,10 @@ class Rounding:
 
 def rounding(kernel: Kernel) -> Rounding | None:
     """The bound of a kernel; None where there is none: it divides, or takes roots."""
-    halves = _halves(kernel)
-    plain = _used_plainly(kernel, halves)
-    values = {name: _Bounded(1.0, 0.0) for name in plain.intersection(kernel.components)}
+    plain, exact = numbers_and_angles(kernel)
     try:
-        for assignment in kernel.assignments:
-            if assignment.name in halves and assignment.name not in plain:
-                continue  # as exact as the angle that it is a half of
-            values[assignment.name] = _bounded(assignment.value, values)
-        error = max(_bounded(output, values).error for output in kernel.outputs)
-    except _NoBound:
+        error = largest_error(kernel, dict.fromkeys(plain, Bounded(1.0, 0.0)), exact)
+    except NoBoundError:
         return None
     used = [a for a in kernel.arguments if not kernel.used.isdisjoint(a.components)]
     return Rounding(
@@ -84,18 +90,34 @@ def rounding(kernel: Kernel) -> Rounding | None:
     )
 
 
-def _used_plainly(kernel: Kernel, halves: dict[str, str]) -> set[str]:
-    """The inputs that more is taken of than a sine or a cosine, of them or of a half of them.
+def largest_error(
+    kernel: Kernel, inputs: Mapping[str, Bounded], exact: Collection[str] = ()
+) -> float:
+    """In eps, of the outputs; names in `exact`, and inputs without bounds, are exact angles.
+
+    Raises NoBoundError where the kernel divides, or takes roots.
+    """
+    values = dict(inputs)
+    for assignment in kernel.assignments:
+        if assignment.name not in exact:
+            values[assignment.name] = _bounded(assignment.value, values)
+    return max(_bounded(output, values).error for output in kernel.outputs)
+
+
+def numbers_and_angles(kernel: Kernel) -> tuple[set[str], set[str]]:
+    """The inputs that more is taken of than a sine or a cosine, of them or of a half of them, and
+    the names of halves as exact as the angle itself.
 
     That a guard compares with an angle does not count.
     """
+    halves = _halves(kernel)
     others = [a.value for a in kernel.assignments if a.name not in halves]
     values = [v for v in (*others, *kernel.outputs) if not (_is_sine(v) or isinstance(v, Guarded))]
     plain = {name for value in values for name in names_in(value)}
     for name, source in reversed(halves.items()):
         if name in plain:
             plain.add(source)
-    return plain.intersection((*kernel.components, *halves))
+    return plain.intersection(kernel.components), halves.keys() - plain
 
 
 def adds_angles(kernel: Kernel) -> bool:
@@ -124,51 +146,59 @@ def _is_sine(value: Expression) -> bool:
     return isinstance(value, Call) and value.function in ("sin", "cos")
 
 
-def _bounded(expression: Expression, values: Mapping[str, _Bounded]) -> _Bounded:
+def _bounded(expression: Expression, values: Mapping[str, Bounded]) -> Bounded:
     """From left to right, as the targets compute."""
     match expression:
         case Name(text):
             return values[text]
         case Number(value):
-            size = abs(float(value))
-            is_exact = isinstance(value, Fraction) and Fraction(float(value)) == value
-            return _Bounded(size, 0.0 if is_exact else 0.5 * size)
+            size, is_scale = abs(float(value)), _is_power_of_two(value)
+            if is_scale or (isinstance(value, Fraction) and Fraction(float(value)) == value):
+                return Bounded(size, 0.0, is_scale)
+            return Bounded.rounded(size)
         case Negative(operand):
             return _bounded(operand, values)
         case Sum(terms):
             return reduce(_sum, (_bounded(term, values) for term in terms))
         case Product(factors, divisors) if all(isinstance(d, Number) for d in divisors):
-            ones = (_inverse(divisor) for divisor in divisors if isinstance(divisor, Number))
-            return reduce(_product, (*(_bounded(f, values) for f in factors), *ones))
+            above, below = (
+                reduce(_product, (_bounded(part, values) for part in side), _ONE)
+                for side in (factors, divisors)
+            )
+            inverse = Bounded(1 / below.size, below.error / below.size**2, below.is_scale)
+            return _product(above, inverse)
         case Call("sin" | "cos", argument):
-            angle = values.get(argument.text, _Bounded(0.0, 0.0))  # an input is exact as given
-            return _Bounded(1.0, SINE + angle.error)
+            angle = values.get(argument.text, Bounded(0.0, 0.0))  # an input is exact as given
+            return Bounded(1.0, SINE + angle.error)
         case Call("abs", argument):
             return values[argument.text]
         case Call(_, argument) if expression.order is not None:
             return _entire(expression.order, values[argument.text])
-    raise _NoBound
+    raise NoBoundError
 
 
-def _sum(a: _Bounded, b: _Bounded) -> _Bounded:
-    size = a.size + b.size
-    return _Bounded(size, a.error + b.error + 0.5 * size)
+def _sum(a: Bounded, b: Bounded) -> Bounded:
+    return Bounded.rounded(a.size + b.size, a.error + b.error)
 
 
-def _product(a: _Bounded, b: _Bounded) -> _Bounded:
-    size = a.size * b.size
-    return _Bounded(size, a.error * b.size + b.error * a.size + 0.5 * size)
+def _product(a: Bounded, b: Bounded) -> Bounded:
+    size, error = a.size * b.size, a.error * b.size + b.error * a.size
+    if a.is_scale or b.is_scale:
+        return Bounded(size, error, a.is_scale and b.is_scale)
+    return Bounded.rounded(size, error)
 
 
-def _inverse(divisor: Number) -> _Bounded:
-    """What a number divides by, as a factor; one half eps for its own rounding."""
-    size = 1 / abs(float(divisor.value))
-    return _Bounded(size, 0.5 * size)
+_ONE = Bounded(1.0, 0.0, is_scale=True)
 
 
-def _entire(order: int, square: _Bounded) -> _Bounded:
-    """c_k of n², at most 1/k! and of the slope (k c_(k+2) - c_(k+1))/2; n is off by half an eps."""
-    size = 1 / factorial(order)
+def _entire(order: int, square: Bounded) -> Bounded:
+    size, slope, own = entire_bounds(order)
+    return Bounded(size, own * size + slope * (square.error + square.size))
+
+
+def entire_bounds(order: int) -> tuple[float, float, float]:
+    """Of c_k of n²: its size, at most 1/k!; its slope, (k c_(k+2) - c_(k+1))/2; its own error in
+    eps of its size. Beside that n is off by half an eps, and n² by one."""
     slope = 0.5 * (order / factorial(order + 2) + 1 / factorial(order + 1))
     own = float(series_of(order).error) if order >= FIRST_SERIES else _ENTIRE
-    return _Bounded(size, own * size + slope * (square.error + square.size))
+    return Bounded.rounded(1 / factorial(order)).size, slope, own

@@ -150,5 +150,5 @@ def _errors(kernels: Sequence[Kernel]) -> Iterator[str]:
     if any(map(rounding, kernels)):
         yield (
             "Bounds on rounding errors are proved from the operations, in eps of the result's "
-            f"type, for sines and cosines within {SINE:g} eps and inputs taken as exact."
+            f"type, for sines and cosines of at most 1 and within {SINE:g} eps, and exact inputs."
         )
