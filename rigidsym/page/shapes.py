@@ -6,6 +6,7 @@ Each shape is made of closed pieces whose faces, seen from outside, run counterc
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache, lru_cache
 from itertools import pairwise
 from math import cos, pi, sin
 from typing import Any
@@ -16,6 +17,7 @@ from rigidsym.notes.figure.camera import Vector
 WHITE, PAGES, NAVY = (246, 244, 238), (236, 228, 206), (36, 70, 130)
 
 
+@cache
 def book() -> Shape:
     """A cuboid with three different moments of inertia: cover up, spine to the left."""
     x, y, z = 0.62, 0.86, 0.13
@@ -33,6 +35,7 @@ def book() -> Shape:
     return (Face(back.corners, NAVY), near, right, far, Face(spine.corners, BLUE), *cover)
 
 
+@cache
 def coin() -> Shape:
     """A thin disc with a mark on its head, about z′."""
 
@@ -44,6 +47,7 @@ def coin() -> Shape:
     return _revolved(profile, 36, color)
 
 
+@cache
 def top() -> Shape:
     """A spinning top about z′, with coloured sectors that show the spin."""
 
@@ -62,6 +66,7 @@ def on_its_tip(shape: Shape) -> Shape:
     )
 
 
+@cache
 def aircraft() -> Shape:
     """An aeroplane: nose along x′, left wing along y′, fin along z′."""
     profile = [(0.0, -0.95), (0.05, -0.9), (0.13, -0.2), (0.13, 0.6), (0.06, 0.9), (0.0, 0.97)]
@@ -87,6 +92,7 @@ SHAPES: Mapping[str, Callable[[], Shape]] = {
 }
 
 
+@lru_cache(maxsize=16)
 def as_data(shape: Shape) -> dict[str, Any]:
     """The shape by indices: points, colours, and faces as [colour, corner, corner, ...]."""
     points: dict[Vector, int] = {}

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -65,11 +66,20 @@ def overridden_by(own: Path) -> Iterator[None]:
 def environment(**options: Any) -> SandboxedTemplates:
     """A Jinja2 environment over the templates; `options` are Jinja2's, delimiters for instance.
 
-    Templates are sandboxed and do not escape: each kind of
-    document escapes its own text before it reaches a template. An undefined name, bad syntax or
+    Templates are sandboxed and do not escape: each kind of document escapes its own text before
+    it reaches a template. An undefined name, bad syntax or
     a forbidden access raises TemplateFault with the template, the line and the names there are.
+    What is rendered next has the whole time of a template.
     """
-    return SandboxedTemplates(template, **options)
+    found = _environment(tuple(options.items()))
+    found.begin()
+    return found
+
+
+@cache
+def _environment(options: tuple[tuple[str, Any], ...]) -> SandboxedTemplates:
+    """Kept for all documents, with the templates that it has compiled."""
+    return SandboxedTemplates(template, **dict(options))
 
 
 def template(name: str) -> tuple[str, str]:

@@ -130,7 +130,8 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
         is_padding = isinstance(obj, str) and attr in _PADDING
         return not is_padding and super().is_safe_attribute(obj, attr, value)
 
-    def _load(self, find: Find, name: str) -> tuple[str, str, None] | None:
+    def _load(self, find: Find, name: str) -> tuple[str, str, Callable[[], bool]] | None:
+        """Text, file, and whether they are still the same: else Jinja2 loads them again."""
         try:
             text, file = find(name)
         except (FileNotFoundError, ValueError) as error:
@@ -138,7 +139,7 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
                 raise TemplateFault(f"{name} is not text in UTF-8: {error.reason}") from error
             return None  # also for a name with NUL
         self._files.add(file)
-        return text, file, None
+        return text, file, lambda: (self._load(find, name) or ())[:2] == (text, file)
 
     def call_binop(self, _context: Context, operator: str, left: Any, right: Any) -> Any:
         if operator != "+":

@@ -274,12 +274,15 @@ def placed(
     """The label at the first free place, the nearest first; else where it touches the fewest."""
     taken = [label.box for label in labels]
     segments = [segment for stroke in strokes for segment in stroke.segments]
+    reach = 2 * hypot(_half_width(symbol), TYPE_SIZE * _HEIGHT / 2) + max(_GAPS) + _MARGIN
+    starts = {start for start, _ in places}
+    near = {p: list(filter(Box(p, reach, reach).is_crossed_by, segments)) for p in starts}
     least, best = len(segments) + len(taken) + 1, None
     for gap in _GAPS:
         for start, direction in places:
             label = Label(kind=kind, symbol=symbol, place=_shifted(symbol, start, direction, gap))
             box = label.box.grown(_MARGIN)
-            met = sum(map(box.is_crossed_by, segments)) + sum(map(box.meets, taken))
+            met = sum(map(box.is_crossed_by, near[start])) + sum(map(box.meets, taken))
             if met == 0:
                 return label
             if met < least:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
 from math import hypot, radians, sin
 from typing import Literal
@@ -127,7 +128,7 @@ class Posed:
         return next((ray for ray in self.rays if is_same(ray.direction, direction)), None)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True)
 class Scene:
     """The axes of space and of the body, the axes of the turns between them, and the turns."""
 
@@ -153,7 +154,7 @@ class Scene:
         )
         return Posed(rays=tuple(_merged(rays)), arcs=tuple(arcs))
 
-    @property
+    @cached_property
     def view(self) -> View:
         """The clearest of the standard views."""
         return max(map(self._seen, _VIEWS), key=self._clarity)
@@ -200,6 +201,7 @@ def _merged(rays: Iterator[Ray]) -> Iterator[Ray]:
     yield from found
 
 
+@lru_cache(maxsize=16)
 def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
     """The scene of a product of turns, or of the one turn about the axis of a vector.
 

@@ -200,10 +200,11 @@ class Composer:
     def _product_of_turns(self) -> Iterator[NoteBlock]:
         turns = [turn(t, self.letters) for t in self.model.turns]
         kind = "a product of turns" if len(turns) > 1 else "a single turn"
-        see = ", shown in Figure 1" if figure_of(self.model, self.letters) else ""
+        figure = list(self._figure())
+        see = ", shown in Figure 1" if figure else ""
         yield said(f"The rotation is {kind}\u00a0{{}}{see}:", Cited(self.model.source))
         yield Equation(sides=(ROTATION, row(*turns)))
-        yield from self._figure()
+        yield from figure
         by_axis = list(self._turns_by_axis())
         angle = formula_of(self._turn_angle(), self.letters)
         if len(turns) == 1:

@@ -15,7 +15,7 @@ _LETTERS = {"double": "NPY_DOUBLE", "float": "NPY_FLOAT"}
 
 def module_files(program: Program, kernels: Sequence[Kernel]) -> dict[str, str]:
     """NAME_c.py, with the interface of the NumPy module, and NAME_module.c behind it."""
-    environment = resources.environment(trim_blocks=True, lstrip_blocks=True)
+    environment = resources.environment()
     name = program.name
     functions = [_ufunc(kernel) for kernel in kernels]
     glue = environment.get_template("c/module.c.jinja").render(

@@ -106,7 +106,7 @@ def _header(program: Program, functions: Sequence[Sequence[Function]]) -> str:
 
 
 def _template(name: str) -> Any:
-    return resources.environment(trim_blocks=True, lstrip_blocks=True).get_template(name)
+    return resources.environment().get_template(name)
 
 
 def _about(program: Program) -> list[remarks.Paragraph]:
