@@ -79,6 +79,7 @@ def signs_outside(node: sp.Expr) -> sp.Expr:
     return node.func(*parts)
 
 
+@lru_cache(maxsize=1024)
 def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     """What is in all entries, such as ½ M or 2/(n² + w²), and the matrix behind it."""
     entries = [entry for entry in matrix if entry != 0]

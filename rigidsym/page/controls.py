@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import cycle
 from math import degrees, lcm, pi
 
@@ -176,6 +177,7 @@ def _control(argument: Argument, place: int, start: float, period: float, reach:
     )
 
 
+@lru_cache(maxsize=64)
 def period_of(symbol: sp.Expr, model: RotationModel) -> float:
     """After how many radians R is as before; 0 where the symbol is no angle in R."""
     matrix = model.matrix

@@ -20,7 +20,6 @@ from rigidsym.kernels.ir import (
 )
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.targets.c import printer as c
 from rigidsym.kernels.targets.numpy import printer as numpy
 from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.python_layout import (
@@ -67,7 +66,7 @@ _C = _Language(
 
 def copies_of(derivation: Derivation, document: Document) -> Mapping[str, Mapping[str, str]]:
     """label: language: text, for each numbered equation that a kernel evaluates."""
-    program = lower(derivation, numpy.RESERVED | c.RESERVED)
+    program = lower(derivation, numpy.RESERVED)
     kernels = {
         kernel.name: narrowed(kernel, infix, line=WIDTH - len("    const double ;"), output=66)
         for kernel in program.kernels

@@ -27,14 +27,17 @@ _FROM_MATRIX = "from_rotation_matrix"
 def others(model: RotationModel) -> Iterator[tuple[dict[str, Any], tuple[Kernel, ...]]]:
     """What the script needs of each other convention, and the functions behind it."""
     for name in _COMPARED:
-        if rotation_from(name).matrix != model.matrix:
+        if _model(name).matrix != model.matrix:
             yield _other(name)
+
+
+_model = cache(rotation_from)
 
 
 @cache
 def _other(name: str) -> tuple[dict[str, Any], tuple[Kernel, ...]]:
     """Of one convention, once for all pages."""
-    derivation = derive(rotation_from(name), ("rotation_matrix",))
+    derivation = derive(_model(name), ("rotation_matrix",))
     return _data(name, derivation), tuple(_kernels(name, derivation))
 
 

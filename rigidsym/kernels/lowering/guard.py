@@ -36,6 +36,8 @@ def guarded(kernel: Kernel, names: Names) -> Kernel:
 
     `names` gives out the names that are new.
     """
+    if not kernel.divisors:
+        return kernel
     guard = _Guard(names)
     for assignment in kernel.assignments:
         value = guard.expression(assignment.value)

@@ -10,7 +10,7 @@ the assignments are the derivation's own expression.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import sympy as sp
@@ -252,17 +252,34 @@ class _Lowering:
     def _kernel(
         self, name: str, vectors: Sequence[Vector], entries: Iterable[sp.Expr], **words: Any
     ) -> ir.Kernel:
-        """A kernel whose common subexpressions are shared, with its divisors guarded."""
         arguments = tuple(map(self._argument, vectors))
-        reader = self._reader(name, vectors)
-        weighted = [reader.weighted(entry) for entry in entries]
-        reader.graph.share(node for _, node in weighted)
-        names = self._names.copy()
-        assignments, outputs = write(reader.graph, weighted, names)
-        kernel = ir.Kernel(
-            name=name, arguments=arguments, assignments=assignments, outputs=outputs, **words
+        inputs = tuple((s, self._known[s]) for vector in vectors for s in vector.symbols)
+        definitions = tuple(self._definitions.items())
+        return _kernel(
+            name, arguments, inputs, definitions, tuple(entries), self._names.taken, **words
         )
-        return guarded(kernel, names)
+
+
+@lru_cache(maxsize=256)  # conventions have kernels in common, and so have a page and a module
+def _kernel(
+    name: str,
+    arguments: tuple[ir.KernelArgument, ...],
+    inputs: tuple[tuple[sp.Expr, str], ...],
+    definitions: tuple[tuple[sp.Expr, sp.Expr], ...],
+    entries: tuple[sp.Expr, ...],
+    taken: frozenset[str],
+    **words: Any,
+) -> ir.Kernel:
+    """A kernel whose common subexpressions are shared, with its divisors guarded."""
+    reader = Reader(name, dict(inputs), dict(definitions))
+    weighted = [reader.weighted(entry) for entry in entries]
+    reader.graph.share(node for _, node in weighted)
+    names = Names(taken)
+    assignments, outputs = write(reader.graph, weighted, names)
+    kernel = ir.Kernel(
+        name=name, arguments=arguments, assignments=assignments, outputs=outputs, **words
+    )
+    return guarded(kernel, names)
 
 
 def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rational, str]:

@@ -7,6 +7,7 @@ Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -247,4 +248,9 @@ def _entries(matrix: sp.ImmutableMatrix, names: Names, *, is_vector: bool) -> li
 
 
 def _plain(expression: sp.Expr, names: Names) -> str:
-    return str(expression.xreplace(names))
+    return _text(expression.xreplace(names))
+
+
+@lru_cache(maxsize=4096)  # an entry comes up in several quantities, and again in other conventions
+def _text(expression: sp.Expr) -> str:
+    return str(expression)

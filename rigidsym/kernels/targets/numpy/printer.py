@@ -21,7 +21,8 @@ from rigidsym.kernels.targets.text.python_layout import (
 from rigidsym.system import resources
 
 TEMPLATE = "numpy/module.py.jinja"
-RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError"}
+# the last two: of the functions that a page offers to copy, which are these in Python and C
+RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError", "entire", "fabs"}
 OPTIONS = ("out: Array | None = None", "threads: int = 1")  # of every function of arrays
 
 _BY_SIZE = (
