@@ -1,8 +1,9 @@
 """Formulas of the literature: read from `docs/literature/*.toml`, and decided by the prover.
 
-A file is one source. A formula gives the printed expression and ours, in a language of scalars and
-matrices (`value`), in which the quantities of a derivation are names. Whether both are equal
-is decided by `rigidsym.mechanics.prove.identity`; nothing else makes a verdict.
+A file is one source. A formula gives the printed expression and ours, in the language of scalars
+and matrices that `rigidsym compare` reads, in which the quantities of a derivation are names.
+Whether both are equal is decided by `rigidsym.mechanics.prove.identity`; nothing else makes a
+verdict.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from rigidsym.formula.tree import Words
 from rigidsym.mechanics.prove import identity
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import TIME
+from rigidsym.tools.compare.language import read_formula
 
 FOLDER = Path(__file__).parent / "literature"
 TOPICS = {
@@ -35,13 +37,6 @@ SEEN = {
     "original": "compared with the original",
     "copy": "compared with a copy, not with the original",
     "memory": "quoted from memory, not compared with the original",
-}
-_OPERATORS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
-    ast.Add: lambda a, b: a + b,
-    ast.Sub: lambda a, b: a - b,
-    ast.Mult: lambda a, b: a * b,
-    ast.Div: lambda a, b: a / b,
-    ast.Pow: lambda a, b: a**b,
 }
 
 
@@ -129,7 +124,7 @@ class Names:
 
     def __init__(self, claim: Claim) -> None:
         self.claim = claim
-        self.values: dict[str, Any] = {**_FUNCTIONS, "pi": sp.pi}
+        self.values: dict[str, Any] = {}
         self.conditions: list[sp.Expr] = []
         if claim.rotation or claim.body:
             self._derive()
@@ -187,28 +182,9 @@ class Names:
 
 
 def value(text: str, names: Mapping[str, Any]) -> Any:
-    """The value of an expression: numbers, names, + - * / **, calls and subscripts from 1."""
-    return _value(ast.parse(text.strip(), mode="eval").body, names)
-
-
-def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
-    match node:
-        case ast.Constant(value=int() as number):
-            return sp.Integer(number)
-        case ast.Name(id=name) if name in names:
-            return names[name]
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return -_value(operand, names)
-        case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
-            return _OPERATORS[type(op)](_value(left, names), _value(right, names))
-        case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in _FUNCTIONS:
-            return _FUNCTIONS[name](*(_value(argument, names) for argument in arguments))
-        case ast.Constant(value=str() as word):
-            return word
-        case ast.Subscript(value=inner, slice=ast.Tuple(elts=[row, column])):
-            matrix = _value(inner, names)
-            return matrix[int(_value(row, names)) - 1, int(_value(column, names)) - 1]
-    raise ValueError(f"{ast.unparse(node)!r} is not known here")
+    """The value of an expression: a scalar, or a matrix with more than one entry."""
+    matrix = read_formula(text, names, _FUNCTIONS)
+    return matrix[0] if matrix.shape == (1, 1) else matrix
 
 
 def _texts(given: Any) -> Iterator[str]:
@@ -234,11 +210,6 @@ def _matrix(given: Any) -> sp.MatrixBase:
     return given if isinstance(given, sp.MatrixBase) else sp.Matrix([[given]])
 
 
-def _cross(vector: sp.Matrix) -> sp.Matrix:
-    x, y, z = vector
-    return sp.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-
-
 def _turn(name: str, *coordinates: Any) -> sp.Matrix:
     """R of a rotation by name, at these coordinates."""
     model = rotation_from(name)
@@ -248,25 +219,7 @@ def _turn(name: str, *coordinates: Any) -> sp.Matrix:
     return sp.Matrix(model.matrix).xreplace(dict(zip(model.coordinates, values, strict=True)))
 
 
-_FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "sin": sp.sin,
-    "cos": sp.cos,
-    "tan": sp.tan,
-    "sqrt": sp.sqrt,
-    "acos": sp.acos,
-    "C": _cross,
-    "T": lambda matrix: matrix.T,
-    "one": lambda n: sp.eye(int(n)),
-    "col": lambda *entries: sp.Matrix(entries),
-    "dot": lambda a, b: a.dot(b),
-    "cross": lambda a, b: a.cross(b),
-    "outer": lambda a, b: a * b.T,
-    "diag": lambda *entries: sp.diag(*entries),
-    "stack": lambda *parts: sp.Matrix.vstack(*map(_matrix, parts)),
-    "trace": lambda matrix: matrix.trace(),
-    "R": _turn,
-    "derivative": sp.diff,
-}
+_FUNCTIONS: dict[str, Callable[..., Any]] = {"R": _turn, "derivative": sp.diff}
 
 
 # Pages

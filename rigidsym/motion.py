@@ -13,11 +13,13 @@ import sympy as sp
 
 from rigidsym.errors import ModelError, QuantityError, offer
 from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, Notation as Notation
+from rigidsym.formula.tree import Words
 from rigidsym.kernels.lowering.derivatives import Asked
-from rigidsym.kernels.module import KernelModule, generate
+from rigidsym.kernels.module import KernelModule as KernelModule, generate
 from rigidsym.mechanics.conversions.conversions import Conversions, conversions_of
-from rigidsym.mechanics.derivation import Derivation, Step
+from rigidsym.mechanics.derivation import Derivation, Proof, Step
 from rigidsym.mechanics.derive import Body, derive as derivation_of
+from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities.dynamics import (
     DYNAMICS_QUANTITIES,
     EULER_QUANTITIES,
@@ -85,6 +87,13 @@ class Motion(Derivation):
         Raises KernelError for an unknown target or derivative.
         """
         return generate(self, target, conversions=conversions, derivatives=derivatives)
+
+    def equality(self, left: sp.MatrixBase, right: sp.MatrixBase) -> Proof:
+        """The proof that two matrices in coordinates, rates and other inputs are equal.
+
+        Raises DerivationError, with what is left over, if they are not.
+        """
+        return identity(left - right, Words("equality"), self.name, self.model.constraints)
 
     @property
     def conversions(self) -> Conversions:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from helpers.command import ROOT
+from rigidsym.errors import ExpressionError
 
 
 @pytest.fixture(scope="module")
@@ -60,5 +61,5 @@ def test_expressions_are_printed_as_latex(literature, text, latex):
 
 
 def test_an_expression_calls_nothing_but_its_functions(literature):
-    with pytest.raises(ValueError, match="not known here"):
+    with pytest.raises(ExpressionError, match="is not a function"):
         literature.value("__import__('os')", {})

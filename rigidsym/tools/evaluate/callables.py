@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rigidsym.errors import QuantityError, RequestError
-from rigidsym.kernels.module import KernelModule
-from rigidsym.motion import Motion
+from rigidsym.motion import KernelModule, Motion
 from rigidsym.tools.evaluate.work import ResultColumn, Work
 
 CONVERSIONS = ("quaternion", "from_quaternion", "from_rotation_matrix")

@@ -10,7 +10,7 @@ from types import ModuleType
 import numpy as np
 
 from rigidsym.data.chunk import Table
-from rigidsym.kernels.module import KernelModule
+from rigidsym.motion import KernelModule
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -1,0 +1,230 @@
+"""Formulas as people type them, from text to a matrix: a walk over Python's ast. No text is run.
+
+    read_formula("[[cos(a), -sin(a)], [sin(a), cos(a)]]")          any name is a symbol
+    read_formula("one(3) + C(v)/2", {"v": sp.Matrix(...)})          only these names are known
+
+Products of matrices are `*` or `@`. Known besides the functions of expressions: C (the matrix of
+the vector product), T or `.T`, one, col, dot, cross, outer, diag, stack, trace, pow and `m[i, j]`,
+counted from 1. Sizes are bounded as in `rigidsym.text.bounds`.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import sympy as sp
+
+from rigidsym.errors import ExpressionError, offer
+from rigidsym.text.bounds import FUNCTIONS, Sized, apply, operate
+from rigidsym.text.names import spelled
+
+MOST_CHARACTERS = 20_000
+_LARGEST = 20  # rows or columns
+_MOST_PARTS = 50_000  # of the entries of a matrix
+_LONGEST_NUMBER = 40  # digits
+_MINUS = Sized.number(sp.S.NegativeOne)
+
+
+def read_formula(
+    text: str,
+    names: Mapping[str, Any] | None = None,
+    functions: Mapping[str, Callable[..., Any]] | None = None,
+) -> sp.ImmutableMatrix:
+    """The matrix in a text; a scalar is 1x1.
+
+    `names` are the known expressions and matrices; None makes a symbol of every name.
+    `functions` take and return expressions and matrices of SymPy. Raises ExpressionError.
+    """
+    if len(text) > MOST_CHARACTERS:
+        raise ExpressionError(
+            f"a formula of {len(text)} characters; expected at most {MOST_CHARACTERS}"
+        )
+    reader = _FormulaWalk(names, functions or {})
+    try:
+        return _matrix(reader.value(ast.parse(text.strip(), mode="eval").body))
+    except SyntaxError as error:
+        raise ExpressionError(f"not a formula: {error.msg}", column=error.offset or 1) from None
+    except (ValueError, TypeError, IndexError) as error:  # sizes that do not fit, a null character
+        raise ExpressionError(f"not a formula: {error}") from None
+    except (RecursionError, MemoryError):
+        raise ExpressionError("operations are nested too deeply") from None
+
+
+def _matrix(value: Any) -> sp.ImmutableMatrix:
+    return sp.ImmutableMatrix(value if isinstance(value, sp.MatrixBase) else [[_plain(value)]])
+
+
+def _plain(value: Any) -> Any:
+    return value.expression if isinstance(value, Sized) else value
+
+
+def _checked(value: Any) -> Any:
+    """A result that may be large, with its size; raises ExpressionError if it is too large."""
+    if isinstance(value, sp.MatrixBase):
+        if max(value.shape) > _LARGEST:
+            raise ExpressionError(f"a matrix of {value.shape}; expected at most {_LARGEST} rows")
+        if sum(1 for entry in value for _ in sp.preorder_traversal(entry)) > _MOST_PARTS:
+            raise ExpressionError("too large: a matrix with too many terms")
+        return sp.ImmutableMatrix(value)
+    if isinstance(value, Sized):
+        return value
+    expression = sp.sympify(value)
+    sizes = [int(n.p).bit_length() + int(n.q).bit_length() for n in expression.atoms(sp.Rational)]
+    return Sized.atom(expression, bits=max(sizes, default=1))
+
+
+def cross_matrix(vector: sp.MatrixBase) -> sp.Matrix:
+    """The matrix C(v) with C(v) u = v x u."""
+    x, y, z = vector
+    return sp.Matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+def _unit(size: sp.Expr) -> sp.Matrix:
+    if not (size.is_Integer and 0 < size <= _LARGEST):
+        raise ExpressionError(f"one(n) takes a whole number up to {_LARGEST}")
+    return sp.eye(int(size))
+
+
+_OF_MATRICES: dict[str, Callable[..., Any]] = {
+    "C": cross_matrix,
+    "T": lambda matrix: matrix.T,
+    "one": _unit,
+    "col": lambda *entries: sp.Matrix(entries),
+    "stack": lambda *parts: sp.Matrix.vstack(*map(_matrix, parts)),
+    "dot": lambda a, b: a.dot(b),
+    "cross": lambda a, b: a.cross(b),
+    "outer": lambda a, b: a * b.T,
+    "diag": lambda *entries: sp.diag(*entries),
+    "trace": lambda matrix: matrix.trace(),
+}
+_WRAPPERS = {"array", "asarray", "matrix", "Matrix", "ImmutableMatrix", "mat", "Array"}
+_SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
+_CONSTANTS = {"pi": sp.pi, "M_PI": sp.pi}
+
+
+class _FormulaWalk:
+    """Values of the nodes of one formula: Sized, ImmutableMatrix, or a word for a function."""
+
+    def __init__(
+        self, names: Mapping[str, Any] | None, functions: Mapping[str, Callable[..., Any]]
+    ) -> None:
+        self.names = names
+        self.functions = functions
+        self.known = _OF_MATRICES | dict(functions)
+
+    def value(self, node: ast.expr) -> Any:
+        match node:
+            case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+                return _number(number, node.col_offset + 1)
+            case ast.Constant(value=str() as word) if self.functions:
+                return word
+            case ast.Name(id=name):
+                return self._name(spelled(name), node.col_offset + 1)
+            case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+                return self.value(operand)
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return self._operate(ast.Mult(), _MINUS, self.value(operand), node.col_offset + 1)
+            case ast.BinOp(left=left, op=op, right=right):
+                return self._operate(op, self.value(left), self.value(right), node.col_offset + 1)
+            case ast.List(elts=parts) | ast.Tuple(elts=parts) if parts:
+                return _rows([self.value(part) for part in parts])
+            case ast.Attribute(value=inner, attr="T"):
+                return _matrix(self.value(inner)).T
+            case ast.Subscript(
+                value=inner,
+                slice=ast.Tuple(elts=[ast.Constant(value=int(i)), ast.Constant(value=int(j))]),
+            ) if min(i, j) > 0:
+                return _checked(_matrix(self.value(inner))[i - 1, j - 1])
+            case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
+                values = [self.value(argument) for argument in arguments]
+                return self._call(spelled(name), values, node.col_offset + 1)
+        raise ExpressionError(f"{type(node).__name__} is not allowed", column=node.col_offset + 1)
+
+    def _name(self, name: str, column: int) -> Any:
+        if self.names is not None and name in self.names:
+            known = self.names[name]
+            return (
+                sp.ImmutableMatrix(known) if isinstance(known, sp.MatrixBase) else _checked(known)
+            )
+        if self.names is None or name in _CONSTANTS:
+            return Sized.atom(_CONSTANTS.get(name, sp.Symbol(name, real=True)))
+        raise ExpressionError(f"unknown name {name!r}; {offer(name, self.names)}", column=column)
+
+    def _operate(self, op: ast.operator, left: Any, right: Any, column: int) -> Any:
+        if isinstance(left, Sized) and isinstance(right, Sized):
+            return operate(ast.Mult() if isinstance(op, ast.MatMult) else op, left, right, column)
+        one, other = _plain(left), _plain(right)
+        match op:
+            case ast.Add():
+                return _checked(one + other)
+            case ast.Sub():
+                return _checked(one - other)
+            case ast.Mult() | ast.MatMult():
+                product = one * other
+                is_scalar = isinstance(product, sp.MatrixBase) and product.shape == (1, 1)
+                return _checked(product[0] if is_scalar else product)
+            case ast.Div() if isinstance(right, Sized) and other != 0:
+                return _checked(one / other)
+            case ast.Pow() if other in range(1, 9):
+                return _checked(one**other)
+        raise ExpressionError("an operation that matrices do not have", column=column)
+
+    def _call(self, name: str, values: list[Any], column: int) -> Any:
+        if len(values) == 1 and isinstance(values[0], Sized):
+            name = _SHORT.get(name, name) if name not in self.functions else name
+        elif name in _WRAPPERS and len(values) == 1:
+            return _matrix(values[0])
+        if name in ("pow", "sq"):
+            exponent = values[1] if name == "pow" else Sized.number(sp.Integer(2))
+            return self._operate(ast.Pow(), values[0], exponent, column)
+        if name in self.known:
+            return _checked(self.known[name](*map(_plain, values)))
+        if name not in FUNCTIONS:
+            hint = offer(name, [*FUNCTIONS, *self.known])
+            raise ExpressionError(f"{name!r} is not a function; {hint}", column=column)
+        if len(values) != 1 + (name == "atan2") or not all(isinstance(v, Sized) for v in values):
+            raise ExpressionError(f"{name}: wrong arguments", column=column)
+        return apply(name, values, column)
+
+
+def _rows(parts: list[Any]) -> sp.ImmutableMatrix:
+    """A column of scalars, or rows; a row is what a list inside the list holds."""
+    if all(isinstance(part, Sized) for part in parts):
+        return _checked(sp.Matrix([part.expression for part in parts]))
+    rows = (_matrix(part) for part in parts)
+    return _checked(sp.Matrix.vstack(*(row.T if row.cols == 1 else row for row in rows)))
+
+
+def _number(number: float, column: int) -> Sized:
+    text = repr(number)
+    if len(text) > _LONGEST_NUMBER or not re.fullmatch(r"[\d.]+(e[+-]?\d\d?)?", text):
+        raise ExpressionError(f"a number of more than {_LONGEST_NUMBER} digits", column=column)
+    return Sized.number(sp.Rational(text))
+
+
+_SHORTENED = re.compile(r"(sin|cos|tan|[sct])_?([A-Za-z0-9]\w*|)")
+_ANGLE = re.compile(
+    r"(phi|theta|psi|alpha|beta|gamma|roll|pitch|yaw|th|ph|ps|[abg]|[xyz])_?\d?", re.IGNORECASE
+)
+_FULL = {"s": sp.sin, "c": sp.cos, "t": sp.tan}
+
+
+def spelled_out(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
+    """The matrix with sines and cosines for names such as sphi, cos_roll, c1, ct and s, c.
+
+    A name is short for a sine if its cosine is there too, or if it ends as angles are called.
+    """
+    found: dict[str, dict[str, sp.Symbol]] = {}
+    for symbol in sorted(matrix.free_symbols, key=str):
+        match = _SHORTENED.fullmatch(symbol.name)
+        if match:
+            found.setdefault(match[2], {})[match[1][0]] = symbol
+    values: dict[sp.Symbol, sp.Expr] = {}
+    for stem, letters in found.items():
+        if {"s", "c"} <= letters.keys() or (len(stem) > 1 and _ANGLE.fullmatch(stem)):
+            angle = sp.Symbol(stem if stem[:1].isalpha() else f"angle{stem}", real=True)
+            values |= {symbol: _FULL[letter](angle) for letter, symbol in letters.items()}
+    return sp.ImmutableMatrix(matrix.xreplace(values))

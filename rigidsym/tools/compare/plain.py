@@ -1,0 +1,246 @@
+r"""Formulas in Python, SymPy, C, C++, MATLAB and LaTeX, in the words of `language`.
+
+    plain("{{cosf(a), -sinf(a)}, {sinf(a), cosf(a)}}")     "[[cos(a), -sin(a)], [sin(a), cos(a)]]"
+    plain("[1 -s; 0 q(2)^2]")                              "[[1, -s], [0, q_2**2]]"
+    plain(r"\dot\phi \sin^2\theta")                        "phi_dot*sin(theta)**2"
+
+Names with dots, arrows or constant indices become one name: x[3] is x_3, state.phi is phi.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from rigidsym.errors import ExpressionError
+from rigidsym.text.bounds import FUNCTIONS
+
+_TOKEN = re.compile(
+    r"(?P<space>(?:\s|\.\.\.[^\n]*\n|\\\n)+)"
+    r"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)[fFlLuUdm]*(?![A-Za-z_])"
+    r"|(?P<name>[^\W\d]\w*(?:(?:::|->|\.(?!T\b))[^\W\d]\w*)*(?:\(\))?)"
+    r"|(?P<index>\[\s*\d+\s*\])"
+    r"|(?P<operator>\.T\b|\*\*|\.\*|\./|\.\^|\.'|[-+*/@^()\[\]{},;'=])"
+)
+_SAME = {"^": "**", ".^": "**", ".*": "*", "./": "/", "{": "[", "}": "]", "'": ".T", ".'": ".T"}
+_NAMES = {f + "f": f for f in FUNCTIONS} | {"power": "pow", "powf": "pow", "square": "sq"}
+_NAMES |= {"arctan2": "atan2", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "SQ": "sq"}
+_NAMES |= {"fabs": "abs", "Sqrt": "sqrt", "Sin": "sin", "Cos": "cos", "Tan": "tan"}
+_CALLS = {*FUNCTIONS, "pow", "sq", "pi", "M_PI", "one"}
+_OPEN, _CLOSE = "([", ")]"
+_KINDS = {"array", "Matrix", "matrix", "ImmutableMatrix", "mat", "asarray", "Array"}
+
+
+def plain(text: str) -> str:
+    """The formula for `read_formula`; raises ExpressionError for characters without a meaning."""
+    if "\\" in text and re.search(r"\\[A-Za-z]", text):
+        return _tex(text)
+    return "".join(_rows(_tokens(text)))
+
+
+def _tokens(text: str) -> list[str]:
+    """The tokens, in the words of the language; blanks stay, since they part columns in MATLAB."""
+    found: list[str] = []
+    place = 0
+    while place < len(text):
+        match = _TOKEN.match(text, place)
+        if match is None:
+            raise ExpressionError(f"unexpected {text[place]!r} in a formula", column=place + 1)
+        place = match.end()
+        if match["name"]:
+            found.append(name_of(match["name"]))
+        elif match["index"]:
+            _index(found, match["index"])
+        else:
+            token = (match["space"] and " ") or match["number"] or match["operator"]
+            found.append(_SAME.get(token, token))
+            _call_of_number(found)
+    return found
+
+
+def _call_of_number(found: list[str]) -> None:
+    """q(2) of MATLAB and Eigen is a component, q_2."""
+    match found[-4:]:
+        case [name, "(", number, ")"] if number.isdigit() and name.isidentifier():
+            if name not in _CALLS:
+                found[-4:] = [f"{name}_{number}"]
+
+
+def _index(found: list[str], index: str) -> None:
+    """A constant index becomes part of the name before it; elsewhere it is a list."""
+    number = index.strip("[] \t\n")
+    if found and re.fullmatch(r"[^\W\d]\w*", found[-1]):
+        found[-1] += f"_{number}"
+    else:
+        found += ["[", number, "]"]
+
+
+def name_of(name: str) -> str:
+    """One name for what has dots and arrows: np.sin is sin, state.phi is phi, q.w() is q_w."""
+    parts = [part for part in re.split(r"::|->|\.|\(\)", name) if part]
+    last = _NAMES.get(parts[-1], parts[-1])
+    if last in _CALLS or last in _KINDS or len(parts) == 1:
+        return last
+    return f"{parts[-2]}_{last}" if len(last) == 1 else last
+
+
+def _rows(tokens: Sequence[str]) -> list[str]:
+    """The tokens with rows of MATLAB, [a b; c d], as lists of lists."""
+    found: list[str] = []
+    at = 0
+    while at < len(tokens):
+        if tokens[at] == "[":
+            end = _closing(tokens, at)
+            inside = tokens[at + 1 : end]
+            if _is_matlab(inside):
+                rows = _split(inside, (";",))
+                found += ["[", ",".join(f"[{','.join(_columns(row))}]" for row in rows), "]"]
+            else:
+                found += ["[", *_rows(inside), "]"]
+            at = end
+        elif tokens[at] != " ":
+            found.append(tokens[at])
+        at += 1
+    return found
+
+
+def _closing(tokens: Sequence[str], start: int) -> int:
+    depth = 0
+    for at in range(start, len(tokens)):
+        depth += (tokens[at] in _OPEN) - (tokens[at] in _CLOSE)
+        if depth == 0:
+            return at
+    raise ExpressionError("unclosed bracket")
+
+
+def _is_matlab(inside: Sequence[str]) -> bool:
+    return len(_split(inside, (";",))) > 1 or (
+        len(_split(inside, (",",))) == 1 and len(_columns(inside)) > 1
+    )
+
+
+def _split(tokens: Sequence[str], marks: Sequence[str]) -> list[list[str]]:
+    """The parts between marks outside all brackets, but for empty ones."""
+    parts: list[list[str]] = [[]]
+    depth = 0
+    for token in tokens:
+        depth += (token in _OPEN) - (token in _CLOSE)
+        if depth == 0 and token in marks:
+            parts.append([])
+        else:
+            parts[-1].append(token)
+    return [part for part in parts if any(token != " " for token in part)]
+
+
+def _columns(row: Sequence[str]) -> list[str]:
+    """The columns of a row: between commas, or between blanks as MATLAB sees them."""
+    marked: list[str] = []
+    depth = 0
+    for at, token in enumerate(row):
+        depth += (token in _OPEN) - (token in _CLOSE)
+        after = row[at + 1] if at + 1 < len(row) else ""
+        is_sign = after in ("+", "-") and at + 2 < len(row) and row[at + 2] != " "
+        ends = bool(marked) and (marked[-1][-1].isalnum() or marked[-1] in (")", "]", ".T"))
+        begins = after[:1].isalnum() or after in ("(", "[") or is_sign
+        is_mark = token == " " and depth == 0 and ends and begins
+        marked.append("," if is_mark else token)
+    return ["".join(part).replace(" ", "") for part in _split(marked, (",",))]
+
+
+# LaTeX
+
+_TEX_TOKEN = re.compile(r"\\[A-Za-z]+|\d+(?:\.\d+)?|[A-Za-z]|[-+*/=^_(){}\[\]'|,]")
+_LAYOUT = re.compile(
+    r"\\(?:left|right|[bB]igg?[lr]?|displaystyle|textstyle|quad|qquad)(?![A-Za-z])"
+    r"|\\[,;:! ]|[~$]|\\(?:mathrm|operatorname|mathit|text)(?=\{)"
+)
+_MATRIX = re.compile(r"\\begin\{([pbB]?matrix|array)\}(?:\{[lcr]*\})?(.*?)\\end\{\1\}", re.DOTALL)
+_DOTS = {r"\dot": "_dot", r"\ddot": "_ddot"}
+_GREEK = {r"\varphi": "phi", r"\vartheta": "theta"}
+
+
+def _tex(text: str) -> str:
+    """LaTeX: the last matrix in it, or else what stands behind the last sign of equality."""
+    matrix = _MATRIX.findall(text)
+    if not matrix:
+        return _TexWalk(text.rsplit("=", 1)[-1]).sum()
+    rows = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?", matrix[-1][1]) if row.strip()]
+    cells = [[_TexWalk(cell).sum() for cell in row.split("&")] for row in rows]
+    return "[" + ", ".join(f"[{', '.join(row)}]" for row in cells) + "]"
+
+
+class _TexWalk:
+    """One entry, from left to right, with the signs of multiplication put in."""
+
+    def __init__(self, text: str) -> None:
+        self.tokens = _TEX_TOKEN.findall(_LAYOUT.sub(" ", text))[::-1]
+
+    def sum(self, end: str = "") -> str:
+        """Up to the bracket `end`, or to the end."""
+        parts: list[str] = []
+        while self.tokens and self.tokens[-1] != end:
+            if self.tokens[-1] in ("+", "-", "/") or self.tokens[-1] == r"\cdot":
+                token = self.tokens.pop()
+                parts.append("*" if token == r"\cdot" else token)
+            else:
+                parts += ["*"] * (bool(parts) and parts[-1] not in "+-*/") + [self._power()]
+        if end:
+            self._expect(end)
+        return "".join(parts)
+
+    def _power(self) -> str:
+        base = self._atom()
+        while self.tokens and self.tokens[-1] == "^":
+            self.tokens.pop()
+            base = f"{base}**({self._argument()})"
+        return base
+
+    def _argument(self) -> str:
+        """A group in braces, or one token."""
+        if self.tokens and self.tokens[-1] == "{":
+            self.tokens.pop()
+            return self.sum("}")
+        return self._atom()
+
+    def _atom(self) -> str:
+        token = self.tokens.pop() if self.tokens else ""
+        if token in ("(", "[", "{"):
+            return f"({self.sum({'(': ')', '[': ']', '{': '}'}[token])})"
+        if token in (r"\frac", r"\tfrac", r"\dfrac"):
+            return f"(({self._argument()})/({self._argument()}))"
+        if token == r"\sqrt":
+            return f"sqrt({self._argument()})"
+        if token in _DOTS:
+            return self._argument() + _DOTS[token]
+        if token[1:] in FUNCTIONS and token[0] == "\\":
+            return self._call(token[1:])
+        if token[:1].isdigit():
+            return token
+        name = _GREEK.get(token, token.lstrip("\\"))
+        if not name.isalpha():
+            raise ExpressionError(f"unexpected {token or 'end'!r} in LaTeX")
+        return name + self._script()
+
+    def _script(self) -> str:
+        """The index of a name, as part of it."""
+        if not self.tokens or self.tokens[-1] != "_":
+            return ""
+        self.tokens.pop()
+        index = self._argument().replace("*", "")
+        if not index.isalnum():
+            raise ExpressionError(f"unexpected index {index!r} in LaTeX")
+        return f"_{index}"
+
+    def _call(self, function: str) -> str:
+        power = ""
+        if self.tokens and self.tokens[-1] == "^":
+            self.tokens.pop()
+            power = f"**({self._argument()})"
+        argument = self._power()
+        while argument.isdigit() and self.tokens and self.tokens[-1][0] == "\\":  # sin 2 theta
+            argument += "*" + self._power()
+        return f"{function}({argument}){power}"
+
+    def _expect(self, token: str) -> None:
+        if not self.tokens or self.tokens.pop() != token:
+            raise ExpressionError(f"expected {token} in LaTeX")

@@ -1,0 +1,272 @@
+"""Small changes that make a wrong formula right: of all of it, or of single entries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import permutations
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from rigidsym.motion import QUANTITIES
+from rigidsym.tools.compare.targets import (
+    Array,
+    KnownQuantity,
+    Names,
+    Values,
+    agreement,
+    evaluated,
+    target,
+)
+
+_MOST_ENTRIES = 3  # that may be wrong, each by one change
+OF_NAMES = ("angle", "index", "columns", "rows")  # kinds: less likely than one wrong entry
+_HALF, _TWO = sp.Rational(1, 2), sp.Integer(2)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Repair:
+    """One change that makes a formula right."""
+
+    kind: str  # "sign", "square", "transpose", ...
+    words: str  # a sentence
+    formula: sp.ImmutableMatrix  # the formula after it, in the user's names
+    goal: KnownQuantity  # what that equals
+    place: tuple[int, int] | None = None  # of the entry, counted from 1
+    before: sp.Expr | None = None
+    after: sp.Expr | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Meaning:
+    """A formula under one reading of its names, with numbers."""
+
+    formula: sp.ImmutableMatrix
+    goal: KnownQuantity
+    names: Names
+    values: Values  # of the names, and of all that was evaluated before
+
+    @classmethod
+    def of(cls, formula: sp.ImmutableMatrix, goal: KnownQuantity, names: Names) -> Meaning:
+        return cls(formula=formula, goal=goal, names=names, values=valued(goal, names))
+
+    def numbers(self, matrix: sp.MatrixBase) -> Array:
+        return evaluated(matrix, self.values)
+
+    def agrees(self, matrix: sp.MatrixBase, goal: KnownQuantity) -> bool:
+        return matrix.shape == goal.matrix.shape and bool(
+            agreement(self.numbers(matrix), goal.values).all()
+        )
+
+    @property
+    def right(self) -> NDArray[np.bool_]:
+        """Which entries are right."""
+        return agreement(self.numbers(self.formula), self.goal.values)
+
+
+def valued(goal: KnownQuantity, names: Names) -> Values:
+    return {symbol: goal.points[meant] for symbol, meant in names.items()}
+
+
+def whole_repairs(reading: Meaning, *, twofold: bool = False) -> Iterator[Repair]:
+    """One change of all entries together, or another quantity of the rotation, which fits.
+
+    `twofold` gives those that take both: a change, and then another quantity.
+    """
+    formula, goal = reading.formula, reading.goal
+    changes = list(_changes(reading))
+    others = list(_relatives(goal))
+    if not twofold:
+        for kind, words, changed in changes:
+            if reading.agrees(changed, goal):
+                yield Repair(kind=kind, words=words, formula=changed, goal=goal)
+        changes = [("", "", formula)]
+    for kind, words, changed in changes:
+        for change, other in others:
+            if reading.agrees(changed, other):
+                yield Repair(
+                    kind=f"{kind}, {change}" if kind else change,
+                    words=f"this is {other}" + (f", but {words}" if words else ""),
+                    formula=changed,
+                    goal=other,
+                )
+
+
+def _relatives(goal: KnownQuantity) -> Iterator[tuple[str, KnownQuantity]]:
+    """(kind, target): the quantity in the other frame, inverted, and with the turns reversed."""
+    name = goal.quantity
+    swap = {"_body": "_space", "_space": "_body"}
+    frame = next((name.replace(one, two) for one, two in swap.items() if one in name), "")
+    related = [("frame", frame)] if frame else []
+    if "rate_matrix" in name and goal.matrix.shape == (3, 3):
+        for each in (name, frame):
+            bare = each.removeprefix("inverse_")
+            related.append(("inverse", bare if bare != each else f"inverse_{each}"))
+    for kind, quantity in related:
+        if quantity in QUANTITIES:
+            yield kind, goal.sibling(quantity)
+    if goal.rotation.isalpha() and len(goal.rotation) == 3 and goal.motion.body is None:
+        yield "order of the turns", target(goal.rotation.swapcase(), name)
+
+
+def _changes(reading: Meaning) -> Iterator[tuple[str, str, sp.ImmutableMatrix]]:
+    """(kind, words, changed formula) for each change of a whole matrix."""
+    formula, goal = reading.formula, reading.goal
+    yield "transpose", "the formula is the transpose", formula.T
+    yield "sign", "all signs are the other way round", -formula
+    for factor in (_TWO, _HALF):
+        yield "factor", f"a factor {factor} is missing", factor * formula
+    inside = [
+        s
+        for s, meant in reading.names.items()
+        if meant in goal.motion.argument("q").symbols and formula.has(s)
+    ]
+    for s in inside:
+        yield "angle", f"{s} has the other sign", formula.xreplace({s: -s})
+    for order in permutations(inside):
+        if list(order) != inside:
+            moved = [(a, b) for a, b in zip(inside, order, strict=True) if a != b]
+            words = ", ".join(f"{a} should be {b}" for a, b in moved)
+            yield "index", words, formula.xreplace(dict(moved))
+    size = range(min(4, formula.cols))
+    for columns in list(permutations(size))[1:] if formula.cols > 1 else ():
+        words = f"the columns belong in the order {', '.join(str(c + 1) for c in columns)}"
+        yield "columns", words, formula[:, list(columns)]
+    size = range(min(4, formula.rows))
+    for rows in list(permutations(size))[1:]:
+        words = f"the rows belong in the order {', '.join(str(r + 1) for r in rows)}"
+        yield "rows", words, formula[list(rows), :]
+
+
+# Single entries
+
+
+def entry_repairs(reading: Meaning) -> tuple[Repair, ...]:
+    """One change in each wrong entry; () if there are none, or too many."""
+    if reading.formula.shape != reading.goal.matrix.shape:
+        return ()
+    wrong = [(int(i), int(j)) for i, j in np.argwhere(~reading.right)]
+    if not 0 < len(wrong) <= min(_MOST_ENTRIES, max(1, len(reading.formula) // 3)):
+        return ()
+    if len(wrong) == 2 and (exchanged := _exchanged(reading, *wrong)):
+        return (exchanged,)
+    return tuple(_entry(reading, place) for place in wrong)
+
+
+def _exchanged(reading: Meaning, one: tuple[int, int], two: tuple[int, int]) -> Repair | None:
+    changed = reading.formula.as_mutable()
+    changed[one], changed[two] = changed[two], changed[one]
+    if not reading.agrees(changed, reading.goal):
+        return None
+    words = f"entries {_place(one)} and {_place(two)} are exchanged"
+    fixed = sp.ImmutableMatrix(changed)
+    return Repair(kind="exchange", words=words, formula=fixed, goal=reading.goal, place=_from1(one))
+
+
+def _from1(place: tuple[int, int]) -> tuple[int, int]:
+    return place[0] + 1, place[1] + 1
+
+
+def _place(place: tuple[int, int]) -> str:
+    return f"({place[0] + 1}, {place[1] + 1})"
+
+
+def _entry(reading: Meaning, place: tuple[int, int]) -> Repair:
+    """The smallest change of an entry; the entry of the target if no small one is enough."""
+    before = reading.formula[place]
+    wanted = reading.goal.values[:, place[0], place[1]][:, None, None]
+    groups = _groups(reading)
+    back = {meant: symbol for symbol, meant in reading.names.items()}
+    whole = "entry", reading.goal.matrix[place].xreplace(back)
+    variants = sorted(set(_variants(before, groups)), key=_cost)
+    fits = (v for v in variants if agreement(reading.numbers(sp.Matrix([[v[1]]])), wanted).all())
+    kind, after = next(fits, whole)
+    changed = reading.formula.as_mutable()
+    changed[place] = after
+    words = f"entry {_place(place)}: {before} should be {after}"
+    if kind != "entry":
+        words += f" ({_KINDS[kind]})"
+    return Repair(
+        kind=kind,
+        words=words,
+        formula=sp.ImmutableMatrix(changed),
+        goal=reading.goal,
+        place=_from1(place),
+        before=before,
+        after=after,
+    )
+
+
+_KINDS = {
+    "sign": "a sign",
+    "sine and cosine": "sine and cosine exchanged",
+    "index": "another name",
+    "square": "a square",
+    "factor": "a number as factor",
+    "half angle": "half or twice the angle",
+    "product": "a factor missing or too many",
+    "term": "a term too many",
+}
+
+
+def _cost(variant: tuple[str, sp.Expr]) -> tuple[int, int, str]:
+    return list(_KINDS).index(variant[0]), variant[1].count_ops(), str(variant[1])
+
+
+def _groups(reading: Meaning) -> list[list[sp.Symbol]]:
+    """Names that may be taken for one another: those of one argument."""
+    return [
+        [symbol for symbol, meant in reading.names.items() if meant in argument.symbols]
+        for argument in reading.goal.motion.arguments
+    ]
+
+
+_SWAPPED = {sp.sin: sp.cos, sp.cos: sp.sin}
+
+
+def _variants(
+    expression: sp.Expr, groups: Sequence[Sequence[sp.Symbol]], *, inside: bool = False
+) -> Iterator[tuple[str, sp.Expr]]:
+    """(kind, changed expression) for each single change."""
+    yield from _here(expression, groups, inside=inside)
+    is_function = expression.is_Function
+    for place, part in enumerate(expression.args):
+        if expression.is_Pow and place == 1:
+            continue
+        for kind, changed in _variants(part, groups, inside=inside or is_function):
+            parts = [*expression.args[:place], changed, *expression.args[place + 1 :]]
+            yield kind, expression.func(*parts)
+
+
+def _here(
+    expression: sp.Expr, groups: Sequence[Sequence[sp.Symbol]], *, inside: bool
+) -> Iterator[tuple[str, sp.Expr]]:
+    yield "sign", -expression
+    numbers = "half angle" if inside else "factor"
+    yield from ((numbers, factor * expression) for factor in (_HALF, _TWO))
+    if expression.is_Symbol:
+        group = next((g for g in groups if expression in g), ())
+        yield from (("index", other) for other in group if other != expression)
+    if expression.func in _SWAPPED:
+        yield "sine and cosine", _SWAPPED[expression.func](*expression.args)
+    if expression.is_Mul:
+        if expression.args[0].is_even:  # two equal terms that have become one
+            half = expression / 2
+            variants = _variants(half, groups, inside=inside)
+            yield from (("index", half + each) for kind, each in variants if kind == "index")
+        for factor in expression.args:
+            yield numbers if factor.is_number else "product", expression / factor
+    if expression.is_Add:
+        yield from (("term", expression - term) for term in expression.args)
+    if expression.is_Pow and expression.exp == 2:
+        yield "square", expression.base
+        for kind, changed in _variants(expression.base, groups, inside=inside):
+            yield kind, expression.base * changed
+    if inside:
+        return
+    if expression.is_Function or expression.is_Symbol:
+        yield "square", expression**2
+    if not expression.is_Add:
+        yield from (("product", expression * f(s)) for s in groups[0] for f in _SWAPPED)

@@ -1,0 +1,245 @@
+"""Quantities that a formula may be compared with: expressions, and numbers at a few points."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from itertools import permutations, product
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from rigidsym.errors import ExpressionError
+from rigidsym.motion import Motion, derive
+
+Array = NDArray[np.float64]
+Values = dict[sp.Expr, Any]  # of expressions, at all points
+Names = Mapping[sp.Symbol, sp.Expr]  # what the names of a formula stand for
+
+_POINTS = 4
+_TOLERANCE = 1e-9  # of numbers of order one, in double precision
+_TABLE = np.random.default_rng(1775).uniform(0.2, 1.3, (6, 16, _POINTS))  # argument, component
+_ROWS = {"q": 0, "q_dot": 1, "q_ddot": 2, "omega_space": 3, "omega_body": 3}
+_NUMPY: dict[Any, Any] = {
+    **{sp.sin: np.sin, sp.cos: np.cos, sp.tan: np.tan, sp.cot: lambda x: 1 / np.tan(x)},
+    **{sp.exp: np.exp, sp.log: np.log, sp.Abs: np.abs, sp.atan2: np.arctan2},
+    **{sp.asin: np.arcsin, sp.acos: np.arccos, sp.atan: np.arctan},
+    **{sp.sinh: np.sinh, sp.cosh: np.cosh, sp.tanh: np.tanh},
+}
+
+_AXES = [a + b + c for a, b, c in product("XYZ", repeat=3) if a != b != c]
+_THREE = (*_AXES, *(axes.lower() for axes in _AXES))
+_ONE = tuple(f"{a}(angle)" for a in "xyz")
+_TWO = tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2))
+_VECTORS = ("gibbs_vector", "modified_rodrigues")
+_QUATERNIONS = ("unit_quaternion",)
+_SERIES = ("rotation_vector",)
+_FRAMES = ("body", "space")
+_OF_RATES = tuple(
+    f"{name}_{frame}"
+    for name in (
+        *("rate_matrix", "inverse_rate_matrix"),
+        *("angular_velocity", "rates_from_angular_velocity"),
+    )
+    for frame in _FRAMES
+)
+OPERATOR = "quaternion_rate_operator"  # A(Ω) with q̇ = A q
+
+
+@dataclass(frozen=True, kw_only=True)
+class KnownQuantity:
+    """A quantity of a rotation."""
+
+    motion: Motion
+    rotation: str  # as it was asked for: "ZYX"
+    quantity: str
+    cache: Values = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def matrix(self) -> sp.ImmutableMatrix:
+        if self.quantity.startswith(OPERATOR):
+            frame = self.quantity.removeprefix(OPERATOR)
+            rates = getattr(self.motion, f"rates_from_angular_velocity{frame}")
+            return sp.ImmutableMatrix(rates.jacobian(self.motion.argument("q").symbols))
+        return self.motion.spelled(self.motion.step(self.quantity).expression)
+
+    @cached_property
+    def points(self) -> Values:
+        """Values of all inputs; coordinates and rates satisfy the conditions of the model."""
+        found: Values = {}
+        parameters = 0
+        for argument in self.motion.arguments:
+            row = _ROWS.get(argument.name, 4)
+            for place, symbol in enumerate(argument.symbols):
+                found[symbol] = _TABLE[row, place + (parameters if row == 4 else 0)]
+            parameters += len(argument.symbols) if row == 4 else 0
+        for condition in self.motion.model.constraints:
+            self._satisfy(condition, found)
+        return found
+
+    def _satisfy(self, condition: sp.Expr, found: Values) -> None:
+        """Scale the coordinates in a condition |v|² = 1, and take the rates along v away."""
+        arguments = {argument.name: argument for argument in self.motion.arguments}
+        q = [s for s in arguments["q"].symbols if condition.has(s)]
+        length = np.sqrt(sum(found[s] ** 2 for s in q))
+        found.update({s: found[s] / length for s in q})
+        if "q_dot" in arguments:
+            rates = [sp.diff(s, *s.args) for s in q]
+            along = sum(found[s] * found[r] for s, r in zip(q, rates, strict=True))
+            found.update({r: found[r] - along * found[s] for s, r in zip(q, rates, strict=True)})
+
+    @cached_property
+    def values(self) -> Array:
+        """(points, rows, columns)"""
+        return evaluated(self.matrix, dict(self.points))
+
+    @cached_property
+    def names(self) -> dict[str, sp.Expr]:
+        """The inputs by plain name."""
+        return {
+            name: symbol
+            for argument in self.motion.arguments
+            for name, symbol in zip(argument.names, argument.symbols, strict=True)
+        }
+
+    def sibling(self, quantity: str) -> KnownQuantity:
+        """Another quantity of the same rotation."""
+        motion = derive(self.motion.model, quantity, body=self.motion.body)
+        return KnownQuantity(motion=motion, rotation=self.rotation, quantity=quantity)
+
+    def __str__(self) -> str:
+        return f"{self.quantity} of {self.rotation}"
+
+
+@lru_cache(maxsize=512)
+def target(rotation: str, quantity: str) -> KnownQuantity:
+    """A quantity of a rotation by name; raises ModelError or QuantityError for unknown names."""
+    of_rates = rotation in _THREE and quantity in _OF_RATES
+    derived = quantity.replace(OPERATOR, "rates_from_angular_velocity")
+    motion = _kinematics(rotation, _OF_RATES if of_rates else (derived,))
+    return KnownQuantity(motion=motion, rotation=rotation, quantity=quantity)
+
+
+@lru_cache(maxsize=256)
+def _kinematics(rotation: str, quantities: tuple[str, ...]) -> Motion:
+    return derive(rotation, quantities)
+
+
+def catalogue(matrix: sp.MatrixBase) -> Iterator[KnownQuantity]:
+    """All quantities that a formula of this shape may be, plain ones first."""
+    turns = matrix.has(sp.sin, sp.cos, sp.tan)
+    count = len(matrix.free_symbols)
+    table: dict[tuple[int, int], Sequence[str]] = {
+        (3, 3): ("rotation_matrix", *_OF_RATES[:4]),
+        (3, 1): _OF_RATES[4:],
+        (4, 1): _OF_RATES[6:],
+        (4, 3): _OF_RATES[2:4],
+        (3, 4): _OF_RATES[:2],
+        (4, 4): tuple(f"{OPERATOR}_{frame}" for frame in _FRAMES),
+    }
+    for quantity in table.get(matrix.shape, ()):
+        rotations = _THREE if turns else _VECTORS[: 2 * (count == 3)]
+        if matrix.shape != (3, 3) and matrix.shape != (3, 1):
+            rotations = _QUATERNIONS
+        elif quantity == "rotation_matrix":
+            few = _ONE if count == 1 else _TWO if count == 2 else _THREE
+            many = ("axis_angle",) if count > 3 else few
+            rotations = many if turns else (*_QUATERNIONS, "quaternion") if count == 4 else _VECTORS
+        if matrix.has(sp.sqrt) or (turns and count == 3):
+            rotations = (*rotations, *_SERIES[: quantity == "rotation_matrix"])
+        yield from (target(rotation, quantity) for rotation in rotations)
+
+
+def evaluated(matrix: sp.MatrixBase, values: Values) -> Array:
+    """A matrix at all points, (points, rows, columns); `values` remembers all parts."""
+    with np.errstate(all="ignore"):
+        entries = [np.broadcast_to(_value(entry, values), (_POINTS,)) for entry in matrix]
+    return np.stack(entries, axis=-1).reshape(_POINTS, *matrix.shape)
+
+
+def _value(expression: sp.Expr, values: Values) -> Any:
+    if expression not in values:
+        values[expression] = _computed(expression, values)
+    return values[expression]
+
+
+def _computed(expression: sp.Expr, values: Values) -> Any:
+    if expression.is_number:
+        return float(expression)
+    parts = [_value(part, values) for part in expression.args]
+    if expression.is_Add:
+        return sum(parts)
+    if expression.is_Mul:
+        return np.prod(np.broadcast_arrays(*parts), axis=0)
+    if expression.is_Pow:
+        return np.asarray(parts[0], float) ** parts[1]
+    if expression.func in _NUMPY:
+        return _NUMPY[expression.func](*parts)
+    raise ExpressionError(f"{expression} has no value here")
+
+
+def agreement(one: Array, other: Array) -> NDArray[np.bool_]:
+    """Which entries agree at every point; (rows, columns)."""
+    with np.errstate(all="ignore"):
+        near = np.abs(one - other) <= _TOLERANCE * np.maximum(1, np.abs(other))
+    return np.asarray(near.all(axis=0))
+
+
+# What the names in a formula stand for
+
+_RATE = re.compile(r"(?:d_?|dot_?)(?P<behind>\w+)|(?P<before>\w+?)_?(?:dot|rate|d|p)")
+_OMEGA = re.compile(
+    r"(?:omega|Omega|w|W|gyro|g|rate|Omega_body|omega_(?:body|space))_?[xyz0-3]|[pqr]|[wW][pqr]"
+)
+
+
+def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
+    """What the names may stand for: themselves, if all are known, or else each possible order."""
+    symbols = sorted(matrix.free_symbols, key=lambda s: _natural(s.name))
+    own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
+    if all(own.values()):
+        yield {s: value for s, value in own.items() if value is not None}
+        return
+    arguments = {argument.name: argument.symbols for argument in goal.motion.arguments}
+    q, inputs = arguments["q"], _inputs(goal)
+    angles = {a for f in matrix.atoms(sp.sin, sp.cos, sp.tan) for a in f.free_symbols}
+    omega = [s for s in symbols if _OMEGA.fullmatch(s.name) and s not in angles]
+    omega = omega if {"omega_body", "omega_space"} & inputs else []
+    left = [s for s in symbols if s not in omega]
+    rates = {s: stem for s in left if (stem := stem_of(s.name)) and s not in angles}
+    rates = rates if "q_dot" in inputs else {}
+    others = [s for s in left if s not in rates and angles and s not in angles]
+    others = others if "parameters" in inputs or goal.motion.body else []
+    stems = sorted({s.name for s in left if s not in rates and s not in others} | {*rates.values()})
+    if len(stems) > len(q) or len(omega) > 3:
+        return
+    velocity = next((arguments[a] for a in ("omega_body", "omega_space") if a in inputs), ())
+    moments = [s for name, found in arguments.items() if name not in _ROWS for s in found]
+    if len(others) > len(moments):
+        return
+    fixed = dict(zip(others, moments, strict=False))
+    for order in permutations(q, len(stems)):
+        of_stem = dict(zip(stems, order, strict=True))
+        found: dict[sp.Symbol, sp.Expr] = {s: of_stem[s.name] for s in left if s.name in of_stem}
+        found |= {s: sp.diff(of_stem[stem], *of_stem[stem].args) for s, stem in rates.items()}
+        yield found | dict(zip(omega, velocity, strict=False)) | fixed
+
+
+def _inputs(goal: KnownQuantity) -> set[str]:
+    if goal.quantity.startswith(OPERATOR):
+        return {"q", "omega" + goal.quantity.removeprefix(OPERATOR)}
+    return set(goal.motion.step(goal.quantity).quantity.inputs)
+
+
+def stem_of(name: str) -> str:
+    """phi of phi_dot, dphi, phidot, phi_rate; "" for other names."""
+    match = _RATE.fullmatch(name)
+    return (match["behind"] or match["before"]) if match else ""
+
+
+def _natural(name: str) -> tuple[object, ...]:
+    return tuple(int(p) if p.isdigit() else p for p in re.split(r"(\d+)", name))

@@ -1,0 +1,126 @@
+"""`compare` names what is wrong with a formula: each kind of error, seeded into known formulas."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+
+CASES = [
+    ("ZXZ", "rotation_matrix"),
+    ("ZYX", "rotation_matrix"),
+    ("unit_quaternion", "rotation_matrix"),
+    ("ZYX", "rate_matrix_space"),
+    ("XZY", "rate_matrix_body"),
+    ("xyz", "inverse_rate_matrix_body"),
+    ("zxz", "angular_velocity_body"),
+    ("YXZ", "rates_from_angular_velocity_space"),
+    ("modified_rodrigues", "inverse_rate_matrix_body"),
+    ("unit_quaternion", "rate_matrix_body"),
+    ("yxy", "rate_matrix_space"),
+]
+
+
+@cache
+def right(rotation: str, quantity: str) -> sp.Matrix:
+    """The quantity in symbols."""
+    motion = rs.derive(rotation, quantity)
+    names = {
+        symbol: sp.Symbol(name, real=True)
+        for argument in motion.arguments
+        for name, symbol in zip(argument.names, argument.symbols, strict=True)
+    }
+    return sp.Matrix(getattr(motion, quantity)).xreplace(names)
+
+
+def turned_sign(entry: sp.Expr) -> sp.Expr:
+    return entry - 2 * sp.Add.make_args(entry)[0]
+
+
+def other_function(entry: sp.Expr) -> sp.Expr:
+    found = sorted(entry.atoms(sp.sin, sp.cos), key=str)[:1]
+    return entry.xreplace({f: {sp.sin: sp.cos, sp.cos: sp.sin}[f.func](*f.args) for f in found})
+
+
+def other_name(entry: sp.Expr) -> sp.Expr:
+    """Another name in one function, or in one term."""
+    parts = sorted(entry.atoms(sp.sin, sp.cos), key=str) or sorted(sp.Add.make_args(entry), key=str)
+    names = sorted(set().union(*(part.free_symbols for part in parts)), key=str)
+    if len(names) < 2:
+        return entry
+    first = min(parts[0].free_symbols or names, key=str)
+    changed = parts[0].xreplace({first: next(name for name in names if name != first)})
+    if parts[0].is_Function:
+        changed = entry.xreplace({parts[0]: changed})
+        return entry if changed.is_number else changed
+    changed = entry - parts[0] + changed
+    return changed if len(changed.args) == len(entry.args) else entry
+
+
+def added_square(entry: sp.Expr) -> sp.Expr:
+    found = sorted(entry.atoms(sp.sin, sp.cos), key=str)[:1]
+    return entry.xreplace({f: f**2 for f in found})
+
+
+def missing_square(entry: sp.Expr) -> sp.Expr:
+    found = [p for p in sorted(entry.atoms(sp.Pow), key=str) if p.exp == 2][:1]
+    return entry.xreplace({p: p.base for p in found})
+
+
+def doubled(entry: sp.Expr) -> sp.Expr:
+    return entry + sp.Add.make_args(entry)[0]
+
+
+def half_angle(entry: sp.Expr) -> sp.Expr:
+    found = sorted(entry.atoms(sp.sin, sp.cos), key=str)[:1]
+    return entry.xreplace({f: f.func(f.args[0] / 2) for f in found})
+
+
+def lost_factor(entry: sp.Expr) -> sp.Expr:
+    terms = sp.Add.make_args(entry)
+    factors = [f for f in terms[0].args if isinstance(f, sp.sin | sp.cos)]
+    return entry - terms[0] + terms[0] / factors[0] if terms[0].is_Mul and factors else entry
+
+
+SEEDS = {
+    "sign": turned_sign,
+    "sine and cosine": other_function,
+    "index": other_name,
+    "square": added_square,
+    "square ": missing_square,
+    "factor": doubled,
+    "half angle": half_angle,
+    "product": lost_factor,
+}
+
+
+def seeded(case, seed):
+    """The formula with the error in its last entry that can have it, and where that is; or None."""
+    formula = right(*case).as_mutable()
+    for i, j in reversed([(i, j) for i in range(formula.rows) for j in range(formula.cols)]):
+        changed = seed(formula[i, j])
+        if changed != formula[i, j] and formula[i, j] != 0:
+            formula[i, j] = changed
+            return formula, (i + 1, j + 1)
+    return None
+
+
+ERRORS = [(case, kind) for case in CASES for kind, seed in SEEDS.items() if seeded(case, seed)]
+
+
+def test_there_are_at_least_sixty_seeded_errors():
+    assert len(ERRORS) >= 60
+
+
+@pytest.mark.parametrize(
+    ("case", "kind"), ERRORS, ids=lambda v: "-".join(v) if type(v) is tuple else v
+)
+def test_one_wrong_entry_is_found_and_its_repair_is_proved(case, kind):
+    formula, place = seeded(case, SEEDS[kind])
+    found = rs.compare(str(formula.tolist()), *case)
+    (repair,) = found.repairs
+    assert (repair.place, repair.kind, found.is_proved) == (place, kind.strip(), True)
+    assert not found.is_equal
