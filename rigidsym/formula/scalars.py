@@ -6,6 +6,7 @@ A sum never starts with a minus sign if it has a positive term, and no rate ever
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from enum import IntEnum
 from functools import lru_cache
 
@@ -128,7 +129,7 @@ class _ScalarWalk:
         if node.is_Pow:
             return self._power(node)
         if node.func in FUNCTIONS:
-            return self._call(node, 1)
+            return self._call(node)
         if is_application(node):
             arguments = [self.expression(argument) for argument in node.args]
             return FunctionCall(node.func.__name__, Bracket(joined(arguments, Sign(","))))
@@ -188,18 +189,18 @@ class _ScalarWalk:
             return Radical(self.expression(base))
         if not exponent.is_Rational:
             self.letters.name(node)  # raises: a general power has no name
-        if base.func in FUNCTIONS and exponent.is_Integer:
-            return self._call(base, int(exponent))
+        if (base.func in FUNCTIONS or is_application(base)) and exponent.is_Integer:
+            return replace(self.expression(base), exponent=int(exponent))
         whole = _at_least(Bound.NAME, self.expression(base))
         raised = Numeral(str(exponent.p)) if exponent.is_Integer else _on_a_line(exponent)
         return Power(whole, raised)
 
-    def _call(self, node: sp.Function, exponent: int) -> Formula:
+    def _call(self, node: sp.Function) -> FunctionCall:
         angle = node.args[0]
         argument = self.expression(angle)
         if not _is_multiple(angle):
             argument = _at_least(Bound.NUMBER, argument)
-        return FunctionCall(FUNCTIONS[node.func], argument, exponent)
+        return FunctionCall(FUNCTIONS[node.func], argument)
 
 
 def _rational(number: sp.Rational) -> Formula:

@@ -121,7 +121,7 @@ class Consequence:
     text: str  # a sentence, with {} in the positions of the spans
     spans: tuple[Formula | sp.Expr, ...]
     left: Formula | sp.Expr
-    value: sp.Expr
+    value: Formula | sp.Expr
     proofs: tuple[Proof, ...] = ()
 
 

@@ -11,10 +11,8 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.adjoin import TIME
 from rigidsym.errors import ModelError
 
-__all__ = [
-    *("AXES", "TIME", "depends_on_time", "elementary", "hat", "rodrigues", "symbolic"),
-    "time_function",
-]
+__all__ = ["AXES", "TIME", "elementary", "hat", "rodrigues", "symbolic", "time_function"]
+__all__ += ["depends_on_time"]
 
 AXES = ("x", "y", "z")
 

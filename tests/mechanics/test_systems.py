@@ -5,8 +5,11 @@ from __future__ import annotations
 import random
 from functools import cache
 
+import numpy as np
 import pytest
 import sympy as sp
+from scipy.spatial.transform import Rotation
+from scipy.special import ellipj
 from sympy.physics.mechanics import (
     KanesMethod,
     LagrangesMethod,
@@ -19,6 +22,8 @@ from sympy.physics.mechanics import (
 
 import rigidsym as rs
 from helpers.witness import agree, evaluate, mp
+from rigidsym.mechanics.quantities.dynamics import ENERGY_SYMBOL, LENGTH_SYMBOL
+from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.pipeline import motion_of, read
 
 PHI, THETA, PSI, SIGMA = (dynamicsymbols(n) for n in ("phi", "theta", "psi", "sigma"))
@@ -156,7 +161,33 @@ def test_the_effective_potential_of_the_heavy_top_and_what_follows_from_it():
     assert sp.expand(found["The upright motion"].value - (p**2 / (4 * A) - m * g * l)) == 0
     steady = A * sp.cos(THETA) * PHI.diff(T) ** 2 - p_psi * PHI.diff(T) + m * g * l
     assert sp.expand(found["Steady motion"].value - steady) == 0
-    assert found["Nutation in elliptic functions"].value == 2 * m * g * l / A
+    u_1, u_3 = sp.symbols("u_1 u_3")
+    assert found["Nutation in elliptic functions"].spans[2] == m * g * l * (u_3 - u_1) / (2 * A)
+    rising = found["The motion that rises to the vertical"]
+    assert sp.expand(rising.value - (p**2 / (2 * A * m * g * l) - 1)) == 0
+
+
+def test_the_rates_of_the_ignorable_coordinates_are_those_that_solve_the_momenta():
+    motion = shipped("heavy_symmetric_top")
+    rates = {c.left: c.value for c in motion.consequences if c.left in (PHI.diff(T), PSI.diff(T))}
+    slow, fast = [c.value for c in motion.consequences if c.left == PHI.diff(T)][1:]
+    p_phi, p_psi = sp.symbols("p_phi p_psi")
+    expected = {PHI.diff(T): (p_phi - p_psi * sp.cos(THETA)) / (A * sp.sin(THETA) ** 2)}
+    expected[PSI.diff(T)] = p_psi / C - sp.cos(THETA) * expected[PHI.diff(T)]
+    rates[PHI.diff(T)] = next(c.value for c in motion.consequences if c.left == PHI.diff(T))
+    assert all(sp.cancel(rates[rate] - value) == 0 for rate, value in expected.items())
+    assert sp.expand(slow + fast - p_psi / (A * sp.cos(THETA))) == 0
+    assert sp.expand(slow * fast - m * g * l / (A * sp.cos(THETA))) == 0
+
+
+@pytest.mark.parametrize("name", ["u", "p", "E", "gamma"])
+def test_constants_may_be_named_as_what_the_note_of_a_top_introduces(name):
+    only = ["energy", "effective_potential"]
+    moments, potential = rs.principal_moments(A, A, C), f"{name}*cos(theta)"
+    model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
+    motion = rs.derive(model, only, body=moments, potential=potential)
+    cubic = next(c for c in motion.consequences if c.title == "The equation for the cosine")
+    assert sp.Symbol(name + "_0" if name in "uE" else "u") in cubic.value.free_symbols
 
 
 def test_the_top_that_rises_for_ever_solves_the_equation_for_the_cosine():
@@ -175,6 +206,12 @@ def test_the_top_that_rises_for_ever_solves_the_equation_for_the_cosine():
     value = 1 / (1 + s)
     left = sp.diff(value, s) ** 2 * gamma**2 * s**2 * (1 - s**2)
     assert sp.cancel(cubic.subs(constants).subs(weight).subs(u, value) - left) == 0
+    shown = motion.consequences[-1]
+    assert shown.left == 1 / sp.cos(THETA)
+    assert shown.value == 1 + 1 / sp.cosh(gamma * T)
+    printed = [span for span in shown.spans if isinstance(span, sp.Expr)]
+    given = [start[PHI.diff(T)], start[PSI.diff(T)], gamma**2, m * g * l / A]
+    assert [sp.simplify(one - two) for one, two in zip(printed, given, strict=True)] == [0] * 4
 
 
 def test_a_pendulum_and_its_effective_potential_need_no_third_coordinate():
@@ -197,3 +234,49 @@ def test_the_middle_axis_of_a_free_body_is_unstable_and_the_others_are_not():
     symmetric = rs.derive("unit_quaternion", body=rs.principal_moments(A, A, C), potential=0)
     rate = next(c for c in symmetric.consequences if c.title == "The symmetric body").value
     assert sp.expand(rate - (C - A) / A * sp.Symbol("Omega_body_3")) == 0
+
+
+def test_the_closed_form_of_a_free_symmetric_body_is_its_motion_in_both_frames():
+    """R = Rz(α₀ + α̇ t) Rx(β) Rz(γ₀ + γ̇ t) with the third axis of space along L"""
+    motion = shipped("free_symmetric_body")
+    shown = next(c for c in motion.consequences if c.title == "The symmetric body in space")
+    assert shown.proofs[0].is_exact
+    cosine, precession, spin = (span for span in shown.spans if isinstance(span, sp.Expr))
+    size, angle, values = 3.0, 0.8, {A: 1.4, C: 0.9}
+    known = values | {LENGTH_SYMBOL: size, OMEGA_BODY[2]: size * np.cos(angle) / values[C]}
+    assert float(cosine.subs(known)) == pytest.approx(np.cos(angle))
+    rates = [float(rate.subs(known)) for rate in (precession, spin)]
+    start = {"phi": 0.3, "theta": angle, "psi": 0.5, "theta_dot": 0.0}
+    start |= {"phi_dot": rates[0], "psi_dot": rates[1]}
+    found = motion.simulate(start, {"A": values[A], "C": values[C]}, 9.0, samples=19)
+    angles = np.stack([0.3 + rates[0] * found.t, 0 * found.t + angle, 0.5 + rates[1] * found.t], 1)
+    exact = Rotation.from_euler("ZXZ", angles).as_matrix()
+    assert np.abs(found.rotation_matrix - exact).max() < 1e-9
+    momentum = found.rotation_matrix @ (found.angular_velocity_body @ found.inertia)[..., None]
+    assert np.abs(momentum[..., 0] - [0, 0, size]).max() < 1e-9
+
+
+def test_the_elliptic_functions_of_a_free_body_are_its_motion():
+    """Ω′ = (a cn τt, b sn τt, c dn τt), and the rate at which the third axis precesses about L"""
+    motion = shipped("free_body")
+    solved, turned = motion.consequences[-2:]
+    assert all(proof.is_exact for each in (solved, turned) for proof in each.proofs)
+    moments, start = np.array([1.0, 1.5, 2.1]), np.array([0.4, 0.0, 1.2])
+    known = dict(zip((A, B, C), moments, strict=True))
+    known |= {ENERGY_SYMBOL: moments @ start**2 / 2, LENGTH_SYMBOL: np.linalg.norm(moments * start)}
+    squares = [float(span.subs(known)) for span in solved.spans[6::2]]
+    a, b, c, rate = np.sqrt(squares[:4])
+    begun = {"w": 1, "x": 0, "y": 0, "z": 0, "angular_velocity_body": start}
+    found = motion.simulate(begun, dict(zip("ABC", moments, strict=True)), 20.0, samples=41)
+    sn, cn, dn, _ = ellipj(rate * found.t, squares[4])
+    exact = np.stack([a * cn, b * sn, c * dn], axis=1)
+    assert np.abs(found.angular_velocity_body - exact).max() < 1e-9
+    precession = sp.lambdify(OMEGA_BODY[2], turned.spans[-1].subs(known))(exact[:, 2])
+    momentum = moments * start
+    axis = found.rotation_matrix[:, :, 2]
+    across = axis - np.outer(axis @ momentum, momentum) / (momentum @ momentum)
+    velocity = np.cross(
+        (found.rotation_matrix @ exact[..., None])[..., 0], axis
+    )  # of the axis in space
+    about = np.cross(across, velocity) @ momentum / np.linalg.norm(momentum)
+    assert about / np.sum(across**2, axis=1) == pytest.approx(precession, abs=1e-8)

@@ -18,6 +18,7 @@ from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Consequence, FirstIntegral, Found
+from rigidsym.mechanics.dynamics.cosine import Cosine
 from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.flow import Flow, StateBlock
 from rigidsym.mechanics.dynamics.lagrange import Lagrange, is_free
@@ -297,8 +298,8 @@ class LagrangeEquations(Flow):
     def consequences(self) -> Iterator[Consequence]:
         yield from super().consequences()
         k = self._single
-        if k is None or not self.driving.is_zero():  # then the energy is not constant
-            return
+        if k is None or self.is_free or not self.driving.is_zero():
+            return  # the free body is known; in a driving potential the energy is not constant
         q = self.model.coordinates
         momenta = self.present.matrix(self.work.momenta)
         others = [j for j in range(len(q)) if j != k]
@@ -313,7 +314,10 @@ class LagrangeEquations(Flow):
             energy=self.whole,
             acceleration=self.present.matrix(*self.work.solved)[k],
         )
-        yield from found.consequences()
+        yield found.one_dimension()
+        yield from found.others()
+        yield from found.steady()
+        yield from Cosine(found).consequences()
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
         """Ω′ = W′ q̇."""

@@ -18,9 +18,8 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.squares import half_form
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula
-from rigidsym.mechanics.derivation import Consequence, FirstIntegral, Found
+from rigidsym.mechanics.derivation import FirstIntegral, Found
 from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, solved_euler
-from rigidsym.mechanics.dynamics.reduced import of_free_body
 from rigidsym.mechanics.kinematics.workspace import Values, encoded
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.models.body import RigidBody
@@ -111,12 +110,6 @@ class EulerEquations(Flow):
             "The energy changes at the power of the other torques.",
             (self.prove.vanishes(residual, self.energy_claim, divided_by=divisor),),
         )
-
-    def consequences(self) -> Iterator[Consequence]:
-        yield from super().consequences()
-        if self.torque[0].is_zero():
-            slopes = self.present.matrix(*self.blocks[1][1:])
-            yield from of_free_body(self.body.inertia, list(slopes), self.model.name)
 
     def own_integrals(self) -> Iterator[FirstIntegral]:
         """Those of the energy and the angular momentum, in space and along the body's axes, that

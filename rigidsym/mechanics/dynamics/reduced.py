@@ -1,25 +1,35 @@
 """Motion in one dimension: what follows if all momenta but one are constant, as for the heavy top.
 
-The remaining coordinate moves in its effective potential. If it occurs in sines and cosines only,
-u = cos θ turns the energy into u̇² = f(u) with a polynomial f; a cubic is solved by Jacobi's sn.
+The remaining coordinate moves in its effective potential, which also gives the rates of the others:
+dq_j/dt = ∂V_eff/∂p_j. See `cosine` for a coordinate that occurs in sines and cosines only.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import sympy as sp
 
 from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Consequence, Proof
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import dynamics as claims
-from rigidsym.models.forces import OMEGA_BODY
+from rigidsym.models.so3 import TIME
 
-_E, _U, _P = sp.symbols("E u p")
-_SINE = sp.Dummy("sine")
 _LONGEST = 40  # operations of a condition for steady motion that tells a reader anything
+
+
+class Introduced(NamedTuple):
+    """Symbols that stand for what the user has not named."""
+
+    E: sp.Symbol  # the energy
+    u: sp.Symbol  # cos θ
+    p: sp.Symbol  # all momenta, if they are equal
+    gamma: sp.Symbol  # a rate
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,28 +48,35 @@ class Reduced:
 
     @property
     def rate(self) -> sp.Expr:
-        return sp.diff(self.coordinate, sp.Symbol("t"))
+        return sp.diff(self.coordinate, TIME)
 
-    def consequences(self) -> Iterator[Consequence]:
-        yield self._one_dimension()
-        yield from self._steady()
-        potential = self._in_cosine(self.potential)
-        if potential is None or self.mass.has(self.coordinate):
-            return
-        yield from self._sleeping(potential)
-        value = self._right_side(potential)
-        if sp.cancel(value).is_polynomial(_U):
-            yield self._polynomial(value)
-            yield from self._elliptic(sp.Poly(sp.expand(value), _U))
+    @property
+    def rates(self) -> list[sp.Expr]:
+        """Of the ignorable coordinates."""
+        return [sp.diff(q, TIME) for q in self.ignorable]
 
-    def _proved(self, residual: sp.Expr, claim: str) -> Proof:
+    @cached_property
+    def letters(self) -> Introduced:
+        """Those that the user has not taken, with a prime where that is needed."""
+        taken = {symbol.name for symbol in self.energy.free_symbols}
+        names = (name + "_0" * (name in taken) for name in Introduced._fields)
+        return Introduced(*map(sp.Symbol, names))
+
+    @cached_property
+    def turning(self) -> list[sp.Expr]:
+        """The rates of the ignorable coordinates in θ and the momenta."""
+        slopes = (sp.diff(self.potential, p) for p in self.symbols)
+        return [sp.Add(*map(_shorter, sp.Add.make_args(slope))) for slope in slopes]
+
+    def proved(self, residual: sp.Expr, claim: Formula) -> Proof:
         """That a residual vanishes with E and the momenta in terms of the motion."""
-        values = {_E: self.energy, **dict(zip(self.symbols, self.momenta, strict=True))}
+        values = dict(zip(self.symbols, self.momenta, strict=True)) | {self.letters.E: self.energy}
         held = sp.ImmutableMatrix([[residual.xreplace(values)]])
-        return identity(held, formula(claim), self.name)
+        return identity(held, claim, self.name)
 
-    def _one_dimension(self) -> Consequence:
+    def one_dimension(self) -> Consequence:
         value = self.mass * self.rate**2 / 2 + self.potential
+        claim = formula(r"E = \tfrac{1}{2}m\dot{q}^2 + V_{\mathrm{eff}}")
         return Consequence(
             title="The effective potential",
             text="The constant momenta put into the energy leave the motion of {} in one "
@@ -68,13 +85,35 @@ class Reduced:
             spans=(self.coordinate, claims.EFFECTIVE, claims.ENERGY),
             left=claims.ENERGY,
             value=value,
-            proofs=(self._proved(_E - value, r"E = \tfrac{1}{2}m\dot{q}^2 + V_{\mathrm{eff}}"),),
+            proofs=(self.proved(self.letters.E - value, claim),),
         )
 
-    def _steady(self) -> Iterator[Consequence]:
+    def others(self) -> Iterator[Consequence]:
+        """The rates of the ignorable coordinates, and what is left to integrate."""
+        for k, (q, rate, value) in enumerate(
+            zip(self.ignorable, self.rates, self.turning, strict=True)
+        ):
+            angle = claims.name_of(q)
+            own = formula("#1(t)", claims.name_of(self.coordinate))
+            integral = formula(
+                r"#1(t) = #1(0) + \int_0^t #2\,dt", angle, claims.name_of(q, order=1)
+            )
+            yield Consequence(
+                title="" if k else "The other coordinates",
+                text="and {} from"
+                if k
+                else "The momenta give the rates of the other coordinates. If {} is known, {} "
+                "follows by a quadrature from",
+                spans=(integral,) if k else (own, integral),
+                left=rate,
+                value=value,
+                proofs=(self.proved(rate - value, claims.RATE_OF_IGNORABLE),),
+            )
+
+    def steady(self) -> Iterator[Consequence]:
         """θ at rest: a condition on the rates of the others, quadratic for a top."""
         at_rest = self.acceleration.xreplace({self.rate: sp.S.Zero})
-        rates = [sp.diff(q, sp.Symbol("t")) for q in self.ignorable]
+        rates = self.rates
         plain = {rate: sp.Dummy() for rate in rates}
         for k, spin in enumerate(rates):
             others = [rate for rate in rates if rate != spin]
@@ -93,8 +132,6 @@ class Reduced:
                 continue
             if sp.count_ops(condition.as_expr()) > _LONGEST:
                 return
-            a, b, c = condition.all_coeffs()
-            root = sp.sqrt(sp.factor(b**2 - 4 * a * c))
             value = condition.as_expr().xreplace({plain[turning]: turning})
             of_spin = at_rest.xreplace({spin: own.xreplace({plain[turning]: turning})})
             residual = of_spin - sp.cancel(of_spin / value) * value
@@ -104,108 +141,39 @@ class Reduced:
                 spans=(self.coordinate,),
                 left=formula("0"),
                 value=sp.collect(value, turning),
-                proofs=(self._proved(residual, r"\ddot{q} = 0"),),
+                proofs=(self.proved(residual, formula(r"\ddot{q} = 0")),),
             )
+            yield from self._both_rates(condition, turning, self.symbols[k])
+            return
+
+    def _both_rates(
+        self, condition: sp.Poly, turning: sp.Expr, spin: sp.Symbol
+    ) -> Iterator[Consequence]:
+        """The roots of the quadratic equation for steady motion, with when there are any."""
+        a, b, c = condition.all_coeffs()
+        below = sp.factor(b**2 - 4 * a * c)
+        root = sp.sqrt(below)
+        texts = (
+            "This quadratic equation has two roots if {} is positive, and none if it is negative: "
+            "no steady motion then has this inclination. If {} is positive and large, the slow "
+            "rate is nearly {}:",
+            "The fast rate is then nearly {}:",
+        )
+        spans = ((below, spin, sp.cancel(-c / b)), (sp.cancel(-b / a),))
+        for text, held, sign in zip(texts, spans, (-1, 1), strict=True):
             yield Consequence(
                 title="",
-                text="This quadratic equation gives a fast and a slow rate if {} is not negative; "
-                "if it is negative, no steady motion has this inclination. The slow one is",
-                spans=(root**2,),
+                text=text,
+                spans=held,
                 left=turning,
-                value=(-b - root) / (2 * a),
-                proofs=(_roots_proof(a, b, c, self.name),),
+                value=(-b + sign * root) / (2 * a),
+                proofs=(_root_proof(a, b, c, sign, self.name),),
             )
-            return
 
-    def _in_cosine(self, value: sp.Expr) -> sp.Expr | None:
-        """A function of θ in terms of u = cos θ; None if it is none."""
-        angle = self.coordinate
-        plain = value.replace(sp.tan, lambda x: sp.sin(x) / sp.cos(x))
-        plain = plain.replace(sp.cot, lambda x: sp.cos(x) / sp.sin(x))
-        plain = plain.xreplace({sp.sin(angle): _SINE, sp.cos(angle): _U})
-        if plain.has(angle):
-            return None
-        parts = [sp.cancel(_without_sine(part)) for part in sp.Add.make_args(plain)]
-        return None if any(part.has(_SINE) for part in parts) else sp.Add(*parts)
 
-    def _polynomial(self, value: sp.Expr) -> Consequence:
-        angle = self.coordinate
-        kind = "cubic polynomial" if sp.degree(sp.cancel(value), _U) == 3 else "polynomial"
-        residual = (sp.sin(angle) * self.rate) ** 2 - value.xreplace({_U: sp.cos(angle)})
-        return Consequence(
-            title="The equation for the cosine",
-            text=f"With {{}} the equation of energy becomes {{}}, with the {kind} $f$:",
-            spans=(
-                formula("u = #1", formula(r"\cos #1", claims.name_of(angle))),
-                formula(r"\dot{u}^2 = f(u)"),
-            ),
-            left=formula("f(u)"),
-            value=value,
-            proofs=(self._proved(residual, r"\dot{u}^2 = f(u)"),),
-        )
-
-    def _right_side(self, potential: sp.Expr) -> sp.Expr:
-        """f(u) = 2 (1 − u²)(E − V)/m, with what has a pole at u = ±1 apart."""
-        regular, singular = sp.S.Zero, sp.S.Zero
-        for part in sp.Add.make_args(potential):
-            if sp.denom(part).has(_U):
-                singular += sp.factor(sp.cancel(part * (1 - _U**2)))
-            else:
-                regular += part
-        return 2 * ((1 - _U**2) * (_E - regular) - singular) / self.mass
-
-    def _sleeping(self, potential: sp.Expr) -> Iterator[Consequence]:
-        """V_eff near θ = 0, where it is regular if the momenta are equal."""
-        equal = sp.cancel(potential.xreplace(dict.fromkeys(self.symbols, _P)))
-        if len(self.symbols) != 2 or sp.denom(equal).xreplace({_U: sp.S.One}) == 0:
-            return
-        height, slope = (e.xreplace({_U: sp.S.One}) for e in (equal, sp.diff(equal, _U)))
-        line = height + (_U - 1) * slope
-        rest = sp.cancel((equal - line) / (1 - _U) ** 2)  # regular at u = 1
-        residual = sp.ImmutableMatrix([[equal - line - (1 - _U) ** 2 * rest]])
-        yield Consequence(
-            title="The upright motion",
-            text="If {} is 0, the momenta are equal, {}; near 0 the effective potential is a "
-            "constant plus half of {} times {}. The motion upright (the sleeping top) is stable if "
-            "this coefficient is positive:",
-            spans=(
-                self.coordinate,
-                formula("#1 = #2 = p", *map(claims.momentum_of, self.ignorable)),
-                formula(r"\kappa"),
-                self.coordinate**2,
-            ),
-            left=formula(r"\kappa"),
-            value=min(sp.expand(-slope), sp.factor(-slope), key=sp.count_ops),
-            proofs=(identity(residual, claims.NEAR_UPRIGHT, self.name),),
-        )
-
-    def _elliptic(self, cubic: sp.Poly) -> Iterator[Consequence]:
-        """u(t) for a cubic f with the roots u₁ ≤ u₂ ≤ u₃."""
-        if cubic.degree() != 3:
-            return
-        one, two, three, sn, lead = sp.symbols("u_1 u_2 u_3 sn a")
-        u = one + (two - one) * sn**2
-        modulus = (two - one) / (three - one)
-        rate_squared = lead * (three - one) / 4
-        slope_squared = 4 * (two - one) ** 2 * sn**2 * (1 - sn**2) * (1 - modulus * sn**2)
-        residual = slope_squared * rate_squared - lead * (u - one) * (u - two) * (u - three)
-        claim = formula(r"\dot{u}^2 = f(u)")
-        yield Consequence(
-            title="Nutation in elliptic functions",
-            text="Let {} be the roots of $f$. The motion goes to and fro between the first two; "
-            "substitution shows that {} with {} and {}, if the time begins at {}. Here $a$ is the "
-            "leading coefficient of $f$:",
-            spans=(
-                formula(r"u_1 \le u_2 \le u_3"),
-                formula(r"u = u_1 + (u_2 - u_1)\,\mathrm{sn}^2(\lambda t, k)"),
-                formula(r"\lambda^2 = \tfrac{a}{4}(u_3 - u_1)"),
-                formula(r"k^2 = \frac{u_2 - u_1}{u_3 - u_1}"),
-                one,
-            ),
-            left=formula("a"),
-            value=cubic.LC(),
-            proofs=(identity(sp.ImmutableMatrix([[residual]]), claim, self.name),),
-        )
+def _shorter(value: sp.Expr) -> sp.Expr:
+    """One fraction, with its factors if that is shorter."""
+    return min(sp.cancel(value), sp.factor(value), key=sp.count_ops)
 
 
 def _factor(value: sp.Expr, turning: sp.Symbol) -> sp.Poly | None:
@@ -219,70 +187,9 @@ def _factor(value: sp.Expr, turning: sp.Symbol) -> sp.Poly | None:
     return found if not lead.could_extract_minus_sign() else -found
 
 
-def _without_sine(value: sp.Expr) -> sp.Expr:
-    """The same with even powers of the sine in terms of the cosine."""
-    above, below = sp.fraction(sp.together(value))
-    return _even(above) / _even(below)
-
-
-def _even(value: sp.Expr) -> sp.Expr:
-    powers = sp.Poly(value, _SINE).terms()
-    return sp.Add(*(c * _SINE ** (n % 2) * (1 - _U**2) ** (n // 2) for (n,), c in powers))
-
-
-def _roots_proof(a: sp.Expr, b: sp.Expr, c: sp.Expr, name: str) -> Proof:
+def _root_proof(a: sp.Expr, b: sp.Expr, c: sp.Expr, sign: int, name: str) -> Proof:
     """That the root of a quadratic equation is one; r stands for the root of the discriminant."""
-    r = sp.Symbol("r")
-    x = (-b - r) / (2 * a)
+    r = sp.Dummy("r")
+    x = (-b + sign * r) / (2 * a)
     residual = sp.ImmutableMatrix([[a * x**2 + b * x + c - (r**2 - (b**2 - 4 * a * c)) / (4 * a)]])
     return identity(residual, formula(r"a x^2 + b x + c = 0"), name)
-
-
-def of_free_body(
-    inertia: sp.ImmutableMatrix, slopes: Sequence[sp.Expr], name: str
-) -> Iterator[Consequence]:
-    """Rotations about the principal axes, and the regular precession of a symmetric body.
-
-    `slopes` are dΩ′/dt. A deviation along the axes i and j obeys dΩ_i/dt = a Ω_j and dΩ_j/dt =
-    b Ω_i, so that it grows or turns with λ² = a b.
-    """
-    if not inertia.is_diagonal():
-        return
-    spin = sp.Symbol("Omega")
-    for k, axis in enumerate(("first", "second", "third")):
-        i, j = (n for n in range(3) if n != k)
-        steady = {s: spin if n == k else sp.S.Zero for n, s in enumerate(OMEGA_BODY)}
-        a, b = (sp.diff(slopes[n], OMEGA_BODY[o]).xreplace(steady) for n, o in ((i, j), (j, i)))
-        own, one, other = inertia[k, k], inertia[i, i], inertia[j, j]
-        squared = spin**2 * (own - one) * (other - own) / (one * other)
-        claim = formula(r"\lambda^2 = a b")
-        yield Consequence(
-            title="Rotation about the principal axes" if k == 0 else "",
-            text=f"A small deviation from the rotation about the {axis} axis at the rate {{}} is "
-            "proportional to {}, which grows if {} is positive:",
-            spans=(spin, formula(r"\exp(\lambda t)"), formula(r"\lambda^2")),
-            left=formula(r"\lambda^2"),
-            value=squared,
-            proofs=(identity(sp.ImmutableMatrix([[a * b - squared]]), claim, name),),
-        )
-    if inertia[0, 0] == inertia[1, 1] != inertia[2, 2]:
-        yield _precession(inertia, slopes, name)
-
-
-def _precession(inertia: sp.ImmutableMatrix, slopes: Sequence[sp.Expr], name: str) -> Consequence:
-    """Ω′ turns about the axis of symmetry: dΩ₁/dt = −κ Ω₂, dΩ₂/dt = κ Ω₁, Ω₃ constant."""
-    first, second, third = OMEGA_BODY
-    rate = (inertia[2, 2] - inertia[0, 0]) / inertia[0, 0] * third
-    residual = [slopes[0] + rate * second, slopes[1] - rate * first, slopes[2]]
-    turning = formula(
-        r"\Omega'_1 + i\Omega'_2 = \left(\Omega'_1(0) + i\Omega'_2(0)\right)e^{i\kappa t}"
-    )
-    return Consequence(
-        title="The symmetric body",
-        text="{} is constant, and the other two components turn about the axis of symmetry, {}, "
-        "with the rate",
-        spans=(formula(r"\Omega'_3"), turning),
-        left=formula(r"\kappa"),
-        value=rate,
-        proofs=(identity(sp.ImmutableMatrix(residual), claims.PRECESSION, name),),
-    )

@@ -8,7 +8,7 @@ from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.energy import ROTATIONAL
-from rigidsym.mechanics.quantities.kinematics import ALPHA_BODY, BODY, RATES
+from rigidsym.mechanics.quantities.kinematics import ALPHA_BODY, BODY, RATES, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA
 from rigidsym.mechanics.quantities.table import read_table
 from rigidsym.models.rotation import Citation
@@ -207,7 +207,35 @@ HAMILTONIAN_IS_ENERGY = formula("#1 = #2", HAMILTONIAN, ENERGY)
 EULER = formula(r"#1\,#2 + #3\times#1\,#3 = #4", INERTIA, ALPHA_BODY, BODY.omega, TORQUE)
 DRIVING = formula(r"\frac{\partial #1}{\partial t}", POTENTIAL)
 _POWERS = {"q_dot": (transpose_of(RATES), FORCES), "omega_body": (transpose_of(BODY.omega), TORQUE)}
+MOMENTUM = formula(r"\mathbf{L}")
 MOMENTUM_SQUARED = formula(r"\mathbf{L}^2")
+
+# The free body. The symbols are printed as LETTERS says.
+
+ENERGY_SYMBOL, LENGTH_SYMBOL = sp.Dummy("E"), sp.Dummy("L")
+LENGTH = formula(r"\left|#1\right|", MOMENTUM)
+LETTERS = {ENERGY_SYMBOL: ENERGY, LENGTH_SYMBOL: LENGTH}
+SQUARED_RATE = formula(r"\lambda^2")
+GROWTH = formula(r"\lambda^2 = a b")
+NORMAL = formula(
+    r"\frac{\partial #1}{\partial #2} = #3\,#2 = #4'", ENERGY, BODY.omega, INERTIA, MOMENTUM
+)
+TWICE_ENERGY = formula(r"#1\cdot#2 = 2#3", MOMENTUM, SPACE.omega, ENERGY)
+EULER_FREE = formula(r"#1\,#2 + #3\times#1\,#3 = 0", INERTIA, ALPHA_BODY, BODY.omega)
+CONSTANT_MOMENTUM = formula(
+    r"#1\,#2\,#3 = \begin{pmatrix}0 \\ 0 \\ #4\end{pmatrix}",
+    *(formula(r"\mathbf{R}"), INERTIA, BODY.omega, LENGTH),
+)
+THREE_TURNS = r"\mathbf{{R}}_z({})\,\mathbf{{R}}_x({})\,\mathbf{{R}}_z({})"
+PRECESSION_RATE = formula(r"\dot{\alpha}")
+MOMENTUM_IN_BODY = formula("#1' = #2#1", MOMENTUM, transpose_of(formula(r"\mathbf{R}")))
+PRECESSION_OF_AXIS = formula(
+    r"\dot{\alpha} = \frac{\Omega'_1\sin\gamma + \Omega'_2\cos\gamma}{\sin\beta}"
+)
+IN_ELLIPTIC_FUNCTIONS = formula(
+    r"\begin{pmatrix}a\,\operatorname{cn}(\tau t, k) \\ b\,\operatorname{sn}(\tau t, k) \\ "
+    r"c\,\operatorname{dn}(\tau t, k)\end{pmatrix}"
+)
 
 
 def energy_rate(second: str, *, is_driven: bool) -> Formula:
@@ -221,11 +249,14 @@ def is_constant(symbol: Formula) -> Formula:
 
 
 PRECESSION = formula(r"\dot{\Omega}'_1 + i\dot{\Omega}'_2 = i\kappa(\Omega'_1 + i\Omega'_2)")
+DOUBLE_ROOT = formula("f(u) = a(1 - u)^2(u - u_1)")
+RATE_OF_IGNORABLE = formula(r"\dot{q} = \frac{\partial #1}{\partial p}", EFFECTIVE)
 NEAR_UPRIGHT = formula(r"#1 = #1(0) + \kappa(1 - u) + O((1 - u)^2)", EFFECTIVE)
 
 
-def name_of(coordinate: sp.Expr) -> Formula:
-    return named(coordinate.func.__name__)
+def name_of(coordinate: sp.Expr, order: int = 0) -> Formula:
+    """Of a coordinate or one of its time derivatives."""
+    return named(coordinate.func.__name__, order)
 
 
 def momentum_of(coordinate: sp.Expr) -> Formula:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import sympy as sp
 
@@ -11,6 +12,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.models.forces import MovingPart
 from rigidsym.notes.document.document import (
     Equation,
@@ -77,6 +79,7 @@ def what_is_constant(derivation: Derivation, letters: Letters) -> Iterator[NoteB
 
 def what_follows(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
     """The motion as a whole: effective potential, steady motions, exact solutions."""
+    letters = replace(letters, names={**letters.names, **LETTERS})
 
     def printed(span: Formula | sp.Expr) -> Formula:
         return span if isinstance(span, Formula) else formula_of(span, letters)
@@ -87,7 +90,7 @@ def what_follows(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock
         claims = [proof.claim for proof in found.proofs]
         exact = all(proof.is_exact for proof in found.proofs)
         yield Equation(
-            sides=(printed(found.left), formula_of(found.value, letters)),
+            sides=(printed(found.left), printed(found.value)),
             proved=tuple(claims) if exact else (),
             unproved=() if exact else tuple(claims),
         )
