@@ -15,6 +15,8 @@ from rigidsym.formula.unicode_pen import UnicodePen
 _THIN, _QUAD = '<mspace width=".1667em"/>', '<mspace width="1em"/>'
 _DOTS = ("", "˙", "¨")
 _PRIME = {"′": '<mo class="prime">′</mo>', "ᴮ": '<mi mathvariant="normal">B</mi>'}
+_HIGH_PRIME = _PRIME | {"′": '<mo class="prime high">′</mo>'}
+_TALL = set("bdfhkltβδζθλξφψϕ")  # with all capitals: letters that a dot would touch
 _VARIANTS = {"φ": "ϕ", "ε": "ϵ"}  # the letters that \phi and \epsilon are
 _UPRIGHT = "ΓΔΘΛΞΠΣΥΦΨΩ"  # as TeX has them
 _INLINE = 13.0  # ems of a formula between words on a phone
@@ -48,12 +50,13 @@ class MathmlPen(SheetPen):
         if symbol.dots:
             # browsers centre a dot over the foot of a slanted letter
             slanted = symbol.face == "italic" and len(symbol.letter) == 1
-            kind = ' class="dot"' if slanted else ""
+            kinds = [*(["dot"] if slanted else []), *(["high"] if _is_tall(symbol) else [])]
+            kind = f' class="{" ".join(kinds)}"' if kinds else ""
             text = f'<mover accent="true">{text}<mo{kind}>{_DOTS[symbol.dots]}</mo></mover>'
         if symbol.face == "arrow":
             arrow = '<mo class="arrow" stretchy="false">→</mo>'
             text = f'<mover accent="true">{text}{arrow}</mover>'
-        prime = _PRIME.get(symbol.prime, "")
+        prime = (_HIGH_PRIME if _is_tall(symbol) else _PRIME).get(symbol.prime, "")
         if index is None:
             return f"<msup>{text}{prime}</msup>" if prime else text
         if prime:
@@ -85,7 +88,8 @@ class MathmlPen(SheetPen):
     def spelt_power(self, base: Formula, inside: str, exponent: str) -> str:
         if isinstance(base, Symbol) and base.prime and base.index is None:
             text = self.node(replace(base, prime="")).text
-            return f"<msup>{text}<mrow>{_PRIME[base.prime]}{exponent}</mrow></msup>"
+            primes = _HIGH_PRIME if _is_tall(base) else _PRIME
+            return f"<msup>{text}<mrow>{primes[base.prime]}{exponent}</mrow></msup>"
         if isinstance(base, Bracket) and _LARGE in inside:  # browsers would set it small
             return f'{inside}<msup><mspace height="1.1em"/>{_one(exponent)}</msup>'
         return f"<msup>{_one(inside)}{_one(exponent)}</msup>"
@@ -134,6 +138,11 @@ class MathmlPen(SheetPen):
     def gathered(self, lines: Sequence[str], is_high: bool) -> str:  # noqa: ARG002
         rows = "".join(_table_row([line]) for line in lines)
         return f'<mtable displaystyle="true">{rows}</mtable>'
+
+
+def _is_tall(symbol: Symbol) -> bool:
+    """Whether a single letter is as high as a capital."""
+    return symbol.letter.isupper() or symbol.letter in _TALL
 
 
 def inline_parts(piece: Piece) -> list[str]:

@@ -129,7 +129,7 @@ function traceLines(trace, camera) {
   return lines;
 }
 
-// --- labels: beyond the end of a line or beside its middle, where no other label is
+// --- labels: beyond the end of a line or beside its middle, clear of other labels and of lines
 
 const BENDS = [0, 35, -35, 70, -70, 110, -110]; // degrees off the wished direction
 const GAPS = [0.07, 0.2, 0.34];
@@ -148,12 +148,30 @@ function wishOf({ kind, name, points, beside }) {
 const meets = (one, other) =>
   [0, 1].every((k) => Math.abs(one.centre[k] - other.centre[k]) < one.half[k] + other.half[k]);
 
+/** The length of the part of a segment that is inside a box. */
+function inside([[x, y], [dx, dy]], { centre, half }) {
+  let [from, to] = [0, 1];
+  for (const [start, step, k] of [[x, dx, 0], [y, dy, 1]]) {
+    const ends = [-1, 1].map((side) => (centre[k] + side * half[k] - start) / step);
+    if (step) [from, to] = [Math.max(from, Math.min(...ends)), Math.min(to, Math.max(...ends))];
+    else if (Math.abs(start - centre[k]) > half[k]) return 0;
+  }
+  return Math.max(0, to - from) * Math.hypot(dx, dy);
+}
+
+/** The segments of all lines, each as its start and its extent. */
+function segmentsOf(lines) {
+  return lines.flatMap(({ points }) =>
+    points.slice(1).map((end, k) => [points[k], [end[0] - points[k][0], end[1] - points[k][1]]]));
+}
+
 function labelsOf(lines) {
   const taken = [];
+  const segments = segmentsOf(lines);
   for (const line of lines.filter(({ name }) => name)) {
     const { at, direction } = wishOf(line);
     const letters = [...line.name.normalize("NFD")].filter((letter) => !/\p{M}/u.test(letter));
-    const half = [(TYPE * 0.6 * letters.length) / 2 + 0.02, TYPE / 2 + 0.02];
+    const half = [(TYPE * 0.6 * letters.length) / 2 + 0.02, TYPE / 2 + 0.02]
     const boxes = GAPS.flatMap((gap) => BENDS.map((bend) => {
       const angle = direction + (bend * Math.PI) / 180;
       const [dx, dy] = [Math.cos(angle), Math.sin(angle)];
@@ -163,8 +181,12 @@ function labelsOf(lines) {
     const isFree = (box) =>
       !taken.some((other) => meets(box, other)) &&
       box.centre.every((part, k) => Math.abs(part) + half[k] < SIGHT[k]);
+    const crossed = (box) => segments.reduce((sum, segment) => sum + inside(segment, box), 0);
+    const free = boxes.filter(isFree).map((box) => ({ box, cost: crossed(box) }));
+    const least = Math.min(...free.map(({ cost }) => cost)) + TYPE / 4;
     const before = boxes[places.get(line.name)];
-    const box = before && isFree(before) ? before : boxes.find(isFree) ?? boxes[0];
+    const fitting = free.filter(({ cost }) => cost <= least).map(({ box }) => box);
+    const box = fitting.includes(before) ? before : fitting[0] ?? boxes[0];
     places.set(line.name, boxes.indexOf(box));
     const centre = box.centre.map((part, k) => Math.max(half[k] - SIGHT[k], Math.min(SIGHT[k] - half[k], part)));
     taken.push({ ...box, centre });

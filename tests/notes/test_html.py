@@ -17,7 +17,9 @@ from helpers.browser import look_at, open_page, require_chromium
 from helpers.elements import ODD, Elements, odd_model
 from helpers.motions import derived
 from rigidsym.formula.mathml_pen import MathmlPen, inline_parts
+from rigidsym.formula.notation import Notation
 from rigidsym.formula.reader import formula
+from rigidsym.formula.tree import Symbol
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
@@ -234,3 +236,11 @@ def test_a_hostile_title_runs_nothing(tmp_path: Path):
     dom, _ = open_page(odd_note(), tmp_path)
     assert "owned" not in re.sub(r"document\.title='owned'", "", dom)
     assert len(Elements(dom).named("title")) == 1
+
+
+def test_a_dot_keeps_clear_of_a_tall_letter():
+    heights = {
+        letter: 'class="dot high"' in MathmlPen(Notation()).write(Symbol(letter, dots=1)).text
+        for letter in ("φ", "θ", "X", "x", "n")
+    }
+    assert heights == {"φ": True, "θ": True, "X": True, "x": False, "n": False}

@@ -663,3 +663,47 @@ def test_another_convention_shows_the_same_orientation(tab, other, tmp_path):
     tab.click("#reset")
     assert tab.run("document.getElementById('other').value") == ""
     assert tab.complaints == []
+
+
+CROSSED = """
+[...document.querySelectorAll("#figure text")].flatMap((text) => {
+  const box = text.getBBox(), lines = [...document.querySelectorAll("#figure polyline:not(.thin)")];
+  const isIn = ({ x, y }) => Math.abs(x - box.x - box.width / 2) < box.width / 4
+    && Math.abs(y - box.y - box.height / 2) < box.height / 5;
+  return lines.filter((line) => {
+    const length = line.getTotalLength();
+    return [...Array(300).keys()].some((k) => isIn(line.getPointAtLength((length * k) / 299)));
+  }).map((line) => `${text.textContent} on ${line.getAttribute("class")}`);
+})
+"""
+
+
+@pytest.mark.parametrize("rotation", ["ZXZ", "ZYX", "XYZ"])
+def test_no_label_lies_on_a_line(tab, rotation, tmp_path):
+    opened(tab, page_of(rotation), tmp_path)
+    assert tab.run(CROSSED) == []
+
+
+HANGING = """
+(() => {
+  const items = [...document.querySelectorAll("nav li")];
+  document.querySelector("nav li a").textContent = "The centre of mass and the kinetic energy";
+  const [left, right] = [items[0], items.at(-1)].map((item) => item.getBoundingClientRect());
+  const words = document.querySelector("nav li a").getBoundingClientRect();
+  const number = 2 * parseFloat(getComputedStyle(document.documentElement).fontSize);
+  return right.left > left.right ? right.left - number - words.right : null;
+})()
+"""
+
+
+def test_numbers_of_contents_keep_clear_of_the_column_before(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    assert tab.run(HANGING) >= 10
+
+
+def test_sources_are_no_numbered_section(tab, tmp_path):
+    opened(tab, page_of("ZXZ"), tmp_path)
+    numbers = "[...document.querySelectorAll('main h2')].map((h) => getComputedStyle(h, '::before').content)"
+    *sections, sources = tab.run(numbers)
+    assert all("counter" in number for number in sections)
+    assert sources == "none"
