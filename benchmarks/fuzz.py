@@ -1,5 +1,8 @@
 """Hostile inputs: `python benchmarks/run.py fuzz --files 1000`. A result or a message, in bounds.
 
+With `--resume FILE` the counts in WHOLE are run, in slices after each of which FILE holds what was
+found; the same command goes on from there.
+
 Each input is read in this process, as a command reads it, with a limit on time and memory. Some
 derivation files are also derived and printed. An error that is no message, a warning, and work
 beyond the limit count as failures, with the number that makes the input again.
@@ -45,6 +48,15 @@ from rigidsym.tools.identify.identification import identify_file
 SECONDS, GIGABYTES = 10.0, 1.0
 SLACK = 5.0  # seconds beyond the limit: one step of SymPy is not interrupted
 DERIVED = 50  # one derivation file in so many is run
+SLICE = 500  # inputs between two writings of the file of a campaign
+WHOLE = {
+    "expressions": 100_000,
+    "derivation files": 100_000,
+    "data files": 10_000,
+    "meshes": 10_000,
+    "records": 10_000,
+    "command lines": 20_000,
+}
 MESSAGES = (RigidsymError, click.ClickException, click.exceptions.Exit, click.Abort, OSError)
 
 Work = Callable[[Random, Path], tuple[str, Callable[[], object]]]
@@ -61,7 +73,29 @@ class Findings:
 
 def run(settings: Settings) -> Report:
     """Every kind of input, as many as asked for."""
+    if settings.resume is not None:
+        return report(_resumed(settings.resume))
     return report({kind: campaign(kind, settings.files) for kind in KINDS})
+
+
+def _resumed(file: Path) -> dict[str, Findings]:
+    """The whole campaign, all kinds side by side, from where the file ends."""
+    found = {kind: Findings() for kind in WHOLE}
+    if file.is_file():
+        for kind, (counts, failures, slowest) in json.loads(file.read_text("utf-8")).items():
+            found[kind] = Findings(Counter(counts), failures, slowest)
+    while left := [k for k, each in found.items() if each.counts.total() < WHOLE[k]]:
+        kind = min(left, key=lambda k: found[k].counts.total() / WHOLE[k])
+        each = found[kind]
+        new = campaign(kind, SLICE, each.counts.total())
+        each.counts += new.counts
+        each.failures += new.failures
+        each.slowest = max(each.slowest, new.slowest)
+        plain = {k: (f.counts, f.failures, f.slowest) for k, f in found.items()}
+        draft = file.with_name(f"{file.name}.draft")
+        draft.write_text(json.dumps(plain, indent=1), "utf-8")
+        draft.replace(file)
+    return found
 
 
 def campaign(kind: str, count: int, first: int = 0) -> Findings:

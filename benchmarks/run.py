@@ -98,6 +98,7 @@ def _settings(given: argparse.Namespace) -> Settings:
         size=given.size,
         samples=given.samples,
         files=given.files,
+        resume=given.resume,
         fresh=given.fresh,
     )
 
@@ -116,6 +117,9 @@ def _parser() -> argparse.ArgumentParser:
         ("--files", usual.files, "inputs of each kind of fuzz, and kills"),
     ):
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)
+    parser.add_argument(
+        "--resume", type=Path, metavar="FILE", help="the whole of fuzz, going on from this file"
+    )
     parser.add_argument(
         "--docs", action="store_true", help="put the tables into README.md and docs/reference"
     )
