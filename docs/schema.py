@@ -259,12 +259,30 @@ def _output() -> Schema:
         {
             "quantities": texts("all by default; see Quantities", *VOCABULARY.quantities),
             "kernels": texts("languages of the functions, numpy by default", *VOCABULARY.kernels),
+            **{name: _target(name) for name in VOCABULARY.target_options},
             "note": texts("formats of the note, tex and html by default", *VOCABULARY.note),
             "style": text("of the note, lecture by default", *VOCABULARY.styles),
             "conversions": flag("add functions to and from quaternions and matrices"),
             "derivatives": texts('Jacobians, such as "angular_velocity_body by q"'),
         },
     )
+
+
+def _target(name: str) -> Schema:
+    properties = {
+        key: flag(OPTIONS[name, key]) | {"default": values[0]}
+        if isinstance(values[0], bool)
+        else text(f"{OPTIONS[name, key]}, by default {values[0]}", *map(str, values))
+        for key, values in VOCABULARY.target_options[name].items()
+    }
+    return obj(f"What the files of the language {name} contain.", properties)
+
+
+OPTIONS = {
+    ("c", "precision"): "types of the functions",
+    ("c", "arrays"): "add functions of many orientations; they make the Python module",
+    ("c", "libm"): "call sin, cos and atan2 of <math.h> instead of own functions",
+}
 
 
 def rows(table: Schema, path: str = "") -> Iterator[tuple[str, str, str]]:

@@ -76,7 +76,12 @@ class Motion(Derivation):
         return self.step(quantity).latex()
 
     def kernels(
-        self, target: str = "numpy", *, conversions: bool = False, derivatives: Asked = ()
+        self,
+        target: str = "numpy",
+        *,
+        conversions: bool = False,
+        derivatives: Asked = (),
+        **options: str | bool,
     ) -> KernelModule:
         """The functions in one language: `.source`, `.load()`, `.write(path)`.
 
@@ -84,9 +89,11 @@ class Motion(Derivation):
         `unwrap`. `derivatives` adds functions that return a quantity and its derivative:
         {"angular_velocity_body": ("q", "q_dot")} adds `angular_velocity_body_jacobian_q` and
         `angular_velocity_body_jacobian_q_dot`; "q jvp" and "q vjp" are products with a vector.
-        Raises KernelError for an unknown target or derivative.
+        `options` are those of the target: `kernels("c", precision="double", arrays=False,
+        libm=True)` is lean C for firmware.
+        Raises KernelError for an unknown target, option or derivative.
         """
-        return generate(self, target, conversions=conversions, derivatives=derivatives)
+        return generate(self, target, conversions=conversions, derivatives=derivatives, **options)
 
     def equality(self, left: sp.MatrixBase, right: sp.MatrixBase) -> Proof:
         """The proof that two matrices in coordinates, rates and other inputs are equal.

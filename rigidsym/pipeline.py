@@ -119,6 +119,7 @@ def vocabulary() -> Vocabulary:
     return Vocabulary(
         quantities=QUANTITIES,
         kernels=tuple(TARGETS),
+        target_options={name: target.options for name, target in TARGETS.items() if target.options},
         note=note_formats(),
         styles=STYLES,
         notation=Notation,
@@ -171,7 +172,12 @@ def integrated(spec: DerivationSpec) -> DerivationSpec:
 def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
     """(name, content) of each text file but the record."""
     for target in spec.kernels:
-        module = motion.kernels(target, conversions=spec.conversions, derivatives=spec.derivatives)
+        module = motion.kernels(
+            target,
+            conversions=spec.conversions,
+            derivatives=spec.derivatives,
+            **spec.target_options.get(target, {}),
+        )
         yield from module.files.items()
     if spec.note:
         yield from _notes(motion, spec)

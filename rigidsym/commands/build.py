@@ -9,14 +9,14 @@ from pathlib import Path
 import click
 
 from rigidsym.commands.command import command as make, option, with_options
-from rigidsym.commands.options import FolderOptions, RotationOptions, SelectionOptions
+from rigidsym.commands.options import FolderOptions, KernelOptions, RotationOptions
 from rigidsym.commands.output_folder import with_existing_files, write
 from rigidsym.kernels.targets.c.compiling import build
 from rigidsym.pipeline import integrated, output_of, read
 
 
 @dataclass(frozen=True, kw_only=True)
-class BuildOptions(FolderOptions, SelectionOptions, RotationOptions):
+class BuildOptions(FolderOptions, KernelOptions, RotationOptions):
     """All options of `build`."""
 
     portable: bool = option("--portable", is_flag=True, help="Run on any CPU of this architecture.")

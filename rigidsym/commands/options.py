@@ -127,12 +127,41 @@ class SelectionOptions:
     )
 
     def selected(self, spec: DerivationSpec) -> DerivationSpec:
-        """The specification with the quantities chosen here."""
+        """The specification with the quantities and conversions chosen here."""
         only = unique(self.only)
         for name in only:
             _check_quantity(name, "--only")
         converts = spec.conversions or self.conversions
         return replace(spec, quantities=only or spec.quantities, conversions=converts)
+
+
+@dataclass(frozen=True, kw_only=True)
+class KernelOptions(SelectionOptions):
+    """What functions are printed."""
+
+    derivative: tuple[str, ...] = option(
+        "--derivative",
+        multiple=True,
+        metavar="QUANTITY:VECTOR",
+        help="Add the Jacobian of a quantity with respect to q, q_dot, ...; QUANTITY:VECTOR:jvp "
+        "and :vjp add products with a vector. May be repeated.",
+    )
+
+    def selected(self, spec: DerivationSpec) -> DerivationSpec:
+        """The specification with the quantities, conversions and derivatives chosen here."""
+        return replace(super().selected(spec), derivatives=self._derivatives(spec))
+
+    def _derivatives(self, spec: DerivationSpec) -> tuple[str, ...]:
+        """Those of the specification, then those of the command line, each once."""
+        for text in self.derivative:
+            if ":" not in text:
+                raise KernelError(
+                    f"--derivative {text}: expected QUANTITY:VECTOR, such as "
+                    "angular_velocity_body:q"
+                )
+        for request in read_requests(self.derivative):
+            _check_quantity(request.quantity, "--derivative")
+        return tuple(map(str, read_requests([*spec.derivatives, *self.derivative])))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,12 +176,10 @@ class OutputOptions:
         help="Languages of the kernels; `rigidsym list` shows them. May be repeated.  "
         "[default: numpy]",
     )
-    derivative: tuple[str, ...] = option(
-        "--derivative",
-        multiple=True,
-        metavar="QUANTITY:VECTOR",
-        help="Add the Jacobian of a quantity with respect to q, q_dot, ...; QUANTITY:VECTOR:jvp "
-        "and :vjp add products with a vector. May be repeated.",
+    lean: bool = option(
+        "--lean",
+        is_flag=True,
+        help="C for firmware: double precision, one orientation a call, <math.h>, and a test.",
     )
     style: str | None = option(
         "--style",
@@ -178,7 +205,7 @@ class OutputOptions:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, SelectionOptions):
+class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, KernelOptions):
     """The options of `derive` and `run`: what is printed, how, and where it is written."""
 
     def applied_to(self, spec: DerivationSpec) -> DerivationSpec:
@@ -186,26 +213,15 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, SelectionOp
         targets = unique(self.target)
         for target in targets:
             check_target(target)
+        lean = {"c": {"precision": "double", "arrays": False, "libm": True}} if self.lean else {}
         asked = ("pdf",) * self.pdf + ("fragment.tex",) * self.fragment
         return replace(
             self.in_notation(self.selected(spec)),
             note=tuple(dict.fromkeys((*spec.note, *asked))),
-            kernels=targets or spec.kernels,
+            kernels=tuple(dict.fromkeys((*(targets or spec.kernels), *lean))),
+            target_options={**spec.target_options, **lean},
             style=self.style or spec.style,
-            derivatives=self._derivatives(spec),
         )
-
-    def _derivatives(self, spec: DerivationSpec) -> tuple[str, ...]:
-        """Those of the specification, then those of the command line, each once."""
-        for text in self.derivative:
-            if ":" not in text:
-                raise KernelError(
-                    f"--derivative {text}: expected QUANTITY:VECTOR, such as "
-                    "angular_velocity_body:q"
-                )
-        for request in read_requests(self.derivative):
-            _check_quantity(request.quantity, "--derivative")
-        return tuple(map(str, read_requests([*spec.derivatives, *self.derivative])))
 
 
 def _check_quantity(name: str, flag: str) -> None:

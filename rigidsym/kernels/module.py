@@ -10,7 +10,7 @@ from types import ModuleType
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.derivatives import Asked, derivatives_of, read_requests
 from rigidsym.kernels.lowering.lower import lower
-from rigidsym.kernels.targets import TARGETS, printer
+from rigidsym.kernels.targets import TARGETS, check_options, printer
 from rigidsym.mechanics.conversions.conversions import conversions_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.system.files import write_text
@@ -67,6 +67,7 @@ def generate(
     *,
     conversions: bool = False,
     derivatives: Asked = (),
+    **options: str | bool,
 ) -> KernelModule:
     """The kernels of all quantities of a derivation, for one target.
 
@@ -77,17 +78,20 @@ def generate(
     5. The files, printed.
 
     `conversions` adds those between the coordinates, the unit quaternion and the matrix,
-    `derivatives` those that are asked for: ["angular_velocity_body by q"]. Raises KernelError for
-    an unknown target or derivative, for an expression that kernels cannot hold, and if no derived
-    quantity depends on any input.
+    `derivatives` those that are asked for: ["angular_velocity_body by q"]; `options` are those of
+    the target. Raises KernelError for an unknown target, option or derivative, for an expression
+    that kernels cannot hold, and if no derived quantity depends on any input.
     """
+    check_options(target, options)
     language = printer(target)
     asked = derivatives_of(derivation, read_requests(derivatives))
     converting = conversions_of(derivation.model) if conversions else None
     program = lower(derivation, language.RESERVED, asked, converting)
     if not program.kernels:
         raise _nothing_to_write(derivation)
-    return KernelModule(name=derivation.name, target=target, files=language.render(program))
+    return KernelModule(
+        name=derivation.name, target=target, files=language.render(program, **options)
+    )
 
 
 def _nothing_to_write(derivation: Derivation) -> KernelError:

@@ -72,7 +72,7 @@ def read_spec(
     if not is_list and (message := fault_of_name(name)):
         table.fault(f"the file's name names the derivation: {message}")
     if output:
-        output.refuse_others(_OUTPUT, reader.hints)
+        output.refuse_others((*_OUTPUT, *words.target_options), reader.hints)
     name = models[0].name if is_list and len(models) == 1 else name
     return reader.spec(table, output, faults, name=name, models=models, folder=folder or Path())
 
@@ -84,7 +84,7 @@ def from_data(data: object, words: Vocabulary, *, source: str = "request") -> De
     faults = Faults(Source(source))
     table = Table(data, (), faults)
     reader = _Reader(words)
-    table.refuse_others((*_RECORD, *_OUTPUT, *_FORMER))
+    table.refuse_others((*_RECORD, *_OUTPUT, *words.target_options, *_FORMER))
     name = table.text("name") or ""
     if table.value("name") is None:
         table.mistyped(None, "the name of the derivation", "name")
@@ -190,8 +190,20 @@ class _Reader:
             "style": table.choice("style", words.styles),
             "conversions": table.flag("conversions"),
         }
+        chosen["target_options"] = self.target_options(table) or None
         chosen["derivatives"] = self.derivatives(table, chosen["quantities"] or words.quantities)
         return {key: choice for key, choice in chosen.items() if choice is not None}
+
+    def target_options(self, table: Table) -> dict[str, dict[str, str | bool]]:
+        """What is chosen of the options of targets."""
+        found: dict[str, dict[str, str | bool]] = {}
+        for target, known in self.words.target_options.items():
+            if inner := table.table(target):
+                inner.refuse_others(tuple(known))
+                texts = {k: [v for v in known[k] if isinstance(v, str)] for k in known}
+                read = {k: inner.choice(k, t) if t else inner.flag(k) for k, t in texts.items()}
+                found[target] = {key: value for key, value in read.items() if value is not None}
+        return found
 
     def derivatives(self, table: Table, quantities: Sequence[str]) -> tuple[str, ...]:
         """The derivatives of the chosen quantities, each in its one spelling."""

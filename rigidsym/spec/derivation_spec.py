@@ -41,6 +41,7 @@ class DerivationSpec:
     theory: bool = False  # whether the theory for every body and rotation comes first
     quantities: tuple[str, ...] = ()  # empty: all
     kernels: tuple[str, ...] = ("numpy",)
+    target_options: Mapping[str, Mapping[str, str | bool]] = field(default_factory=dict)
     note: tuple[str, ...] = ("tex", "html")
     style: str = "lecture"  # of the note
     conversions: bool = False  # to and from quaternion and matrix
@@ -92,6 +93,7 @@ class DerivationSpec:
             "rotations": [dict(request_of(model)) for model in self.models],
             "quantities": list(self.quantities) or None,
             "kernels": list(self.kernels),
+            **{target: dict(options) for target, options in self.target_options.items()},
             "note": list(self.note),
             **(self.body.request if self.body else {}),
             **{key: value for key, value in optional.items() if value},

@@ -37,6 +37,7 @@ class Vocabulary:
 
     quantities: tuple[str, ...]
     kernels: tuple[str, ...]
+    target_options: Mapping[str, Mapping[str, tuple[str | bool, ...]]]  # of [output.TARGET]
     note: tuple[str, ...]
     styles: tuple[str, ...]  # of a note, the default first
     notation: Callable[..., NotationChoice]  # raises ModelError for names of frames

@@ -165,7 +165,8 @@ def test_the_schema_takes_what_the_reader_takes(name, schema):
     [
         ((), derivation_file._FILE),
         (("rotation",), rotation_table.KEYS),
-        (("output",), derivation_file._OUTPUT),
+        (("output",), (*derivation_file._OUTPUT, *vocabulary().target_options)),
+        (("output", "c"), vocabulary().target_options["c"]),
         (("notation",), (*vocabulary().choices, "frames")),
     ],
     ids=lambda value: "-".join(value) or "top",

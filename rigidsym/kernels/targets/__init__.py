@@ -5,7 +5,8 @@ The folder LANGUAGE/ holds
 - `__init__.py` with `TARGET`, which describes the language and what loading its modules needs;
 - `printer.py` with `RESERVED`, the names that no variable may have, `render(program)`, which
   gives the texts of the files by name, the main one first, and `load(name, files)`, which makes a
-  Python module of them. It is imported when the target is asked for.
+  Python module of them. It is imported when the target is asked for. `render` also takes the
+  `options` of its `TARGET` by name.
 
 The folders here are those of the package, their templates are in templates/LANGUAGE/; `register`
 adds a folder from anywhere.
@@ -16,14 +17,14 @@ from __future__ import annotations
 import shutil
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import MappingProxyType, ModuleType
 from typing import TYPE_CHECKING, Protocol, cast
 
-from rigidsym.errors import KernelError
+from rigidsym.errors import KernelError, offer
 
 if TYPE_CHECKING:
     from rigidsym.kernels.ir import Program
@@ -41,6 +42,7 @@ class Target:
     programs: tuple[str, ...] = ()  # one of these is enough
     stands_alone: bool = True  # whether the main file needs no other
     has_single: bool = True  # whether its functions also compute in single precision
+    options: Mapping[str, tuple[str | bool, ...]] = field(default_factory=dict)  # defaults first
 
     @property
     def missing(self) -> str:
@@ -57,7 +59,7 @@ class Printer(Protocol):
 
     RESERVED: frozenset[str]
 
-    def render(self, program: Program) -> Mapping[str, str]: ...
+    def render(self, program: Program, **options: str | bool) -> Mapping[str, str]: ...
 
     def load(self, name: str, files: Mapping[str, str]) -> ModuleType: ...
 
@@ -93,6 +95,18 @@ def check_target(target: str) -> None:
     """Raises KernelError, naming the known targets, if this is none of them."""
     if target not in TARGETS:
         raise KernelError(f"no target {target!r}; there is {', '.join(TARGETS)}")
+
+
+def check_options(target: str, options: Mapping[str, str | bool]) -> None:
+    """Raises KernelError for an option that the target does not have, or another value of it."""
+    check_target(target)
+    known = TARGETS[target].options
+    for name, value in options.items():
+        if name not in known:
+            raise KernelError(f"{target} has no option {name}; {offer(name, known)}")
+        if not any(type(value) is type(each) and value == each for each in known[name]):
+            choices = ", ".join(map(repr, known[name]))
+            raise KernelError(f"{target}, {name}: expected one of {choices}, got {value!r}")
 
 
 def printer(target: str) -> Printer:

@@ -7,4 +7,9 @@ TARGET = Target(
     ending=".c",
     stands_alone=False,
     programs=("cc", "gcc", "clang"),
+    options={
+        "precision": ("both", "double", "float"),
+        "arrays": (True, False),
+        "libm": (False, True),
+    },
 )

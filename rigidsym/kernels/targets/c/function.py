@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from rigidsym.kernels.ir import Call, Compare, Expression, Guarded, Kernel
+from rigidsym.kernels.ir import Call, Compare, Expression, Guarded, Kernel, names_in
 from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.precision import Precision
 from rigidsym.kernels.targets.text.python_layout import bracketed
@@ -20,6 +20,25 @@ def show(expression: Expression) -> str:
     return infix(expression, _FORMS)
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Contents:
+    """What a source holds; the values are those of the target's options."""
+
+    precision: str = "both"
+    arrays: bool = True
+    libm: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class CStatement:
+    """A statement or an entry of the result, in lines of C."""
+
+    lines: tuple[str, ...]
+    defines: frozenset[str]
+    uses: frozenset[str]
+    is_condition: bool = False  # else a number
+
+
 @dataclass(frozen=True, slots=True)
 class Function:
     """A kernel in one precision, in the pieces of text that the templates place."""
@@ -27,19 +46,21 @@ class Function:
     name: str  # with the prefix of the module
     kernel: Kernel
     precision: Precision
+    contents: Contents
 
     def pieces(self) -> dict[str, Any]:
         kernel = self.kernel
         places = [f"{a.name}[{k}]" for a in kernel.arguments for k in range(len(a.components))]
         columns = [f"tile[{k}][j]" for k in range(len(places))]
         return {
+            "name": self.name,
             "inputs": len(places),
             "outputs": len(kernel.outputs),
             "arguments": list(self._arguments()),
             "signature": self.signature,
             "array": self._array,
-            "array_parameters": _listed(4, "(", self._array_parameters).lstrip(),
-            "array_given": _listed(4, "(", map(_name, self._array_parameters)).lstrip(),
+            "array_parameters": listed(4, "(", self._array_parameters).lstrip(),
+            "array_given": listed(4, "(", map(_name, self._array_parameters)).lstrip(),
             "body": self._body(),
             "scalar_call": self._call("1", places, "out", 4) + ";",
             "tile_call": self._call("0", columns, "at", 12),
@@ -51,11 +72,11 @@ class Function:
         real, outputs = self.precision.real, len(self.kernel.outputs)
         given = [f"const {real} {a.name}[{len(a.components)}]" for a in self.kernel.arguments]
         head = f"void {self.name}{self.precision.suffix}("
-        return _listed(0, head, [*given, f"{real} out[{outputs}]"])
+        return listed(0, head, [*given, f"{real} out[{outputs}]"])
 
     @property
     def array_signature(self) -> str:
-        return _listed(0, f"void {self._array}(", self._array_parameters)
+        return listed(0, f"void {self._array}(", self._array_parameters)
 
     @property
     def _array(self) -> str:
@@ -80,56 +101,83 @@ class Function:
 
     def _call(self, far: str, places: list[str], result: str, indent: int) -> str:
         head = f"evaluate_{self.kernel.name}{self.precision.suffix}("
-        return _listed(indent, head, [far, *places, result]).lstrip()
+        return listed(indent, head, [far, *places, result]).lstrip()
 
     def _body(self) -> str:
         kernel, real, word = self.kernel, self.precision.real, self.precision.word
         given = [f"const {real} {name}" for name in kernel.components]
         head = f"INLINED {word} evaluate_{kernel.name}{self.precision.suffix}("
-        has_far = any(call.function not in _PLAIN for call in kernel.calls.values())
+        called = (call.function for call in kernel.calls.values())
+        has_far = not self.contents.libm and not _PLAIN.issuperset(called)
         unused = [name for name in kernel.components if name not in kernel.used]
         return "\n".join(
             [
-                _listed(0, head, ["const int far", *given, f"{real} *out"]),
+                listed(0, head, ["const int far", *given, f"{real} *out"]),
                 "{",
                 f"    {word} beyond = 0;",
                 *(f"    (void){name};" for name in (*([] if has_far else ["far"]), *unused)),
-                *self._lines(),
-                *(f"    out[{k}] = {self._text(e)};" for k, e in enumerate(kernel.outputs)),
+                *(f"    {line}" for step in self.steps() for line in step.lines),
                 "    return beyond;",
                 "}",
             ]
         )
 
-    def _lines(self) -> Iterator[str]:
+    def steps(self) -> Iterator[CStatement]:
+        """The statements in order, then the entries of the result."""
+        for name, value in self.kernel.statements:
+            values = list(value.values()) if isinstance(value, dict) else [value]
+            used = frozenset(n for each in values for n in names_in(each))
+            known = frozenset(value) if isinstance(value, dict) else frozenset(self._named(name))
+            yield CStatement(
+                tuple(self._lines(name, value)), known, used, isinstance(value, Compare)
+            )
+        for k, value in enumerate(self.kernel.outputs):
+            line = f"out[{k}] = {self._text(value)};"
+            yield CStatement((line,), frozenset(), frozenset(names_in(value)))
+
+    def _named(self, name: str) -> Iterable[str]:
+        """The names of a statement: own sines and cosines of one angle come together."""
+        call = self.kernel.calls.get(name)
+        if self.contents.libm or call is None or call.function not in ("sin", "cos"):
+            return (name,)
+        both = self.kernel.sines[call.argument]
+        return both.values() if name == next(iter(both.values())) else ()
+
+    def _reduced(self, helper: str, *arguments: str) -> str:
+        """A call of a helper that reduces angles, in arrays the far ones later."""
+        if self.contents.libm:
+            return f"{helper}{self.precision.suffix}({', '.join(arguments)});"
+        tracked, far = ("beyond |= ", "far") if self.contents.arrays else ("(void)", "1")
+        return f"{tracked}{helper}{self.precision.suffix}({', '.join((far, *arguments))});"
+
+    def _lines(self, name: str, value: Expression | dict[str, Call]) -> Iterator[str]:
         precision = self.precision
         real, suffix = precision.real, precision.suffix
-        for name, value in self.kernel.statements:
-            match value:
-                case dict():  # all functions c_k of one square
-                    (square,) = {call.argument.text for call in value.values()}
-                    yield f"    {real} _entire_{square}[ORDERS];"
-                    yield f"    beyond |= entire{suffix}(far, {square}, _entire_{square});"
-                    for called, call in value.items():
-                        yield f"    const {real} {called} = _entire_{square}[{call.order}];"
-                case Guarded(divisor):
-                    limit = self._limit(value)
-                    yield f"    const {real} {name} = or_nan{suffix}({divisor.text}, {limit});"
-                case Call("sin" | "cos", argument):
-                    both, angle = self.kernel.sines[argument], argument.text
-                    if name == next(iter(both.values())):
-                        sine, cosine = (both.get(f, f"_{f}_{angle}") for f in ("sin", "cos"))
-                        yield f"    {real} {sine}, {cosine};"
-                        yield f"    beyond |= sin_cos{suffix}(far, {angle}, &{sine}, &{cosine});"
-                case Call("eps"):
-                    yield f"    const {real} {name} = {precision.literal(precision.eps)};"
-                case Call(called):
-                    used = {"abs": "fabs", "atan2": "angle_of"}.get(called, called)
-                    given = ", ".join(argument.text for argument in value.arguments)
-                    yield f"    const {real} {name} = {used}{suffix}({given});"
-                case _:
-                    kind = "int" if isinstance(value, Compare) else real
-                    yield f"    const {kind} {name} = {self._text(value)};"
+        match value:
+            case dict():  # all functions c_k of one square
+                (square,) = {call.argument.text for call in value.values()}
+                yield f"{real} _entire_{square}[ORDERS];"
+                yield self._reduced("entire", square, f"_entire_{square}")
+                for called, call in value.items():
+                    yield f"const {real} {called} = _entire_{square}[{call.order}];"
+            case Guarded(divisor):
+                yield f"const {real} {name} = or_nan{suffix}({divisor.text}, {self._limit(value)});"
+            case Call("sin" | "cos", argument) if not self.contents.libm:
+                both, angle = self.kernel.sines[argument], argument.text
+                if name == next(iter(both.values())):
+                    sine, cosine = (both.get(f, f"_{f}_{angle}") for f in ("sin", "cos"))
+                    yield f"{real} {sine}, {cosine};"
+                    yield self._reduced("sin_cos", angle, f"&{sine}", f"&{cosine}")
+            case Call("eps"):
+                yield f"const {real} {name} = {precision.literal(precision.eps)};"
+            case Call(called):
+                own = {} if self.contents.libm else {"atan2": "angle_of"}
+                used = {"abs": "fabs", **own}.get(called, called)
+                given = ", ".join(argument.text for argument in value.arguments)
+                yield f"const {real} {name} = {used}{suffix}({given});"
+            case _:
+                kind = "int" if isinstance(value, Compare) else real
+                yield f"const {kind} {name} = {self._text(value)};"
 
     def _limit(self, guard: Guarded) -> str:
         literal, eps = self.precision.literal, self.precision.eps
@@ -146,7 +194,7 @@ def _name(parameter: str) -> str:
     return parameter.split()[-1].lstrip("*")
 
 
-def _listed(indent: int, head: str, items: Iterable[str]) -> str:
+def listed(indent: int, head: str, items: Iterable[str]) -> str:
     """Parameters or what is given for them; C takes no comma after the last."""
     text = bracketed(indent, head, list(items), ")")
     return text.replace(f",\n{' ' * indent})", ")")

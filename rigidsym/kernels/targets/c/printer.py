@@ -14,8 +14,10 @@ from typing import Any
 from rigidsym.kernels.ir import Kernel, Program, functions_of, last_order
 from rigidsym.kernels.lowering.trigonometry import two_over_pi
 from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.targets.c.function import Function, show
+from rigidsym.kernels.targets.c.function import Contents, Function, show
 from rigidsym.kernels.targets.c.module_files import module_files
+from rigidsym.kernels.targets.c.parts import parts_of
+from rigidsym.kernels.targets.c.samples import samples_of
 from rigidsym.kernels.targets.numpy import printer as numpy
 from rigidsym.kernels.targets.text import remarks
 from rigidsym.kernels.targets.text.precision import PRECISIONS
@@ -24,7 +26,7 @@ from rigidsym.system import resources
 _WORDS = (
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf NULL angle_of "
     "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED tile "
-    "found rows count at i j HELPER CLONES CLONED"
+    "found rows count at i j HELPER CLONES CLONED shared expected"
 )
 RESERVED = numpy.RESERVED | {*_WORDS.split()}  # the Python module's, too
 _WIDTH = 92
@@ -32,18 +34,21 @@ _TILE = 32  # orientations that are evaluated side by side
 _WHOLE = frozenset({1, 2, 3, 4, 8})  # lengths of rows that compilers put together by whole vectors
 
 
-def render(program: Program) -> dict[str, str]:
-    """The source, the header, and what makes a Python module of them."""
+def render(program: Program, **options: Any) -> dict[str, str]:
+    """The source, the header, and what makes a Python module of them, or else a test."""
+    contents = Contents(**options)
     room = _WIDTH - len("    const double  = ;")
     kernels = [narrowed(kernel, show, line=room, output=room) for kernel in program.kernels]
     functions = [
-        [Function(f"{program.name}_{kernel.name}", kernel, p) for kernel in kernels]
+        [Function(f"{program.name}_{kernel.name}", kernel, p, contents) for kernel in kernels]
         for p in PRECISIONS
+        if contents.precision in ("both", p.real)
     ]
+    is_module = contents.arrays and contents.precision == "both"
     return {
         f"{program.name}.c": _source(program, kernels, functions),
         f"{program.name}.h": _header(program, functions),
-        **module_files(program, kernels),
+        **(module_files(program, kernels) if is_module else _test(program, functions)),
     }
 
 
@@ -58,21 +63,28 @@ def _source(
     program: Program, kernels: Sequence[Kernel], functions: Sequence[Sequence[Function]]
 ) -> str:
     called, last = functions_of(kernels), last_order(kernels)
+    contents = functions[0][0].contents
     taken = sorted({len(a.components) for kernel in kernels for a in kernel.arguments})
     given = sorted({len(kernel.outputs) for kernel in kernels})
     return _template("c/source.c.jinja").render(
         title=_safe(program.title),
         name=program.name,
         tile=_TILE,
-        has_angles=last >= 0 or not called.isdisjoint(("sin", "cos")),
-        has_roots=last >= 0 or not called.isdisjoint(("sqrt", "abs", "atan2")),
-        has_arctangents="atan2" in called,
+        arrays=contents.arrays,
+        libm=contents.libm,
+        has_angles=not contents.libm and (last >= 0 or not called.isdisjoint(("sin", "cos"))),
+        has_arctangents=not contents.libm and "atan2" in called,
         has_guards=any(kernel.guards for kernel in kernels),
         has_series=last >= 0,
         orders=max(2, last) + 1,
         precisions=[
-            {**precision.filled(last), "functions": [function.pieces() for function in made]}
-            for precision, made in zip(PRECISIONS, functions, strict=True)
+            {
+                **made[0].precision.filled(last),
+                "functions": [
+                    f.pieces() if contents.arrays else {"parts": list(parts_of(f))} for f in made
+                ],
+            }
+            for made in functions
         ],
         two_over_pi=_words(),
         half_pi=repr(pi / 2),
@@ -94,10 +106,29 @@ def _words() -> str:
     return ",\n".join("    " + ", ".join(words[k : k + 6]) for k in range(0, len(words), 6))
 
 
+def _test(program: Program, functions: Sequence[Sequence[Function]]) -> dict[str, str]:
+    """NAME_test.c, which compares a few results of each function."""
+    precisions = [
+        {
+            "real": made[0].precision.real,
+            "suffix": made[0].precision.suffix,
+            "functions": [
+                {"name": f.name, "outputs": len(f.kernel.outputs), "samples": samples}
+                for f in made
+                if (samples := list(samples_of(f)))
+            ],
+        }
+        for made in functions
+    ]
+    text = _template("c/test.c.jinja").render(name=program.name, precisions=precisions)
+    return {f"{program.name}_test.c": text}
+
+
 def _header(program: Program, functions: Sequence[Sequence[Function]]) -> str:
     return _template("c/header.h.jinja").render(
-        about=_comment(_about(program)),
+        about=_comment(_about(program, functions[0][0].contents)),
         guard=f"{program.name.upper()}_H",
+        arrays=functions[0][0].contents.arrays,
         functions=[
             {"about": _comment(_about_kernel(both[0].kernel)), "precisions": both}
             for both in zip(*functions, strict=True)
@@ -109,24 +140,39 @@ def _template(name: str) -> Any:
     return resources.environment().get_template(name)
 
 
-def _about(program: Program) -> list[remarks.Paragraph]:
+def _about(program: Program, contents: Contents) -> list[remarks.Paragraph]:
     """The paragraphs at the head of the header."""
+    arrays = (
+        "An array function serves `count` orientations: from one to the next an argument goes on "
+        "by its `step` (0 repeats one), from one component to the next by its `stride`, both in "
+        "elements; rows without gaps, a step of the row's length and a stride of 1, are the "
+        "fastest. `out` may not overlap an argument.",
+        "No function allocates, recurses or keeps a state; an array function takes room for "
+        f"{_TILE} orientations on the stack.",
+        "With -DCLONES, gcc and clang for x86-64 compile array functions that choose between AVX2, "
+        "AVX-512 and neither when they are called.",
+    )
+    one = (
+        "`out` may not overlap an argument.",
+        "No function allocates, recurses or keeps a state.",
+    )
+    sines = (
+        "Sine, cosine and atan2 are those of <math.h>, and the errors of the functions include "
+        "theirs."
+        if contents.libm
+        else "Sine and cosine are evaluated here, within 2 eps of their size (eps is 2^-52 in "
+        "double, 2^-23 in float) at any finite angle."
+    )
+    floats = "" if contents.precision == "double" else "Names that end in f are of type float. "
+    first, *others = arrays if contents.arrays else one
     return remarks.about_module(
         program,
         "functions in C99",
         "Arguments, in radians and SI units:",
         [f"  {a.name}[{len(a.components)}]  {a.about}" for a in program.arguments],
-        "Matrices are filled row by row. Names that end in f are of type float. An array function "
-        "serves `count` orientations: from one to the next an argument goes on by its `step` (0 "
-        "repeats one), from one component to the next by its `stride`, both in elements; rows "
-        "without gaps, a step of the row's length and a stride of 1, are the fastest. `out` may "
-        "not overlap an argument.",
-        "No function allocates, recurses or keeps a state; an array function takes room for "
-        f"{_TILE} orientations on the stack.",
-        "With -DCLONES, gcc and clang for x86-64 compile array functions that choose between AVX2, "
-        "AVX-512 and neither when they are called.",
-        "Sine and cosine are evaluated here, within 2 eps of their size (eps is 2^-52 in double, "
-        "2^-23 in float) at any finite angle.",
+        f"Matrices are filled row by row. {floats}{first}",
+        *others,
+        sines,
         unwrap="unwrap is only in the Python module, since it needs room for a trajectory.",
     )
 

@@ -23,7 +23,6 @@ class Precision:
     bits: int  # of the type
     digits: int  # of its significand
     packed: tuple[str, str]  # the letters of both types for `struct`
-    nan: str
     tiny: float  # the smallest normal number
 
     @property
@@ -55,7 +54,6 @@ class Precision:
             "parts": list(map(float, found.parts)),
             "first": (sine[0], cosine[0]),
             "rest": list(zip(sine[1:], cosine[1:], strict=True)),
-            "nan": self.nan,
             "edge": self.literal(angles.edge),
             "arctangent": self.falling(angles.coefficients),
             "eighth": list(map(self.literal, angles.eighth)),
@@ -86,7 +84,6 @@ DOUBLE, SINGLE = PRECISIONS = (
         bits=64,
         digits=53,
         packed=("d", "Q"),
-        nan="0x7ff8000000000000u",
         tiny=2.0**-1022,
     ),
     Precision(
@@ -96,7 +93,6 @@ DOUBLE, SINGLE = PRECISIONS = (
         bits=32,
         digits=24,
         packed=("f", "I"),
-        nan="0x7fc00000u",
         tiny=2.0**-126,
     ),
 )

@@ -1,0 +1,123 @@
+"""C for firmware: one type, one orientation a call, <math.h>, short functions, little stack."""
+
+from __future__ import annotations
+
+import ctypes
+import re
+import subprocess
+from itertools import product
+
+import numpy as np
+import pytest
+
+import rigidsym as rs
+from helpers.target_modules import STRICT
+from rigidsym.errors import CheckError, KernelError
+
+LEAN = {"precision": "double", "arrays": False, "libm": True}
+SOME = ("rotation_matrix", "angular_velocity_body", "angular_acceleration_space")
+ROTATIONS = {"ZYX": (), "rotation_vector": SOME, "z(a) [1,2,3](b) y(c) x(d)": SOME}
+MOST_LINES, MOST_STACK = 60, 1024
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("lean")
+
+
+@pytest.fixture(scope="module", params=ROTATIONS)
+def module(request, folder):
+    motion = rs.derive(request.param, only=ROTATIONS[request.param])
+    asked = {"conversions": "v" not in request.param, "derivatives": ["angular_velocity_body by q"]}
+    kernels = motion.kernels("c", **asked, **LEAN)
+    kernels.write(folder)
+    return motion, kernels, motion.kernels(**asked).load()
+
+
+def run(*command: str, cwd) -> str:
+    done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+def test_compilers_are_silent_and_the_generated_test_passes(module, folder, compiler):
+    _, kernels, _ = module
+    made = f"{kernels.name}_{compiler}"
+    sources = (kernels.main, f"{kernels.name}_test.c")
+    run(compiler, *STRICT, "-O1", *sources, "-o", made, "-lm", cwd=folder)
+    assert run(f"./{made}", cwd=folder) == ""
+
+
+def test_the_generated_test_finds_a_wrong_function(module, folder):
+    _, kernels, _ = module
+    wrong = re.sub(r"out\[0\] = (.*);", r"out[0] = 1e-9 + (\1);", kernels.source)
+    (folder / "wrong.c").write_text(wrong, encoding="utf-8")
+    run("gcc", "wrong.c", f"{kernels.name}_test.c", "-o", "wrong", "-lm", cwd=folder)
+    done = subprocess.run(["./wrong"], cwd=folder, capture_output=True, text=True, check=False)
+    tested = kernels.files[f"{kernels.name}_test.c"].count("failures += differs(")
+    assert done.returncode == done.stdout.count("entry 0 is") == tested
+
+
+def test_functions_are_short_and_need_little_stack(module, folder):
+    _, kernels, _ = module
+    bodies = re.findall(r"^(?:static |void ).*?^}", kernels.source, re.MULTILINE | re.DOTALL)
+    assert max(body.count("\n") + 1 for body in bodies) <= MOST_LINES
+    run("gcc", "-std=c99", "-Os", "-fstack-usage", "-c", kernels.main, cwd=folder)
+    rows = (line.split("\t") for line in (folder / f"{kernels.name}.su").read_text().splitlines())
+    used = {place.rpartition(":")[2]: int(size) for place, size, _ in rows}
+    public = [size for name, size in used.items() if "_part" not in name]
+    parts = [size for name, size in used.items() if "_part" in name]
+    assert max(public) + max(parts, default=0) + used.get("entire", 0) <= MOST_STACK
+
+
+def test_results_are_those_of_the_numpy_module(module, folder):
+    motion, kernels, functions = module
+    flags = ("-std=c99", "-O2", "-shared", "-fPIC")
+    run("gcc", *flags, kernels.main, "-o", f"{kernels.name}.so", "-lm", cwd=folder)
+    library = ctypes.CDLL(str(folder / f"{kernels.name}.so"))
+    random = np.random.default_rng(7)
+    names = [step.quantity.name for step in motion.steps if hasattr(functions, step.quantity.name)]
+    assert len(names) == 13 or set(names) == set(SOME)
+    for name in names:
+        inputs = motion.step(name).quantity.inputs
+        given = [random.uniform(0.2, 1.2, len(motion.argument(n).names)) for n in inputs]
+        expected = getattr(functions, name)(*given)
+        out = np.empty_like(expected)
+        arrays = [ctypes.c_void_p(array.ctypes.data) for array in (*given, out)]
+        getattr(library, f"{kernels.name}_{name}")(*arrays)
+        largest = max(1.0, np.abs(expected).max())
+        np.testing.assert_allclose(out, expected, rtol=0, atol=1e-13 * largest, err_msg=name)
+
+
+def test_options_may_be_chosen_one_by_one(folder):
+    motion = rs.derive("rotation_vector", only="angular_velocity_body")
+    for precision, arrays, libm in product(("float", "both"), (True, False), (True, False)):
+        kernels = motion.kernels("c", precision=precision, arrays=arrays, libm=libm)
+        source = kernels.write(folder).name
+        run("clang", *STRICT, "-fsyntax-only", source, cwd=folder)
+        assert ("sin(" in kernels.source or "sinf(" in kernels.source) is libm
+        assert ("_array" in kernels.source) is arrays
+        assert ("double q[" in kernels.source) is (precision == "both")
+        if (test := f"{kernels.name}_test.c") in kernels.files:
+            run("gcc", *STRICT, source, test, "-o", "alone", "-lm", cwd=folder)
+            assert run("./alone", cwd=folder) == ""
+
+
+@pytest.mark.parametrize(
+    ("target", "options", "named"),
+    [
+        ("c", {"precison": "double"}, "no option precison; did you mean precision?"),
+        ("c", {"precision": "half"}, "'both', 'double', 'float', got 'half'"),
+        ("c", {"arrays": 0}, "expected one of True, False, got 0"),
+        ("numpy", {"libm": True}, "numpy has no option libm"),
+    ],
+)
+def test_other_options_are_refused_by_name(target, options, named):
+    with pytest.raises(KernelError, match=re.escape(named)):
+        rs.derive("ZXZ", only="rotation_matrix").kernels(target, **options)
+
+
+def test_no_python_module_is_made_of_lean_c():
+    with pytest.raises(CheckError, match=r"_c\.py: not there.* with arrays"):
+        rs.derive("ZXZ", only="rotation_matrix").kernels("c", **LEAN).load()
