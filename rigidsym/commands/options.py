@@ -20,6 +20,7 @@ from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.resources import overridden_by
 
 MOST_LINES = 150  # that a terminal shows by default
+_LEAN: dict[str, str | bool] = {"precision": "double", "arrays": False, "libm": True}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,7 +214,7 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, KernelOptio
         targets = unique(self.target)
         for target in targets:
             check_target(target)
-        lean = {"c": {"precision": "double", "arrays": False, "libm": True}} if self.lean else {}
+        lean = {"c": _LEAN} if self.lean else {}
         asked = ("pdf",) * self.pdf + ("fragment.tex",) * self.fragment
         return replace(
             self.in_notation(self.selected(spec)),

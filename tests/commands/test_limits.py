@@ -59,10 +59,14 @@ def test_a_stop_that_a_finalizer_loses_is_made_again_without_a_word(monkeypatch)
         def __del__(self):
             sleep(0.2)
 
-    with pytest.raises(LimitReached), time_limit(0.1):
-        slow = Slow()
-        del slow
-        sleep(60)
+    def lose_a_stop_and_go_on():
+        with time_limit(0.1):
+            slow = Slow()
+            del slow
+            sleep(60)
+
+    with pytest.raises(LimitReached):
+        lose_a_stop_and_go_on()
     assert not said
     assert sys.unraisablehook == said.append
 

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from rigidsym.kernels.ir import Kernel
-from rigidsym.kernels.targets.c.function import Function, CStatement, listed
+from rigidsym.kernels.targets.c.function import CStatement, Function, listed
 
 _MOST = 60  # lines of a part
 _FRAME = 6  # of them for the head and the braces, besides one an argument

@@ -14,10 +14,10 @@ from typing import Any
 from rigidsym.kernels.ir import Kernel, Program, functions_of, last_order
 from rigidsym.kernels.lowering.trigonometry import two_over_pi
 from rigidsym.kernels.lowering.wrap_lines import narrowed
+from rigidsym.kernels.targets.c.expected_values import samples_of
 from rigidsym.kernels.targets.c.function import Contents, Function, show
 from rigidsym.kernels.targets.c.module_files import module_files
 from rigidsym.kernels.targets.c.parts import parts_of
-from rigidsym.kernels.targets.c.samples import samples_of
 from rigidsym.kernels.targets.numpy import printer as numpy
 from rigidsym.kernels.targets.text import remarks
 from rigidsym.kernels.targets.text.precision import PRECISIONS
