@@ -22,6 +22,7 @@ from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import PDF, Output, integrated, motion_of, output_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.system.files import write_bytes, write_text
+from rigidsym.system.processes import in_processes
 from rigidsym.system.progress import counter
 
 
@@ -88,13 +89,14 @@ def _check_folders(singles: Iterable[DerivationSpec]) -> None:
 
 def _outputs(singles: Sequence[DerivationSpec]) -> Iterator[Output]:
     """The output of each rotation, with a bar if there are several and a terminal shows it."""
+    found = in_processes(output_of, singles)
     if len(singles) == 1 or not sys.stderr.isatty():
-        yield from map(output_of, singles)
+        yield from found
         return
     with counter(len(singles)) as begin:
         for single in singles:
             begin(single.name)
-            yield output_of(single)
+            yield next(found)
 
 
 def _typeset(output: Output, folder: Path, missing: list[RigidsymError]) -> list[Path]:

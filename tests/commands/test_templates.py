@@ -33,6 +33,10 @@ def test_templates_that_are_not_overridden_stay(tmp_path: Path):
         assert derived("ZXZ").note().latex() == before
 
 
+def test_an_own_template_that_was_changed_is_read_again(tmp_path: Path):
+    assert [html_with(tmp_path, text) for text in ("one", "two")] == ["one", "two"]
+
+
 def test_an_own_template_may_include_others(tmp_path: Path):
     (tmp_path / "head.jinja").write_text("<b>{{ title }}</b>", encoding="utf-8")
     assert html_with(tmp_path, "{% include 'head.jinja' %}").startswith("<b>Euler")

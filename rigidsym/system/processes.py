@@ -1,0 +1,77 @@
+"""The same work on many items, by copies of this process on the other cores."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, TypeVar
+
+from rigidsym.errors import RigidsymError
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+def cores() -> int:
+    """The cores that this process may use; one where the system makes no copies of processes."""
+    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
+
+
+def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
+    """The result of each item, in order. The work writes nothing, and its results can be pickled.
+
+    The first item is done before this process is copied, so that the copies have all that it
+    imported and kept for the next. A copy ends at its first error; its items are then done here,
+    so that errors are raised as by `map`, in order.
+    """
+    yield from map(work, items[:1])
+    rest = items[1:]
+    count = max(min(cores(), len(rest)), 1)
+    with _copies(work, [rest[first::count] for first in range(1, count)]) as copies:
+        for place, item in enumerate(rest):
+            try:
+                yield copies[place % count - 1].recv() if place % count else work(item)
+            except EOFError:
+                yield work(item)
+
+
+@contextmanager
+def _copies(
+    work: Callable[[T], R], shares: Sequence[Sequence[T]]
+) -> Iterator[list[Connection[R, R]]]:
+    """Where the results of each share come in; the copies end with the block."""
+    from multiprocessing import get_context  # few commands have several items
+
+    context = get_context("fork" if shares else None)
+    running, ends = [], []
+    try:
+        for share in shares:
+            here, there = context.Pipe(duplex=False)
+            copy = context.Process(target=_done, args=(work, share, here, there), daemon=True)
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            copy.start()  # Ctrl-C does not reach it: this process ends it
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+            there.close()
+            running.append(copy)
+            ends.append(here)
+        yield ends
+    finally:
+        for copy in running:
+            copy.kill()
+            copy.join()
+
+
+def _done(
+    work: Callable[[T], R], items: Sequence[T], here: Connection[R, R], there: Connection[R, R]
+) -> None:
+    """The part of a copy: the results of its items, up to the first error."""
+    here.close()
+    with suppress(RigidsymError, MemoryError, BrokenPipeError):
+        for item in items:
+            there.send(work(item))

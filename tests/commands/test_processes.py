@@ -1,0 +1,62 @@
+"""Several derivations on several cores: the same files and messages in the same order."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from rigidsym.commands.cli import commands
+from rigidsym.errors import RequestError
+from rigidsym.system import processes
+from rigidsym.system.processes import in_processes
+
+FOUR = '[rotation]\nsequence = ["ZXZ", "xyz", "ZYX", "zxz"]\n[output]\nnote = ["html", "page"]\n'
+
+
+def run(folder: Path, cores: int, monkeypatch: pytest.MonkeyPatch) -> tuple[str, dict[str, bytes]]:
+    """What is printed, and all files written."""
+    monkeypatch.setattr(processes, "cores", lambda: cores)
+    monkeypatch.chdir(folder)
+    done = CliRunner().invoke(commands, ["run", "four.toml", "--out", str(cores)])
+    assert done.exit_code == 0, done.output
+    files = {path.name: path.read_bytes() for path in Path(str(cores)).rglob("*.*")}
+    return done.output.replace(f"{cores}/", "OUT/"), files
+
+
+def test_two_processes_write_what_one_writes(tmp_path: Path, monkeypatch):
+    (tmp_path / "four.toml").write_text(FOUR, encoding="utf-8")
+    one, two = (run(tmp_path, cores, monkeypatch) for cores in (1, 2))
+    assert len(one[1]) == 4 * 4
+    assert one == two
+
+
+@pytest.mark.parametrize("cores", [1, 2, 3, 9])
+def test_results_come_in_order_and_errors_where_they_arise(cores: int, monkeypatch):
+    monkeypatch.setattr(processes, "cores", lambda: cores)
+
+    def inverse(number: int) -> int:
+        if number == 5:
+            raise RequestError("five has none")
+        return -number
+
+    found = in_processes(inverse, range(8))
+    assert [next(found) for _ in range(5)] == [0, -1, -2, -3, -4]
+    with pytest.raises(RequestError, match="five has none"):
+        next(found)
+    assert list(in_processes(inverse, range(5))) == [0, -1, -2, -3, -4]
+    assert list(in_processes(inverse, [])) == []
+
+
+def test_the_work_of_a_process_that_was_killed_is_done_again(monkeypatch):
+    monkeypatch.setattr(processes, "cores", lambda: 2)
+    here = os.getpid()
+
+    def work(item: str) -> str:
+        if item == "c" and os.getpid() != here:
+            os._exit(1)
+        return item.upper()
+
+    assert "".join(in_processes(work, "abcdef")) == "ABCDEF"
