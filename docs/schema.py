@@ -128,7 +128,9 @@ def _rotation() -> Schema:
             "angles": texts("names of the coordinates, in their order"),
             "constants": texts("names in turns that are constants"),
             "scalar_last": flag("order quaternions as (x, y, z, w)"),
-            "matrix": listed("R itself: three rows of three expressions", texts("a row"), 3),
+            "matrix": listed(
+                "R itself: three rows of three entries", listed("a row", NUMBER, 3), 3
+            ),
             "coordinates": texts("the names in `matrix` that move"),
             "constraints": texts("expressions in the coordinates of `matrix` that are zero"),
             "example": {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import Any
 
 from rigidsym.models.euler_angles import DEFAULT_ANGLES, EULER_SEQUENCES
@@ -20,7 +21,7 @@ A_SEQUENCE = 'a sequence such as "ZXZ", or a list of sequences'
 _THREE_NAMES = 'a list of three names such as ["phi", "theta", "psi"]'
 _NAMES = 'a list of names such as ["phi", "theta"]'
 _DIGITS = str.maketrans("123", "XYZ")
-_ROWS = "three rows of three expressions in quotes"
+_ROWS = "three rows of three expressions"
 
 
 def read_rotation(table: Table, name: str) -> list[RotationModel]:
@@ -55,22 +56,17 @@ def _read_matrix(table: Table, name: str) -> list[RotationModel]:
     for key in _OF_SEQUENCES:
         if table.value(key) is not None:
             table.fault("this key does not go with matrix", key)
-    value = table.value("matrix")
-    rows: list[list[str]] = value if isinstance(value, list) else []
-    sizes = [len(row) if isinstance(row, list) else 0 for row in rows]
-    if sizes != [3, 3, 3] or not all(isinstance(entry, str) for row in rows for entry in row):
-        table.mistyped(value, _ROWS, "matrix")
-        return []
+    rows = _read_rows(table)
     coordinates = _read_names(table, "coordinates", _NAMES)
     if table.value("coordinates") is None:
         table.mistyped(None, _NAMES, "coordinates")
     point = table.table("example")
-    example = {key: _number(point, key) for key in point.data} if point else {}
+    example = {k: _entry(point, v, k) or "0" for k, v in point.data.items()} if point else {}
     for key, text in example.items():
         with table.noting("example", key):
             parse_expression(text, {})
     constraints = [*table.texts("constraints", "a list of expressions that are zero").values()]
-    if not coordinates:
+    if not coordinates or not rows:
         return []
     with table.noting("matrix"):
         for at, message in faults_in(rows, coordinates, constraints).items():
@@ -89,10 +85,28 @@ def _read_matrix(table: Table, name: str) -> list[RotationModel]:
     return []
 
 
-def _number(table: Table, key: str) -> str:
-    """The text of a number, which may be written as one."""
-    value = table.value(key)
-    return str(value) if isinstance(value, int | float) else table.text(key) or "0"
+def _read_rows(table: Table) -> list[list[str]]:
+    """The texts of the entries of `matrix`; empty if a fault is noted."""
+    value = table.value("matrix")
+    rows = value if isinstance(value, list) else []
+    if [len(row) if isinstance(row, list) else 0 for row in rows] != [3, 3, 3]:
+        table.mistyped(value, _ROWS, "matrix")
+        return []
+    texts = [
+        [_entry(table, entry, "matrix", i, k) for k, entry in enumerate(row)]
+        for i, row in enumerate(rows)
+    ]
+    return texts if all(map(all, texts)) else []
+
+
+def _entry(table: Table, value: object, *at: str | int) -> str:
+    """The text of an expression or a number; empty, with the fault noted, for another value."""
+    if isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value):
+        return str(value)
+    if not isinstance(value, str):
+        table.mistyped(value, "an expression in quotes or a finite number", *at)
+        return ""
+    return value
 
 
 def _read_sequences(table: Table) -> dict[Place, str]:

@@ -227,6 +227,43 @@ def test_every_function_is_declared_for_typescript(tmp_path: Path):
     assert kernels.write(tmp_path / "mine.mjs") == tmp_path / "mine.mjs"
 
 
+CALLS = """
+import * as functions from "./NAME.mjs";
+const type = (value) =>
+  typeof value === "number" ? "number"
+  : value instanceof Float64Array ? "Float64Array"
+  : value.every((entry) => typeof entry === "number") ? "number[]"
+  : new Set(value.map(type)).size === 1 ? "number[][]"
+  : `[${value.map(type).join(", ")}]`;
+const found = {};
+for (const [name, sizes] of Object.entries(SIZES)) {
+  found[name] = type(functions[name](...sizes.map((size) => new Float64Array(size).fill(0.3))));
+}
+console.log(JSON.stringify(found));
+"""
+
+
+def test_functions_take_typed_arrays_and_return_the_types_that_are_declared(tmp_path: Path):
+    asked = {"angular_velocity_body": "q", "rotation_matrix": "q vjp"}
+    kernels = derived("ZXZ").kernels("javascript", conversions=True, derivatives=asked)
+    kernels.write(tmp_path / f"{NAME}.mjs")
+    types = kernels.files[f"{NAME}.d.mts"]
+    declared = re.findall(r"^export function (\w+)\((.*)\): (.*);$", types, re.M)
+    of_size = {"q": 3, "q_dot": 3, "q_ddot": 3, "omega_space": 3, "omega_body": 3}
+    of_size |= {"rotation_matrix_weights": 9, "matrix": 9, "quaternion": 4}
+    sizes = {
+        name: [of_size[given] for given in re.findall(r"(\w+): ", taken)]
+        for name, taken, _ in declared
+    }
+    program = CALLS.replace("SIZES", json.dumps(sizes)).replace("NAME", NAME)
+    (tmp_path / "calls.mjs").write_text(program, encoding="utf-8")
+    done = subprocess.run(
+        ["node", "calls.mjs"], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert json.loads(done.stdout) == {name: type_ for name, _, type_ in declared}
+    assert len(declared) == 38
+
+
 def test_without_node_it_is_said(monkeypatch):
     monkeypatch.setenv("PATH", "")
     kernels = derived("ZXZ").kernels("javascript")

@@ -349,13 +349,58 @@ def test_a_point_of_constraints_is_read_and_kept():
     assert again.models == spec.models
 
 
+NUMBERS = """\
+[rotation]
+matrix = [["cos(phi)", "-sin(phi)", 0], ["sin(phi)", "cos(phi)", 0], [0, 0.0, ONE]]
+coordinates = ["phi"]
+"""
+
+
+def test_entries_of_a_matrix_may_be_numbers():
+    (model,) = read(NUMBERS.replace("ONE", "1")).models
+    (texts,) = read(NUMBERS.replace("ONE", '"1"')).models
+    assert model == texts
+
+
+@pytest.mark.parametrize(
+    ("entry", "fault"),
+    [
+        (
+            "true",
+            "rotation.matrix[2][2]: expected an expression in quotes or a finite number, got true",
+        ),
+        (
+            "[1]",
+            "rotation.matrix[2][2]: expected an expression in quotes or a finite number, got a list",
+        ),
+        (
+            "nan",
+            "rotation.matrix[2][2]: expected an expression in quotes or a finite number, got a n",
+        ),
+        ('"cos(psi"', "rotation.matrix[2][2]: "),
+        ("1, 0", "rotation.matrix: expected three rows of three expressions, got a list"),
+    ],
+)
+def test_a_wrong_entry_of_a_matrix_is_named(entry, fault):
+    with pytest.raises(SpecError) as caught:
+        read(NUMBERS.replace("ONE", entry))
+    (found,) = caught.value.faults
+    assert fault in str(found)
+
+
 @pytest.mark.parametrize(
     ("example", "fault"),
     [
         ("{ c = 1 }", "rotation.matrix: top: no c for an example"),
         ('{ a = "b" }', "rotation.example.a: unknown name 'b'"),
-        ("{ a = inf }", "rotation.example.a: unknown name 'inf'"),
-        ("{ a = [] }", "rotation.example.a: expected a text in quotes, got a list"),
+        (
+            "{ a = inf }",
+            "rotation.example.a: expected an expression in quotes or a finite number, got a number",
+        ),
+        (
+            "{ a = [] }",
+            "rotation.example.a: expected an expression in quotes or a finite number, got a list",
+        ),
         ("3", "rotation.example: expected a table [rotation.example], got the number 3"),
     ],
 )

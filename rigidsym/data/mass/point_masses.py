@@ -51,7 +51,7 @@ def inertia_of(
         name = named
         if isinstance(reader, TextReader):
             name = partial(_line, reader)
-            reader.quotes = reader.names is not None  # else it may be another kind of text
+            reader.quotes = False  # it may be another kind of text
         blocks = _blocks(reader, columns, name, progress)
         return cloud_of(blocks, name, allow=allow)
     except (BodyError, DataError) as error:
