@@ -164,11 +164,14 @@ class Motion(Derivation):
 
         return simulate_ensemble(self, initial, parameters, t_end, **options)
 
-    def page(self, *, with_kernels: bool = True) -> str:
-        """One HTML file that needs no network: the note, and a figure with sliders."""
+    def page(self, *, with_kernels: bool = True, start: Mapping[str, float] | None = None) -> str:
+        """One HTML file that needs no network: the note, and a figure with sliders.
+
+        `start` holds initial values by name, of coordinates, rates and constants, in SI units.
+        """
         from rigidsym.page.print_page import print_page
 
-        return print_page(self, self.note(with_kernels=with_kernels).document)
+        return print_page(self, self.note(with_kernels=with_kernels).document, start or {})
 
     def with_notation(self, **choices: Any) -> Motion:
         """The same motion in another notation: `rates`, `vectors`, `body`, `frames`,

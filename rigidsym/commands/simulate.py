@@ -16,6 +16,8 @@ from rigidsym.commands.command import FILE, NAMED_NUMBER, command as make, optio
 from rigidsym.data.writers import check_ending, table_writer
 from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
+from rigidsym.simulation.animation import WRITERS
+from rigidsym.simulation.plot import PICTURES, check_picture
 from rigidsym.simulation.solver import METHODS, OMEGA, no_rotation
 from rigidsym.system.progress import bar
 
@@ -57,6 +59,9 @@ class SimulationOptions:
     seed: int = option("--seed", type=int, default=0, show_default=True, help="Of --ensemble.")
     out: Path | None = option("--out", type=FILE, help="CSV, NPY or Parquet file.")
     plot: Path | None = option("--plot", type=FILE, help="PNG, SVG or PDF picture.")
+    animate: Path | None = option(
+        "--animate", type=FILE, help="GIF, MP4 (needs ffmpeg), or an HTML page that plays."
+    )
 
 
 @make(
@@ -73,6 +78,9 @@ def command(source: str, options: SimulationOptions) -> None:
     """
     if options.out is not None:
         check_ending(options.out)
+    for path, endings in ((options.plot, PICTURES), (options.animate, (*WRITERS, ".html"))):
+        if path is not None:
+            check_picture(path, endings)
     motion = motion_of(read(source))
     start = _start(motion, dict(options.initial))
     if options.ensemble is not None:
@@ -90,12 +98,29 @@ def command(source: str, options: SimulationOptions) -> None:
     _reported(found, options.out)
     if options.plot is not None:
         click.echo(found.plot(options.plot))
+    if options.animate is not None:
+        click.echo(_animated(motion, found, options))
+
+
+def _animated(motion: Motion, found: Trajectory, options: SimulationOptions) -> Path:
+    """The file of the animation."""
+    path = options.animate
+    assert path is not None
+    if path.suffix != ".html":
+        with bar(str(path)) as progress:
+            return found.animate(path, progress)
+    start = dict(options.constants)
+    for k, name in enumerate(found.coordinates):
+        start |= {name: found.q[0, k], f"{name}_dot": found.q_dot[0, k]}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(motion.page(start=start), encoding="utf-8")
+    return path
 
 
 def _ensemble(motion: Motion, start: dict[str, Any], options: SimulationOptions) -> None:
     """Motions from initial values and parameters with normally distributed deviations."""
-    if options.plot is not None:
-        raise click.UsageError("--plot shows one motion; leave --ensemble out")
+    if options.plot is not None or options.animate is not None:
+        raise click.UsageError("--plot and --animate show one motion; leave --ensemble out")
     generator = np.random.default_rng(options.seed)
     given: tuple[dict[str, Any], dict[str, Any]] = (start, dict(options.constants))
     for name, deviation in options.spread:

@@ -190,7 +190,9 @@ class _ScalarWalk:
         if not exponent.is_Rational:
             self.letters.name(node)  # raises: a general power has no name
         if (base.func in FUNCTIONS or is_application(base)) and exponent.is_Integer:
-            return replace(self.expression(base), exponent=int(exponent))
+            call = self.expression(base)
+            assert isinstance(call, FunctionCall)
+            return replace(call, exponent=int(exponent))
         whole = _at_least(Bound.NAME, self.expression(base))
         raised = Numeral(str(exponent.p)) if exponent.is_Integer else _on_a_line(exponent)
         return Power(whole, raised)

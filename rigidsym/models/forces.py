@@ -58,6 +58,12 @@ class Forces:
         """Whether the body and its parts turn about a point at rest."""
         return not self.frame_rate and all(part.rotation is not None for part in self.parts)
 
+    def leave_free(self, model: RotationModel) -> bool:
+        """Whether nothing acts on a body that can turn in every way, and nothing moves with it."""
+        acting = [*self.generalised.values(), *self.torque, *self.frame_rate, *self.parts]
+        acting += [sp.diff(self.potential, q) for q in model.coordinates]
+        return not any(acting) and len(model.coordinates) >= len(OMEGA_BODY)
+
     @property
     def depend_on_time(self) -> bool:
         """Whether the time occurs by itself in what acts, or in a claimed first integral."""

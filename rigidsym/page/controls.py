@@ -52,6 +52,16 @@ class Control:
     def key(self) -> str:
         return f"{self.kind}-{self.place}"
 
+    def started(self, values: Mapping[str, float]) -> Control:
+        """At the value of its name, in SI units, if there is one; an angle within one period."""
+        value = values.get(self.name.replace(" ", "_"))
+        if value is None or self.kind == "parameters":
+            return self
+        start = value / self.factor
+        if self.period:
+            start = (start - self.low) % self.period + self.low
+        return replace(self, start=start, low=min(self.low, start), high=max(self.high, start))
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Group:
@@ -59,6 +69,9 @@ class Group:
 
     title: str
     controls: tuple[Control, ...]
+
+    def started(self, values: Mapping[str, float]) -> Group:
+        return replace(self, controls=tuple(c.started(values) for c in self.controls))
 
 
 def groups_of(

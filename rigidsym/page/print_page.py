@@ -9,7 +9,8 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
+from types import MappingProxyType
 from typing import Any
 
 from rigidsym.formula.tree import NOTHING, Numeral, Symbol
@@ -53,10 +54,16 @@ _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=\w)", re.MULTILINE)
 
 
-def print_page(derivation: Derivation, document: Document) -> str:
-    """The page of a derivation and its note; the same input gives the same bytes."""
+def print_page(
+    derivation: Derivation, document: Document, start: Mapping[str, float] = MappingProxyType({})
+) -> str:
+    """The page of a derivation and its note; the same input gives the same bytes.
+
+    `start` holds initial values by name, of coordinates, rates and constants, in SI units.
+    """
     functions = functions_of(derivation)
     starts = starts_of(derivation.body)
+    starts |= {symbol: start[symbol.name] for symbol in starts if symbol.name in start}
     copies = copies_of(derivation, document)
     printer = PagePrinter(document, copied=copies)
     groups = groups_of(
@@ -66,6 +73,7 @@ def print_page(derivation: Derivation, document: Document) -> str:
         {symbol: start for symbol, start in starts.items() if symbol in functions.symbols},
         flows=bool(functions.integrals),
     )
+    groups = tuple(group.started(start) for group in groups)
     controls = [control for group in groups for control in group.controls]
     stage = stage_of(derivation.model, document.letters)
     in_degrees = any(control.unit == "°" for control in controls)

@@ -12,7 +12,7 @@ from rigidsym.errors import MissingExtra, ModelError
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.simulation.problem import OMEGA, Problem
 from rigidsym.simulation.solver import with_motion
-from rigidsym.simulation.trajectory import Array
+from rigidsym.simulation.trajectory import Array, relative_changes
 
 _ANGLE = 0.05  # radians that the fastest body turns in a step
 
@@ -95,12 +95,14 @@ def simulate_ensemble(
         if progress is not None:
             progress(end / t_end)
     states = np.array(found)
+    momentum = np.linalg.norm(first.omega(states[0]) @ first.inertia, axis=1)
+    changes = relative_changes(first.integrals(times[:, None], states, constants), momentum)
     return Ensemble(
         name=derivation.name,
         names=first.names["y"],
         t=times,
         states=states,
-        drift=_drift(first, states, constants),
+        drift={name: values.max(axis=0) for name, values in changes.items()},
     )
 
 
@@ -137,14 +139,3 @@ def _stepped(
         moved = sum((w * s for w, s in zip(weights, stages, strict=False) if w), start=0 * y)
         stages.append(slopes(t + node * h, y + h * moved))
     return y + h * sum((b * s for b, s in zip(method.B, stages, strict=True) if b), start=0 * y)
-
-
-def _drift(problem: Problem, states: Array, constants: Array) -> dict[str, Array]:
-    names = [integral.name for integral in problem.derivation.first_integrals]
-    if not names:
-        return {}
-    given = (constants,) if problem.given("first_integrals") else ()
-    values = np.asarray(problem.kernels.first_integrals(states, *given))  # (n, m, integrals)
-    size = np.where(values[0] == 0, 1.0, np.abs(values[0]))
-    changes = np.abs(values - values[0]).max(axis=0) / size
-    return {name: changes[:, k] for k, name in enumerate(names)}

@@ -1,54 +1,82 @@
-"""Pictures of a trajectory: coordinates over time, traces on spheres and ellipsoids, drift."""
+"""Pictures of a trajectory: coordinates, traces on spheres and ellipsoids, herpolhodes, drift."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidsym.errors import MissingExtra
+from rigidsym.errors import MissingExtra, ModelError
+
+if TYPE_CHECKING:
+    from rigidsym.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
+PICTURES = (".png", ".svg", ".pdf")
+SPHERE = np.ones(3)  # its semi-axes
+_ONE_ROW = [["q", "axis", "drift"]]
 _ONE_TURN = 360
 _VIEW = (25, -60)  # elevation and azimuth of the eye, degrees
 _SMALLEST = 1e-17  # of a relative change in the picture of the drift
 
 
-def save_plot(
-    path: Path,
-    t: Array,
-    coordinates: Mapping[str, Array],
-    axis: Array,
-    first_integrals: Mapping[str, Array],
-    polhode: tuple[Array, Array] | None = None,
-    *,
-    in_degrees: bool = True,
-) -> Path:
+def save_plot(path: Path, motion: Trajectory) -> Path:
     """One sheet of pictures, PNG, SVG or PDF by the ending; raises MissingExtra.
 
-    Coordinates are in radians, (n,) each; `axis` is the third body axis in space, (n, 3). Of a
-    free body, `polhode` is Ω′, (n, 3), and the semi-axes of the ellipsoid of energy, (3,).
+    Of a free body it shows the polhode on the ellipsoid of energy, and the herpolhode in the
+    invariable plane.
     """
+    check_picture(path, PICTURES)
+    rows = [["q", "q", "axis"], ["polhode", "herpolhode", "drift"]] if motion.is_free else _ONE_ROW
+    figure = figure_class()(figsize=(12, 4 * len(rows)), layout="constrained")
+    panels = figure.subplot_mosaic(
+        rows, per_subplot_kw={("axis", "polhode")[: len(rows)]: {"projection": "3d"}}
+    )
+    angles = {name: motion.q[:, k] for k, name in enumerate(motion.coordinates)}
+    _draw_coordinates(panels["q"], motion.t, angles, in_degrees=motion.is_in_angles)
+    draw_trace(panels["axis"], motion.rotation_matrix[:, :, 2], SPHERE)
+    panels["axis"].set_title("Trace of the third body axis")
+    if motion.is_free:
+        _draw_poinsot(panels["polhode"], panels["herpolhode"], motion)
+    _draw_drift(panels["drift"], motion.t, motion.changes)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=150)
+    return path
+
+
+def check_picture(path: Path, endings: Collection[str]) -> None:
+    """Raises ModelError for a file with another ending."""
+    if path.suffix not in endings:
+        raise ModelError(f"{path}: expected a file that ends in {', '.join(endings)}")
+
+
+def figure_class() -> Any:
+    """Matplotlib's Figure; raises MissingExtra."""
     try:
         from matplotlib.figure import Figure
     except ModuleNotFoundError as error:
         raise MissingExtra("a picture", "plot") from error
-    count = 3 if polhode is None else 4
-    figure = Figure(figsize=(4 * count, 4), layout="constrained")
-    _draw_coordinates(figure.add_subplot(1, count, 1), t, coordinates, in_degrees=in_degrees)
-    sphere = figure.add_subplot(1, count, 2, projection="3d")
-    _draw_trace(sphere, axis, np.ones(3), "Trace of the third body axis")
-    if polhode is not None:
-        ellipsoid = figure.add_subplot(1, count, 3, projection="3d")
-        _draw_trace(ellipsoid, *polhode, "Polhode on the ellipsoid of energy")
-    _draw_drift(figure.add_subplot(1, count, count), t, first_integrals)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=150)
-    return path
+    return Figure
+
+
+def _draw_poinsot(solid: Any, plane: Any, motion: Trajectory) -> None:
+    """Ω′ along the principal axes on the ellipsoid of energy, and Ω seen along L."""
+    moments, axes = np.linalg.eigh(motion.inertia)
+    polhode = motion.angular_velocity_body @ axes
+    draw_trace(solid, polhode, np.sqrt(np.sum(moments * polhode[0] ** 2) / moments), "123")
+    solid.set_title("Polhode on the ellipsoid of energy")
+    rotation, omega = motion.rotation_matrix, motion.angular_velocity_body
+    momentum = rotation[0] @ motion.inertia @ omega[0]
+    across = np.linalg.svd(momentum[None])[2][1:]  # two unit vectors normal to L
+    herpolhode = np.einsum("nij,nj->ni", rotation, omega) @ across.T
+    plane.plot(*herpolhode.T, linewidth=0.8)
+    plane.plot(*herpolhode[0], "o", color="C3", markersize=4)
+    plane.plot(0, 0, "+", color="0.4")
+    plane.set(aspect="equal", xlabel="rad/s", title="Herpolhode in the invariable plane")
 
 
 def _draw_coordinates(
@@ -63,7 +91,7 @@ def _draw_coordinates(
     axes.legend(fontsize="small")
 
 
-def _draw_trace(axes: Any, points: Array, size: Array, title: str) -> None:
+def draw_trace(axes: Any, points: Array, size: Array, names: str = "xyz") -> None:
     """A curve on an ellipsoid of circles; what is behind it is pale."""
     angle = np.linspace(0, 2 * np.pi, 181)
     flat = np.cos(angle), np.sin(angle)
@@ -87,12 +115,11 @@ def _draw_trace(axes: Any, points: Array, size: Array, title: str) -> None:
         _draw_curve(axes, np.array(circle).T * size, eye, size, "0.75", 0.6)
     _draw_curve(axes, points, eye, size, "C0", 1.4)
     axes.scatter(*points[:1].T, color="C3", s=18)
-    for k, name in enumerate("xyz"):
+    for k, name in enumerate(names):
         axes.text(*(1.25 * size[k] * np.eye(3)[k]), name, color="0.4", ha="center", va="center")
     axes.view_init(*_VIEW)
     axes.set_box_aspect(size / size.max(), zoom=1.25)
     axes.set(xlim=(-size[0], size[0]), ylim=(-size[1], size[1]), zlim=(-size[2], size[2]))
-    axes.set_title(title)
     axes.set_axis_off()
 
 
@@ -106,12 +133,11 @@ def _draw_curve(
         axes.plot(*part.T, color=color, linewidth=width, alpha=alpha)
 
 
-def _draw_drift(axes: Any, t: Array, first_integrals: Mapping[str, Array]) -> None:
+def _draw_drift(axes: Any, t: Array, changes: Mapping[str, Array]) -> None:
     """The largest change so far."""
-    for name, values in first_integrals.items():
-        size = abs(float(values[0])) or 1.0
-        changes = np.nan_to_num(np.abs(values - values[0])) / size
-        axes.semilogy(t, np.maximum(np.maximum.accumulate(changes), _SMALLEST), label=name)
+    for name, values in changes.items():
+        largest = np.maximum.accumulate(np.nan_to_num(values))
+        axes.semilogy(t, np.maximum(largest, _SMALLEST), label=name)
     axes.set(xlabel="t in s", ylabel="largest relative change", title="Drift of first integrals")
-    if first_integrals:
+    if changes:
         axes.legend(loc="lower right", fontsize="x-small")

@@ -139,7 +139,7 @@ class Problem:
         self, t: Array, states: Array, ended: str = "", remarks: Sequence[str] = ()
     ) -> Trajectory:
         q, omega = states[:, : self.count], self.omega(states)
-        rates = states[:, self.count :]
+        rates, forces = states[:, self.count :], self.derivation.forces
         if self.is_euler:
             rates = self.kernels.rates_from_angular_velocity_body(q, omega, *self.angles)
         return Trajectory(
@@ -150,20 +150,23 @@ class Problem:
             q_dot=rates,
             angular_velocity_body=omega,
             rotation_matrix=self.rotation(states),
-            first_integrals=self._integrals(states),
+            first_integrals=self.integrals(t, states, self.parameters),
             inertia=self.inertia,
             is_in_angles=set(self.derivation.model.coordinate_units) == {"rad"},
+            is_free=forces is None or forces.leave_free(self.derivation.model),
             ended=ended,
             remarks=tuple(remarks),
         )
 
-    def _integrals(self, states: Array) -> dict[str, Array]:
+    def integrals(self, t: Array, states: Array, constants: Any) -> dict[str, Array]:
+        """The first integrals by name; times broadcast with the states but for their last axis."""
         names = [integral.name for integral in self.derivation.first_integrals]
         if not names:
             return {}
-        constants = self.given("first_integrals")
-        values = self.kernels.first_integrals(states, *([constants] if constants else []))
-        return dict(zip(names, values.T, strict=True))
+        known = {"y": states, "t": t, "parameters": constants}
+        inputs = self.derivation.step("first_integrals").quantity.inputs
+        values = np.asarray(self.kernels.first_integrals(*map(known.get, inputs)))
+        return {name: values[..., k] for k, name in enumerate(names)}
 
 
 def check_names(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,14 +26,24 @@ class Trajectory:
     rotation_matrix: Array  # (n, 3, 3), body to space components
     first_integrals: Mapping[str, Array]  # (n,) each
     inertia: Array  # (3, 3), kg m², about the fixed point in the axes of the body
+    is_free: bool = False  # nothing acts on the body
     ended: str = ""  # why the motion ends before its time, if it does
     is_in_angles: bool = True  # the coordinates, in radians
     remarks: tuple[str, ...] = ()  # such as a pole that was passed
 
     @property
     def drift(self) -> Mapping[str, float]:
-        """The largest change of each first integral, relative to its size where that is not 0."""
-        return {name: _drift(values) for name, values in self.first_integrals.items()}
+        """The largest change of each first integral, relative to its size.
+
+        Of a momentum the size is at least that of the angular momentum, since it may begin at 0.
+        """
+        return {name: float(np.nanmax(values)) for name, values in self.changes.items()}
+
+    @property
+    def changes(self) -> Mapping[str, Array]:
+        """The relative change of each first integral, (n,); NaN at a pole, where rates are."""
+        momentum = self.inertia @ self.angular_velocity_body[0]
+        return relative_changes(self.first_integrals, np.array(np.linalg.norm(momentum)))
 
     def columns(self) -> dict[str, Array]:
         """All of it as named columns: t, the coordinates, their rates, Ω′ and the integrals."""
@@ -53,30 +63,27 @@ class Trajectory:
         return "\n".join(lines)
 
     def plot(self, path: str | Path) -> Path:
-        """A picture of the motion: PNG, SVG or PDF by the ending. Needs Matplotlib."""
+        """Pictures of the motion: PNG, SVG or PDF by the ending. Needs Matplotlib."""
         from rigidsym.simulation.plot import save_plot
 
-        angles = {name: self.q[:, k] for k, name in enumerate(self.coordinates)}
-        axis = self.rotation_matrix[:, :, 2]
-        return save_plot(
-            Path(path),
-            *(self.t, angles, axis, self.first_integrals, self._polhode()),
-            in_degrees=self.is_in_angles,
-        )
+        return save_plot(Path(path), self)
 
-    def _polhode(self) -> tuple[Array, Array] | None:
-        """Ω′ along the principal axes and the semi-axes √(2E/I_k), if the body is free."""
-        if "angular_momentum_squared" not in self.first_integrals:
-            return None
-        moments, axes = np.linalg.eigh(self.inertia)
-        omega = self.angular_velocity_body @ axes
-        return omega, np.sqrt(np.sum(moments * omega[0] ** 2) / moments)
+    def animate(self, path: str | Path, progress: Callable[[float], None] | None = None) -> Path:
+        """An animation of the motion: GIF, or MP4 if ffmpeg is installed. Needs Matplotlib."""
+        from rigidsym.simulation.animation import save_animation
+
+        return save_animation(Path(path), self, progress)
 
     def _repr_pretty_(self, printer: Any, _: bool) -> None:
         printer.text(self.report())
 
 
-def _drift(values: Array) -> float:
-    size = abs(float(values[0])) or 1.0
-    changes = np.abs(values - values[0])
-    return float(np.nanmax(changes)) / size  # NaN where rates are not defined, at a pole
+def relative_changes(integrals: Mapping[str, Array], momentum: Array) -> dict[str, Array]:
+    """Of values over time, (n, ...), by name; `momentum` is |L| at the beginning, (...)."""
+    found = {}
+    for name, values in integrals.items():
+        size = np.abs(values[0])
+        if "momentum_" in name and "squared" not in name:
+            size = np.maximum(size, momentum)
+        found[name] = np.abs(values - values[0]) / np.where(size == 0, 1.0, size)
+    return found

@@ -13,18 +13,19 @@ export function begin() {
   path = [{ q: [...state.q], q_dot: [...state.q_dot] }];
 }
 
-/** y after a time, by the classical Runge-Kutta method. */
-function integrated(y, seconds) {
-  const slope = (values) => kernels.state_derivative(0, values, state.parameters);
+/** y at `time` + `seconds`, by the classical Runge-Kutta method. */
+function integrated(y, time, seconds) {
+  const slope = (values, passed) =>
+    kernels.state_derivative(time + passed, values, state.parameters);
   const along = (values, change, by) => values.map((value, k) => value + by * change[k]);
-  const k1 = slope(y);
-  const k2 = slope(along(y, k1, seconds / 2));
-  const k3 = slope(along(y, k2, seconds / 2));
-  const k4 = slope(along(y, k3, seconds));
+  const k1 = slope(y, 0);
+  const k2 = slope(along(y, k1, seconds / 2), seconds / 2);
+  const k3 = slope(along(y, k2, seconds / 2), seconds / 2);
+  const k4 = slope(along(y, k3, seconds), seconds);
   return y.map((value, k) => value + (seconds / 6) * (k1[k] + 2 * k2[k] + 2 * k3[k] + k4[k]));
 }
 
-function after(start, seconds) {
+function after(start, time, seconds) {
   if (!kernels.state_derivative) {
     state.q = start.q.map((value, k) => value + seconds * start.q_dot[k]);
     state.q_dot = [...start.q_dot];
@@ -32,15 +33,17 @@ function after(start, seconds) {
     return { q: state.q, q_dot: state.q_dot };
   }
   let y = [...start.q, ...start.q_dot];
-  for (let part = 0; part < SLICES; part += 1) y = integrated(y, seconds / SLICES);
+  const slice = seconds / SLICES;
+  for (let part = 0; part < SLICES; part += 1) y = integrated(y, time + part * slice, slice);
   return { q: y.slice(0, start.q.length), q_dot: y.slice(start.q.length) };
 }
 
 /** Put the state at a time, in seconds; false where the motion cannot be continued. */
 export function goTo(time) {
   const whole = Math.floor(time / LAPSE + 1e-9);
-  while (path.length <= whole) path.push(after(path.at(-1), LAPSE));
-  const { q, q_dot } = after(path[whole], Math.max(0, time - whole * LAPSE));
+  while (path.length <= whole) path.push(after(path.at(-1), (path.length - 1) * LAPSE, LAPSE));
+  const { q, q_dot } = after(path[whole], whole * LAPSE, Math.max(0, time - whole * LAPSE));
+  state.t = time;
   state.q = [...q];
   state.q_dot = [...q_dot];
   return [...q, ...q_dot].every(Number.isFinite);

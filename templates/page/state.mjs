@@ -2,7 +2,7 @@
 
 import { kernels, page } from "./generated.mjs";
 
-export const state = { q: [], q_dot: [], parameters: [...page.parameters] };
+export const state = { q: [], q_dot: [], parameters: [...page.parameters], t: 0 };
 for (const { kind, place, start, factor } of page.controls) state[kind][place] = start * factor;
 
 /** The vectors that functions take: those of the state, and y, which holds coordinates and rates. */

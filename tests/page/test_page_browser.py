@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import rigidsym as rs
 from helpers.browser import axe_source, require_chromium
@@ -609,6 +610,26 @@ def test_a_motion_is_integrated_in_the_page_as_by_simulate(tab, tmp_path):
     expected = motion.simulate(initial, {"M": 1.0, **constants}, 4.0, samples=3)
     found = [after[f"q_dot-{k}"] for k in range(3)]
     np.testing.assert_allclose(found, expected.q_dot[-1], rtol=1e-5)
+    assert tab.complaints == []
+
+
+def test_a_page_starts_with_a_motion_and_follows_a_driven_one_in_time(tab, tmp_path):
+    A, C = sp.symbols("A C")
+    model = rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi"))
+    potential = "k*(1 + b*cos(omega*t))*cos(theta)"
+    motion = rs.derive(model, body=rs.principal_moments(A, A, C), potential=potential)
+    start = {"phi": -2.0, "theta": 0.5, "psi": 7.0, "phi_dot": 0.1, "theta_dot": 0.2}
+    start |= {"psi_dot": 30.0}
+    constants = {"A": 1.0, "C": 0.5, "k": 4.0, "b": 0.5, "omega": 6.0, "M": 1.0}
+    opened(tab, motion.page(start=start | constants), tmp_path)
+    before = tab.run(STATE)
+    assert before["q-1"] == pytest.approx(0.5)
+    assert before["q_dot-2"] == pytest.approx(30.0)
+    tab.run(f"({GO_TO})(3)")
+    after = tab.run(STATE)
+    expected = motion.simulate(start, constants, 3.0, samples=3)
+    found = [after[f"q_dot-{k}"] for k in range(3)]
+    np.testing.assert_allclose(found, expected.q_dot[-1], atol=1e-4)
     assert tab.complaints == []
 
 

@@ -108,6 +108,12 @@ def test_steps_in_the_group_keep_the_length_and_the_momentum_to_rounding():
     assert found.drift["energy"] < 1e-11
 
 
+def test_the_drift_of_a_momentum_that_begins_at_rounding_is_relative_to_the_whole():
+    values = dict(zip(BRICK, (1.0, 1.5, 2.1), strict=True))
+    found = free().simulate(start_of((0.02, 2.0, 0.0)), values, 20.0, method="exact", samples=101)
+    assert found.drift["angular_momentum_3"] < 1e-13
+
+
 def test_a_heavy_top_turns_alike_in_every_form_of_its_equations():
     A, C = sp.symbols("A C")
     body = rs.principal_moments(A, A, C)

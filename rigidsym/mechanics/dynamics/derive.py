@@ -298,7 +298,7 @@ class LagrangeEquations(Flow):
     def consequences(self) -> Iterator[Consequence]:
         yield from super().consequences()
         k = self._single
-        if k is None or self.is_free or not self.driving.is_zero():
+        if k is None or self.forces.leave_free(self.model) or not self.driving.is_zero():
             return  # the free body is known; in a driving potential the energy is not constant
         q = self.model.coordinates
         momenta = self.present.matrix(self.work.momenta)

@@ -36,7 +36,7 @@ from rigidsym.mechanics.quantities.arguments import (
     arguments_of_motion,
 )
 from rigidsym.models.body import RigidBody
-from rigidsym.models.forces import OMEGA_BODY, Forces
+from rigidsym.models.forces import Forces
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
 
@@ -125,18 +125,10 @@ class Flow:
                 left=claims.DRIVING,
                 value=self.present.matrix(self.driving)[0],
             )
-        if self.is_free:
+        if self.forces.leave_free(self.model):
             still = dict.fromkeys(self.arguments["torque"].symbols, sp.S.Zero)
             slopes = self.angular_acceleration_from_torque().expression.xreplace(still)
             yield from of_free_body(self.body.inertia, list(slopes), self.model.name)
-
-    @property
-    def is_free(self) -> bool:
-        """Whether nothing acts on a body that can turn in every way, and nothing moves with it."""
-        forces = self.forces
-        acting = [*forces.generalised.values(), *forces.torque, *forces.frame_rate, *forces.parts]
-        acting += [sp.diff(forces.potential, q) for q in self.model.coordinates]
-        return not any(acting) and len(self.model.coordinates) >= len(OMEGA_BODY)
 
     def in_state(self, value: sp.Expr) -> sp.Expr:
         """The value with Ω′ written in the state."""
