@@ -9,7 +9,17 @@ import sympy as sp
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import PLUS, Formula, Numeral, Symbol, equal, indexed, joined, row
+from rigidsym.formula.tree import (
+    PLUS,
+    Formula,
+    Numeral,
+    Symbol,
+    bracketed,
+    equal,
+    indexed,
+    joined,
+    row,
+)
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import TIME
@@ -100,7 +110,7 @@ def sum_of_turns(model: RotationModel, letters: Letters) -> Formula:
     rates = [turn.angle.diff(TIME) for turn in model.turns]
     axes = axes_of_turns(model, letters)
     terms = [
-        row(formula_of(rate, letters), axis)
+        row(bracketed(formula_of(rate, letters)), axis)
         for rate, axis in zip(rates, axes, strict=True)
         if rate != 0
     ]

@@ -1,0 +1,408 @@
+"""Printed formulas and generated functions, read back as numbers with 50 digits.
+
+These readers know nothing of the package: they read LaTeX, MathML, Python, C and JavaScript as a
+person does, and compute with what they find.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import unicodedata
+from collections.abc import Callable, Iterator
+from math import factorial
+from typing import Any
+from xml.etree import ElementTree
+
+from helpers.witness import hat, mp, unhat
+
+Value = Any  # a number of mpmath, or a matrix; a vector is one column
+Values = dict[str, Value]  # by names as `Formula` reads them: "theta", "v_1", "dot bold q"
+
+_IGNORED = re.compile(
+    r"\\(?:displaystyle|left|right|[bB]igg?[lr]?|quad)(?![A-Za-z])|\\[,;!:]|\{\}|\s+"
+)
+_SKIP = re.compile(r"\\\\\[\d+pt\]")  # to the next row, with room
+_TOKEN = re.compile(r"\\(?:begin|end)\{\w+\}|\\\\|\\[A-Za-z]+|\d+|\S")
+_FUNCTIONS: dict[str, Callable[[Any], Any]] = {
+    rf"\{name}": getattr(mp, name) for name in ("sin", "cos", "tan", "cot", "sec", "csc")
+}
+_FACES = {r"\mathbf": "bold ", r"\dot": "dot ", r"\ddot": "ddot "}
+_ENDS = {"", "}", ")", "&", r"\\", "+", "-", ",", r"\end{pmatrix}"}
+
+
+class UnreadError(Exception):
+    """A formula with a name or a sign that has no value."""
+
+
+def equations(latex: str, known: Values) -> Iterator[list[Value | None]]:
+    """Of each equation in a display: the values of its sides, None for one that cannot be read.
+
+    Lines that go on, and lines that begin with a sign of equality, belong to the one before.
+    """
+    for row in _rows(latex):
+        yield [_read(side, known) for side in _outside(row, "=")]
+
+
+def define(latex: str, known: Values) -> None:
+    """Adds the names that stand alone on the left of equations: k_1, e_z."""
+    for row in _rows(latex):
+        head, *_, last = _outside(row, "=")
+        try:
+            formula = Formula(head, known)
+            name = formula._name()
+            value = None if formula.tokens or name in known else _read(last, known)
+        except UnreadError:
+            continue
+        if value is not None:
+            known[name] = value
+
+
+def _rows(latex: str) -> Iterator[str]:
+    """The equations of a display, each on one line."""
+    inside = re.sub(r"^\\boxed\{(.*)\}$", r"\1", _clean(latex))
+    inside = re.sub(r"\\(begin|end)\{(?:align\*|gathered)\}", r"\\\1{aligned}", inside)
+    inside = inside.removeprefix(r"\begin{aligned}").removesuffix(r"\end{aligned}")
+    found: list[str] = []
+    for line in _outside(inside, r"\\", r"\qquad"):
+        parts = _outside(line, "&")
+        if parts[0].strip() or not found:
+            found.append("")
+        found[-1] += " ".join(parts)
+    return iter(found)
+
+
+def _clean(text: str) -> str:
+    """Without what only sets room and size."""
+    return _IGNORED.sub(" ", _SKIP.sub(r"\\\\", text)).replace("boldsymbol", "mathbf").strip()
+
+
+def _outside(text: str, *signs: str) -> list[str]:
+    """The parts between signs outside all environments, and outside brackets for one "="."""
+    parts, depth = [""], 0
+    brackets = ("{(", "})") if signs == ("=",) else ("{", "}")
+    for token in _TOKEN.findall(text):
+        depth += token.startswith(r"\begin") or token in brackets[0]
+        depth -= token.startswith(r"\end") or token in brackets[1]
+        if token in signs and not depth:
+            parts.append("")
+        else:
+            parts[-1] += f"{token} "
+    return parts
+
+
+def _read(side: str, known: Values) -> Value | None:
+    try:
+        return Formula(side, known).value()
+    except UnreadError:
+        return None
+
+
+class Formula:
+    """One side of an equation in LaTeX."""
+
+    def __init__(self, text: str, known: Values) -> None:
+        self.tokens: list[str] = _TOKEN.findall(_IGNORED.sub(" ", _SKIP.sub(r"\\\\", text)))
+        self.known = known
+
+    def value(self) -> Value:
+        found = self._sum()
+        if self.tokens:
+            raise UnreadError(f"{' '.join(self.tokens[:5])} is left over")
+        return found
+
+    @property
+    def _next(self) -> str:
+        return self.tokens[0] if self.tokens else ""
+
+    def _take(self, expected: str = "") -> str:
+        if not self.tokens or (expected and self._next != expected):
+            raise UnreadError(f"{self._next!r} instead of {expected!r}")
+        return self.tokens.pop(0)
+
+    def _has(self, token: str) -> bool:
+        return self._next == token and bool(self.tokens.pop(0))
+
+    def _sum(self) -> Value:
+        found = -1 * self._product() if self._has("-") else self._product()
+        while self._next in ("+", "-"):
+            found += (-1 if self._take() == "-" else 1) * self._product()
+        return found
+
+    def _product(self) -> Value:
+        found = self._factor()
+        while self._next not in _ENDS:
+            if self._has(r"\times"):
+                found = hat(found) * self._factor()
+            elif self._has("/"):
+                found = found / self._factor()
+            elif self._has(r"\cdot"):
+                found = (found.T * self._factor())[0]
+            else:
+                found = found * self._factor()
+        return found
+
+    def _factor(self) -> Value:
+        found = self._atom()
+        while self._has("^"):
+            exponent = "".join(self._group())
+            found = found.T if exponent == r"\mathsfT" else found ** int(exponent)
+        return found
+
+    def _group(self) -> list[str]:
+        """The tokens of one argument, without braces."""
+        if not self._has("{"):
+            token = self._take()
+            return [token, self._take()] if token == r"\mathsf" else [token]
+        found, depth = [], 1
+        while depth:
+            found.append(self._take())
+            depth += (found[-1] == "{") - (found[-1] == "}")
+        return found[:-1]
+
+    def _inside(self) -> Value:
+        return Formula(" ".join(self._group()), self.known).value()
+
+    def _atom(self) -> Value:
+        token = self._next
+        if token.isdigit():
+            return mp.mpf(self._take())
+        if token in ("(", "{"):
+            self._take()
+            found = self._sum()
+            self._take(")" if token == "(" else "}")
+            return found
+        if token == r"\frac":
+            return self._fraction()
+        if token == r"\sqrt":
+            self._take()
+            return mp.sqrt(self._inside())
+        if token in _FUNCTIONS:
+            return self._called(_FUNCTIONS[self._take()])
+        if token == r"\begin{pmatrix}":
+            return self._matrix()
+        name = self._name()
+        if name == "bold C":
+            is_inverse = self._has("^") and self._group() == ["-", "1"]
+            matrix = self._atom()
+            return unhat(matrix) if is_inverse else hat(matrix)
+        if self.tokens[:2] == ["^", "+"] or self.tokens[:4] == ["^", "{", "+", "}"]:
+            self._take()
+            name += "".join(self._group())
+        return self._known(name)
+
+    def _known(self, name: str) -> Value:
+        if name not in self.known and name[:2] in ("s_", "c_"):  # of an angle, in wide matrices
+            angle = Formula(name[2:], self.known).value()
+            return mp.sin(angle) if name[0] == "s" else mp.cos(angle)
+        if name not in self.known:
+            raise UnreadError(name)
+        return self.known[name]
+
+    def _fraction(self) -> Value:
+        self._take()
+        above, below = self._group(), self._group()
+        if above and above[0] in ("d", r"\partial"):
+            plain = (re.sub(r"\\math\w+|[{}\\]", "", "".join(part)) for part in (above, below))
+            return self._known("/".join(plain))
+        one, two = (Formula(" ".join(part), self.known).value() for part in (above, below))
+        return one / two
+
+    def _called(self, function: Callable[[Any], Any]) -> Value:
+        """A power of a function; 2φ needs no brackets."""
+        exponent = int("".join(self._group())) if self._has("^") else 1
+        is_multiple = self._next.isdigit()
+        argument = self._atom()
+        return function(argument * self._atom() if is_multiple else argument) ** exponent
+
+    def _matrix(self) -> Value:
+        self._take()
+        rows: list[list[Value]] = [[]]
+        while not self._has(r"\end{pmatrix}"):
+            if self._has(r"\\"):
+                rows.append([])
+            elif not self._has("&"):
+                rows[-1].append(self._sum())
+        return mp.matrix(rows)
+
+    def _name(self) -> str:
+        """A symbol: its face and dots, its letter, its prime, its index."""
+        token = self._take()
+        if token in _FACES:
+            name = _FACES[token] + Formula(" ".join(self._group()), {})._name()
+        elif re.fullmatch(r"\\?[A-Za-z]+|1", token):
+            name = token.lstrip("\\")
+        else:
+            raise UnreadError(token)
+        prime = "'" if self._has("'") else ""
+        index = "_" + "".join(self._group()) if self._has("_") else ""
+        return name + ("'" if prime or self._has("'") else "") + index
+
+
+# MathML
+
+_SIGNS = {"−": "-", "×": r"\times", "·": r"\cdot", "′": "'", "∂": r"\partial"}
+_DOTS = {"˙": r"\dot", "¨": r"\ddot"}
+_NAMED = {name.lstrip("\\") for name in _FUNCTIONS}
+
+
+def latex_of(mathml: str) -> str:
+    """A `math` element in the LaTeX that `Formula` reads."""
+    return _spelt(ElementTree.fromstring(mathml.replace("&ApplyFunction;", "")))
+
+
+def _spelt(element: ElementTree.Element) -> str:
+    tag = element.tag.rpartition("}")[2]
+    parts = [_spelt(child) for child in element]
+    match tag, parts:
+        case (("mi" | "mn" | "mo" | "mtext"), _):
+            return _letters(element.text or "")
+        case "mspace", _:
+            return r" \qquad " if element.get("width") == "2em" else ""
+        case "mfrac", (above, below):
+            return rf"\frac{{{above}}}{{{below}}}"
+        case "msqrt", _:
+            return rf"\sqrt{{{' '.join(parts)}}}"
+        case "mover", (base, accent):
+            return f"{_DOTS.get(accent, accent)}{{{base}}}"
+        case "msub", (base, index):
+            return f"{base}_{{{index}}}"
+        case "msubsup", (base, index, above):
+            return f"{base}{above}_{{{index}}}"
+        case "msup", (base, exponent):
+            base = f"{{{base}}}" if element[0].tag == "mrow" else base
+            if exponent.startswith("'"):
+                base, exponent = f"{base}'", exponent[1:].strip()
+            return f"{base}^{{{exponent}}}" if exponent else base
+        case "mtr", _:
+            return " & ".join(parts)
+        case "mtable", _:
+            rows = r" \\ ".join(parts)
+            return rf"\begin{{aligned}}{rows}\end{{aligned}}"
+    if tag == "mrow" and [child.tag for child in element] == ["mo", "mtable", "mo"]:
+        return parts[1].replace("{aligned}", "{pmatrix}")
+    return " ".join(parts)
+
+
+def _letters(text: str) -> str:
+    if text in _NAMED:
+        return rf"\{text} "
+    return "".join(map(_letter, text))
+
+
+def _letter(character: str) -> str:
+    plain = unicodedata.normalize("NFKD", character) if character.isalnum() else character
+    name = unicodedata.name(plain[0], "")
+    found = f"\\{name.rpartition(' ')[2].lower()} " if name.startswith("GREEK") else plain
+    if "CAPITAL" in name and name.startswith("GREEK"):
+        found = f"\\{found[1:].capitalize()}"
+    style = unicodedata.name(character, "")
+    if "MATHEMATICAL BOLD" in style:
+        return rf"\mathbf{{{found}}}"
+    if "SANS-SERIF" in style:
+        return rf"\mathsf {found}"
+    return _SIGNS.get(character, found)
+
+
+# functions in Python, C and JavaScript
+
+_CALLED: dict[str, Callable[..., Any]] = {
+    **{name: getattr(mp, name) for name in ("sin", "cos", "sqrt", "atan2")},
+    **dict.fromkeys(("abs", "fabs"), abs),
+    **dict.fromkeys(("or_nan", "_or_nan", "_or_nan_scalar"), lambda value, *_: value),
+    **dict.fromkeys(("sharp", "_sharp"), lambda cosine, _: cosine),
+    "_cos": mp.cos,
+    "_sin": mp.sin,
+    "_sin_cos": lambda angle: [mp.sin(angle), mp.cos(angle)],
+    **dict.fromkeys(
+        ("_entire", "_entire_scalar"), lambda x, *orders: [entire(k, x) for k in orders]
+    ),
+}
+
+
+def entire(order: int, square: Value) -> Value:
+    """c_k of n²: c0 = cos n, c1 = sin n/n, c_(k+2) = (1/k! - c_k)/n²."""
+    n = mp.sqrt(square)
+    found = [mp.cos(n), mp.sin(n) / n]
+    for k in range(order - 1):
+        found.append((1 / mp.mpf(factorial(k)) - found[k]) / square)
+    return found[order]
+
+
+def computed(node: ast.expr, known: Values) -> Value:
+    """An expression of Python; those of C and JavaScript are no different here."""
+    match node:
+        case ast.Constant(value=int(value) | float(value)):
+            return mp.mpf(value)
+        case ast.Constant(value=None) | ast.Name(id="null" | "NULL"):
+            return None
+        case ast.Name(id=name):
+            return known[name]
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return -computed(operand, known)
+        case ast.BinOp(left=left, op=op, right=right):
+            one, two = computed(left, known), computed(right, known)
+            acts: dict[type, Callable[[Value, Value], Value]] = {
+                ast.Add: lambda a, b: a + b,
+                ast.Sub: lambda a, b: a - b,
+                ast.Mult: lambda a, b: a * b,
+                ast.Div: lambda a, b: a / b,
+            }
+            return acts[type(op)](one, two)
+        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name), args=arguments):
+            whole = (
+                a.value if isinstance(a, ast.Constant) else computed(a, known) for a in arguments
+            )
+            return _CALLED[name](*whole)
+        case ast.Tuple(elts=parts):
+            return [computed(part, known) for part in parts]
+    raise UnreadError(ast.unparse(node))
+
+
+def python_function(source: str, name: str, known: Values) -> list[Value]:
+    """What a function of a NumPy module returns, entry by entry: rows are joined."""
+    function = next(f for f in ast.parse(source).body if getattr(f, "name", "") == name)
+    body = function.body[-1].body if isinstance(function.body[-1], ast.Try) else function.body
+    known = dict(known)
+    for statement in body:
+        if isinstance(statement, ast.Assign):
+            value, target = computed(statement.value, known), statement.targets[0]
+            names = [part.id for part in getattr(target, "elts", [target])]
+            known |= zip(names, value if isinstance(target, ast.Tuple) else [value], strict=True)
+        elif isinstance(statement, ast.Return):
+            found = computed(statement.value, known)
+            found = found if isinstance(found, list) else [found]
+            return [x for row in found for x in (row if isinstance(row, list) else [row])]
+    raise UnreadError(f"{name} returns nothing")
+
+
+_C_CALL = re.compile(r"beyond \|= (sin_cos|entire)\(far, (.+), (?:&(\w+), &(\w+)|(\w+))\)")
+_STORED = re.compile(r"(?:(\w+)\[([\w +]*)\]|const \[(.*)\]|(?:const )?(?:double )?(\w+)) = (.+)")
+
+
+def braced_function(source: str, head: str, known: Values) -> list[Value]:
+    """What a function of C or JavaScript stores in `out`; `known` holds its inputs by name."""
+    inside = source.partition(head)[2].partition("{")[2].partition("\n}")[0]
+    known, out = dict(known), {}
+    for statement in (" ".join(part.split()) for part in inside.split(";")):
+        called, stored = _C_CALL.fullmatch(statement), _STORED.fullmatch(statement)
+        if called:
+            value = computed(ast.parse(called[2], mode="eval").body, known)
+            if called[1] == "entire":
+                known[called[5]] = value
+            else:
+                known[called[3]], known[called[4]] = mp.sin(value), mp.cos(value)
+        elif stored and not re.match(r"uint|\w+\[\w*_at", stored[5]) and "double " not in stored[5]:
+            array, index, several, name, text = stored.groups()
+            element = re.fullmatch(r"(_entire_\w+)\[(\d+)\]", text)
+            if element:
+                known[name] = entire(int(element[2]), known[element[1]])
+                continue
+            value = computed(ast.parse(text, mode="eval").body, known)
+            if array == "out":
+                out[int(index.replace("at", "").replace("+", "").strip() or 0)] = value
+            elif several:
+                known |= zip(several.split(", "), value, strict=True)
+            else:
+                known[name] = value
+    return [out[place] for place in sorted(out)]

@@ -1,0 +1,240 @@
+"""What is printed is what was proved: formulas and functions, read back at 50 digits.
+
+Small readers that share no code with the package read the LaTeX and the MathML of the notes, and
+the functions in Python, C and JavaScript.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from typing import Any
+
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+from helpers.reading import (
+    Values,
+    braced_function,
+    define,
+    equations,
+    latex_of,
+    python_function,
+)
+from helpers.witness import TOLERANCE, evaluate, mp
+from rigidsym.models.rotation_text import rotation_from
+
+VECTORS = {  # v, as the notes call it
+    "quaternion": "x y z",
+    "cayley_klein": "d c b",
+    "axis_angle": "e_1 e_2 e_3",
+    "rotation_vector": "v_1 v_2 v_3",
+}
+UNIT = {"cayley_klein": 4, "axis_angle": 3}  # coordinates of length one
+ROTATIONS = (  # one of each kind
+    *("ZXZ", "xyz", "quaternion", "cayley_klein", "axis_angle", "rotation_vector", "davenport"),
+    *("z(2*phi - psi) x(theta) z(psi/3)", "z(phi) [1,1,0](theta) x(pi/4)"),
+)
+SYMBOLS = {  # of results, as the reader names them
+    "rotation_matrix": "bold R",
+    "rotation_rate": "dR/dt",
+    "angular_velocity_space": "bold Omega",
+    "angular_velocity_body": "bold Omega'",
+    "rate_matrix_space": "bold W",
+    "rate_matrix_body": "bold W'",
+    "angular_acceleration_space": "dOmega/dt",
+}
+NEAR = mp.mpf(10) ** -14  # where the square root of two is printed as a double
+
+
+class Printed:
+    """A motion, a point in its coordinates, and what each quantity is worth there."""
+
+    def __init__(self, text: str) -> None:
+        self.motion = rs.derive(rotation_from(text))
+        self.point = self._point(text)
+        self.expected = {
+            step.quantity.name: evaluate(self.motion.spelled(step.expression), self.point)
+            for step in self.motion.steps
+        }
+        self.known: Values = {"pi": mp.pi, "bold 1": mp.eye(3)}
+        for symbol, value in self.point.items():
+            self.known[_name(symbol)] = value
+        for name, head in SYMBOLS.items():
+            self.known[head] = self.expected[name]
+        for frame, prime in (("space", ""), ("body", "'")):
+            inverse = self.expected.get(f"inverse_rate_matrix_{frame}")
+            if inverse is not None:
+                self.known[f"bold W{prime}+"] = inverse
+        coordinates = self.motion.model.coordinates
+        rates = mp.matrix([self.known["dot " + _name(q)] for q in coordinates])
+        if text != "quaternion":  # of which |q| may change
+            self.known["dot bold q"] = rates
+        self.known["ddot bold q"] = mp.matrix([self.known["ddot " + _name(q)] for q in coordinates])
+        for symbol, name in (("R", "rotation_matrix"), ("W", "rate_matrix_space")):
+            self._add_slopes(symbol, name)
+        self._add_slopes("W'", "rate_matrix_body")
+        if text in VECTORS:
+            self._add_vectors(VECTORS[text].split())
+
+    def _point(self, text: str) -> dict[sp.Expr, Any]:
+        size = len(self.motion.model.coordinates)
+        q, rates, seconds = (
+            mp.matrix([mp.mpf((7 * k + 3 * n) % 11 + 1) / 17 for k in range(size)])
+            for n in (1, 2, 4)
+        )
+        count = UNIT.get(text, 0)
+        if count:
+            self._on_sphere(q, rates, seconds, count)
+        found: dict[sp.Expr, Any] = {}
+        for group, values in zip(self.motion.arguments, (q, rates, seconds), strict=False):
+            found |= zip(group.symbols, values, strict=True)
+        found |= zip(self.motion.model.constants, (mp.mpf(3) / 5, mp.mpf(4) / 5), strict=False)
+        for frame in ("space", "body"):
+            expression = self.motion.step(f"angular_velocity_{frame}").expression
+            values = evaluate(self.motion.spelled(expression), found)
+            found |= zip(self.motion.argument(f"omega_{frame}").symbols, values, strict=True)
+        return found
+
+    @staticmethod
+    def _on_sphere(q: Any, rates: Any, seconds: Any, count: int) -> None:
+        """|q| = 1, q·q̇ = 0 and q·q̈ = -q̇², for the first coordinates."""
+        length = mp.norm(q[:count])
+        for k in range(count):
+            q[k] /= length
+        for vector, wanted in (
+            (rates, lambda: 0),
+            (seconds, lambda: -(mp.norm(rates[:count]) ** 2)),
+        ):
+            off = mp.fdot(q[:count], vector[:count]) - wanted()
+            for k in range(count):
+                vector[k] -= off * q[k]
+
+    def _add_vectors(self, names: list[str]) -> None:
+        v, moving, second = (
+            mp.matrix([self.known[dots + name] for name in names]) for dots in ("", "dot ", "ddot ")
+        )
+        self.known |= {"bold v": v, "dot bold v": moving, "ddot bold v": second}
+        self.known["n"] = mp.norm(v)
+        self.known["dot n"] = (v.T * moving)[0] / mp.norm(v)
+
+    def _add_slopes(self, symbol: str, name: str) -> None:
+        """∂M/∂q for each coordinate, and dM/dt."""
+        matrix = self.motion.spelled(self.motion.step(name).expression)
+        total = 0 * self.expected[name]
+        for q in self.motion.model.coordinates:
+            slope = evaluate(sp.diff(matrix, q), self.point)
+            self.known[f"partial{symbol}/partial{_name(q)}"] = slope
+            total += slope * self.known["dot " + _name(q)]
+        self.known.setdefault(f"d{symbol}/dt", total)
+
+    def check(self, name: str, latex: str, known: Values) -> None:
+        """Each side that can be read is the quantity; of entries, each is its own.
+
+        The last side must be readable.
+        """
+        expected = self.expected[name]
+        found = list(equations(latex, known))
+        if len(found) == 1:
+            *others, last = found[0]
+            assert last is not None, f"cannot read {latex}"
+            for side in (last, *(side for side in others if side is not None)):
+                assert _distance(side, expected) < TOLERANCE, latex
+        else:
+            entries = mp.matrix([sides[-1] for sides in found])
+            assert _distance(entries, mp.matrix(list(expected))) < TOLERANCE, latex
+
+
+def _name(symbol: sp.Expr) -> str:
+    """As the reader names it: phi, dot v_1, Omega'_2."""
+    order = int(symbol.derivative_count) if isinstance(symbol, sp.Derivative) else 0
+    plain = str(symbol.expr if order else symbol).removesuffix("(t)")
+    base, body, index = re.fullmatch(r"([A-Za-z]+)(_body)?_?(\d*)", plain).groups()
+    dots = ("", "dot ", "ddot ")[order]
+    return dots + base + ("'" if body else "") + (f"_{index}" if index else "")
+
+
+def _components(group: str, motion: rs.Motion) -> list[str]:
+    """How the modules call the components of an argument."""
+    if group.startswith("omega"):
+        return [f"{group}_{k}" for k in (1, 2, 3)]
+    if group == "parameters":
+        return [str(symbol) for symbol in motion.model.constants]
+    return [str(q).replace("(t)", group[1:]) for q in motion.model.coordinates]
+
+
+def _distance(one: Any, two: Any) -> Any:
+    return mp.norm(mp.matrix([one - two]) if not isinstance(one, mp.matrix) else one - two, 1)
+
+
+printed = cache(Printed)
+
+
+@pytest.mark.parametrize("text", ["ZXZ", "cayley_klein", "davenport"])
+def test_each_equation_in_latex(text):
+    one = printed(text)
+    for name in one.expected:
+        one.check(name, one.motion.latex(name), one.known)
+
+
+def displays_in_latex(note: str) -> Iterator[tuple[str, str]]:
+    """Each display with the name of its result, if it is one."""
+    kinds = r"\\begin\{resultof\}\{\w+:(\w+)\}(.*?)\\end\{resultof\}|\\\[\n(.*?)\n\\\]"
+    several = (
+        r"(?:\\boxed\{)?(\\begin\{align\*\}.*?)(?:\\numbered\{\w+:(\w+)\}\s*)?\\end\{align\*\}"
+    )
+    for found in re.finditer(f"{kinds}|{several}", note, re.DOTALL):
+        name, result, plain, lines, label = found.groups(default="")
+        yield name or label, result or plain or rf"{lines}\end{{align*}}"
+
+
+def displays_in_html(note: str) -> Iterator[tuple[str, str]]:
+    kinds = r'<div class="equation"(?: id="(\w+)")?.*?(<math [^>]*display="block".*?</math>)'
+    for name, mathml in re.findall(kinds, note, re.DOTALL):
+        yield name, latex_of(mathml)
+
+
+@pytest.mark.parametrize("form", ["latex", "html"])
+@pytest.mark.parametrize("text", ROTATIONS)
+def test_displays_of_the_note(text, form):
+    one = printed(text)
+    note = one.motion.note(with_kernels=False)
+    read = displays_in_latex(note.latex()) if form == "latex" else displays_in_html(note.html())
+    displays = list(read)
+    assert {name for name, _ in displays} >= one.expected.keys()
+    known = dict(one.known)
+    for _, display in displays:
+        define(display, known)
+    for name, display in displays:
+        if name in one.expected:
+            one.check(name, display, known)
+        else:
+            for head, *_, last in (e for e in equations(display, known) if len(e) > 1):
+                same_kind = isinstance(head, mp.matrix) == isinstance(last, mp.matrix)
+                if head is not None and last is not None and same_kind:
+                    assert _distance(head, last) < TOLERANCE, display
+
+
+@pytest.mark.parametrize("text", ROTATIONS)
+def test_functions_in_three_languages(text):
+    one = printed(text)
+    inputs = {
+        component: one.point[symbol]
+        for group in one.motion.arguments
+        for component, symbol in zip(
+            _components(group.name, one.motion), group.symbols, strict=True
+        )
+    }
+    sources = {target: one.motion.kernels(target).source for target in ("numpy", "c", "javascript")}
+    for name, expected in one.expected.items():
+        read = [
+            python_function(sources["numpy"], f"_{name}", inputs),
+            python_function(sources["numpy"], f"{name}_scalar", inputs),
+            braced_function(sources["c"], f"evaluate_{name}(", inputs),
+            braced_function(sources["javascript"], f"function _{name}(", inputs),
+        ]
+        limit = NEAR if "sqrt" in str(one.motion.step(name).expression) else TOLERANCE
+        for found in read:
+            assert _distance(mp.matrix(found), mp.matrix(list(expected))) < limit
