@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rigidsym.errors import MissingTool
-from rigidsym.simulation.plot import SPHERE, Array, check_picture, draw_trace, figure_class
-
-if TYPE_CHECKING:
-    from rigidsym.simulation.trajectory import Trajectory
+from rigidsym.simulation.plot import SPHERE, check_picture, draw_trace, figure_class
+from rigidsym.simulation.samples import Array, Samples
 
 WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
 _FRAMES_PER_SECOND = 15
@@ -23,7 +21,7 @@ _COLOURS = ("C1", "C1", "C2", "C2", "C0", "C0")  # of opposite faces, so that sp
 
 
 def save_animation(
-    path: Path, motion: Trajectory, progress: Callable[[float], None] | None = None
+    path: Path, motion: Samples, progress: Callable[[float], None] | None = None
 ) -> Path:
     """GIF or MP4 by the ending, in real time if it takes 4 to 12 seconds.
 

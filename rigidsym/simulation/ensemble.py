@@ -11,8 +11,8 @@ import numpy as np
 from rigidsym.errors import MissingExtra, ModelError
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.simulation.problem import OMEGA, Problem
+from rigidsym.simulation.samples import Array, relative_changes
 from rigidsym.simulation.solver import with_motion
-from rigidsym.simulation.trajectory import Array, relative_changes
 
 _ANGLE = 0.05  # radians that the fastest body turns in a step
 

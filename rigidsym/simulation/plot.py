@@ -4,17 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rigidsym.errors import MissingExtra, ModelError
-
-if TYPE_CHECKING:
-    from rigidsym.simulation.trajectory import Trajectory
-
-Array = NDArray[np.float64]
+from rigidsym.simulation.samples import Array, Samples
 
 PICTURES = (".png", ".svg", ".pdf")
 SPHERE = np.ones(3)  # its semi-axes
@@ -24,7 +19,7 @@ _VIEW = (25, -60)  # elevation and azimuth of the eye, degrees
 _SMALLEST = 1e-17  # of a relative change in the picture of the drift
 
 
-def save_plot(path: Path, motion: Trajectory) -> Path:
+def save_plot(path: Path, motion: Samples) -> Path:
     """One sheet of pictures, PNG, SVG or PDF by the ending; raises MissingExtra.
 
     Of a free body it shows the polhode on the ellipsoid of energy, and the herpolhode in the
@@ -63,7 +58,7 @@ def figure_class() -> Any:
     return Figure
 
 
-def _draw_poinsot(solid: Any, plane: Any, motion: Trajectory) -> None:
+def _draw_poinsot(solid: Any, plane: Any, motion: Samples) -> None:
     """Ω′ along the principal axes on the ellipsoid of energy, and Ω seen along L."""
     moments, axes = np.linalg.eigh(motion.inertia)
     polhode = motion.angular_velocity_body @ axes

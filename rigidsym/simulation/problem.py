@@ -14,7 +14,8 @@ import sympy as sp
 from rigidsym.errors import ModelError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.simulation.trajectory import Array, Trajectory
+from rigidsym.simulation.samples import Array
+from rigidsym.simulation.trajectory import Trajectory
 
 POLE = 1e-3  # of the singularity margin: nearer to a pole, coordinates lose digits
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
