@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Callable
 from difflib import unified_diff
 from pathlib import Path
@@ -15,6 +16,9 @@ from helpers.motions import derived
 # The same examples in every run: a suite that is red today was red yesterday.
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")
+
+# Derivations that are kept fill the memory; looking through them often finds no garbage.
+gc.set_threshold(100_000)
 
 GOLDEN = Path(__file__).parent / "golden"
 

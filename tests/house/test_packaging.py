@@ -59,13 +59,13 @@ def test_the_sdist_runs_in_place(distributions, tmp_path):
 
 def test_the_editable_install_finds_the_checkout(tmp_path):
     home = tmp_path / "venv"
-    venv.create(home, with_pip=True)
+    venv.create(home)
     python = home / "bin" / "python"
     libraries = sysconfig.get_path("purelib", vars={"base": str(home), "platbase": str(home)})
     # The dependencies are those of the running interpreter; only rigidsym itself is installed.
     inherited = "\n".join(path for path in sys.path if path.endswith("-packages"))
     (Path(libraries) / "inherited.pth").write_text(inherited + "\n")
-    install = ("-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "-e", ROOT)
-    call(python, *install, cwd=tmp_path)
+    pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet")
+    call(*pip, "--no-deps", "--no-build-isolation", "-e", ROOT, cwd=tmp_path)
     found = call(python, "-c", PROBE, cwd=tmp_path)
     assert Path(found.strip()) == ROOT / "templates"

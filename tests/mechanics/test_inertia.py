@@ -139,6 +139,11 @@ def test_repeated_moments_are_said():
 
 def test_an_irreducible_polynomial_is_left_to_numbers():
     assert principal_of(BODIES["general"].inertia) is None
+
+
+def test_a_polynomial_that_has_no_factors_is_not_factored(monkeypatch):
+    monkeypatch.setattr(sp, "factor_list", None)
+    assert principal_of(BODIES["general"].inertia) is None
     names = [step.quantity.name for step in motion("general").steps]
     assert "principal_moments" not in names
     assert "inertia_tensor_space" in names

@@ -45,7 +45,7 @@ def _page(body: str) -> str:
     ("angles", "passive", "sequences"),
     [
         (GREEK, False, EULER_SEQUENCES),
-        (WORDS, True, EULER_SEQUENCES[::2]),  # the widest
+        (WORDS, True, EULER_SEQUENCES[::4]),  # the widest
         (OTHER_GREEK, True, EULER_SEQUENCES[1::9]),
         (INDEXED, False, EULER_SEQUENCES[3::9]),
     ],

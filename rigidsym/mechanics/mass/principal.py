@@ -111,7 +111,7 @@ def _one_axis_apart(inertia: sp.ImmutableMatrix, alone: int, root: sp.Expr) -> P
 
 def _factored(inertia: sp.ImmutableMatrix) -> Principal | None:
     """From the factors of the characteristic polynomial over the rational functions."""
-    if sp.count_ops(inertia) > _MOST_OPERATIONS:
+    if sp.count_ops(inertia) > _MOST_OPERATIONS or _is_irreducible(inertia):
         return None
     matrix = sp.Matrix(inertia - _LAMBDA * sp.eye(3))
     polynomial = sp.expand(matrix.det(method="berkowitz"))
@@ -138,6 +138,19 @@ def _factored(inertia: sp.ImmutableMatrix) -> Principal | None:
     axes = _axes(inertia, roots)
     moments = sp.ImmutableMatrix([sp.factor(root) for root in roots])
     return Principal(moments=moments, axes=axes, because=f"{because}.")
+
+
+def _is_irreducible(inertia: sp.ImmutableMatrix) -> bool:
+    """Whether the characteristic polynomial was seen not to factor, at one point.
+
+    It is monic, so that its factors at a point would be those in symbols, at this point.
+    """
+    symbols = sorted(inertia.free_symbols, key=str)
+    point = {symbol: sp.prime(k) for k, symbol in enumerate(symbols, 5)}
+    there = inertia.xreplace(point)
+    if not all(entry.is_Rational for entry in there):
+        return False
+    return bool(there.charpoly(_LAMBDA).is_irreducible)
 
 
 def _about_one_axis(inertia: sp.ImmutableMatrix, moment: sp.Expr) -> Principal | None:
