@@ -37,6 +37,7 @@ from rigidsym.models.rotation import (
 )
 from rigidsym.models.rotation_text import rotation_from as rotation_from
 from rigidsym.motion import Motion as Motion, derive as derive, kernels as kernels
+from rigidsym.tools.compare.checked import checked as checked
 from rigidsym.tools.compare.comparison import Comparison as Comparison, compare as compare
 from rigidsym.tools.identify.identification import identify as identify
 from rigidsym.tools.identify.report import Identification as Identification

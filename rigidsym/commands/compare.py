@@ -3,26 +3,37 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 import click
 
-from rigidsym.commands.command import command as make, option, with_options
+from rigidsym.commands.command import command as make, message, option, with_options
 from rigidsym.commands.options import RotationOptions
-from rigidsym.motion import Motion
+from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import motion_of, read
+from rigidsym.system.progress import bar
 from rigidsym.tools.compare.comparison import compare
+from rigidsym.tools.compare.search import search, source_files
+from rigidsym.tools.compare.targets import KnownQuantity
+
+_OF_BODY = ("mass_matrix", "coriolis_matrix")
 
 
 @dataclass(frozen=True, kw_only=True)
 class CompareOptions(RotationOptions):
     """All options of `compare`."""
 
+    formula: str | None = option(
+        "--formula", metavar="TEXT", help="A matrix or vector in Python, C, MATLAB or LaTeX."
+    )
     rotation: str | None = option(
         "--rotation", metavar="ROTATION", help="As for `derive`, or a derivation file."
     )
     quantity: str | None = option(
-        "--quantity", metavar="NAME", help="What FORMULA should be; `rigidsym list` shows names."
+        "--quantity", metavar="NAME", help="What the formula should be; see `rigidsym list`."
     )
     as_json: bool = option("--json", is_flag=True, help="Print the results as JSON.")
 
@@ -34,28 +45,67 @@ class CompareOptions(RotationOptions):
                 raise click.UsageError("--rotation and --quantity belong together")
             return None
         spec = read(self.rotation, **given)
-        plain = not given and spec.body is None and not spec.dynamics
-        is_name = plain and not self.rotation.endswith(".toml")
+        is_name = not given and spec.body is None and not self.rotation.endswith(".toml")
         return self.rotation if is_name else motion_of(replace(spec, quantities=(self.quantity,)))
 
 
 @make(
-    "rigidsym compare --rotation xyz --quantity rate_matrix_body "
-    "'[1 0 -sin(theta); 0 cos(phi) sin(phi)*cos(theta); 0 sin(phi) cos(phi)*cos(theta)]'"
+    "\n  rigidsym compare src/\n"
+    '  rigidsym compare --rotation x --quantity rotation_matrix --formula "[1 0 0; 0 c s; 0 s c]"'
 )
-@click.argument("formula")
+@click.argument("paths", nargs=-1, type=click.Path(exists=True, path_type=Path))
 @with_options(CompareOptions)
 @click.pass_context
-def command(context: click.Context, formula: str, options: CompareOptions) -> None:
-    """Compare FORMULA with a quantity of a rotation, or with all known conventions.
+def command(context: click.Context, paths: tuple[Path, ...], options: CompareOptions) -> None:
+    """Check formulas: one in TEXT, or those in the source files of each PATH.
 
-    FORMULA is a matrix or vector in Python, SymPy, C, MATLAB or LaTeX; its text is read, never
-    run. If it is wrong, the smallest repair is named: a sign, a transpose, sine for cosine, another
-    angle or frame, the order of turns, a missing square. Every answer is proved. The exit code is 1
-    if the formula is wrong or unknown.
+    A formula is compared with a quantity of a rotation, or with all known conventions. If it is
+    wrong, the smallest repair is named: a sign, a transpose, sine for cosine, another angle or
+    frame, the order of turns, a missing square. Answers are proved, if the ring can hold them.
+
+    In a folder, rotation matrices, rate matrices, quaternion kinematics and the mass and Coriolis
+    matrices of quadcopters are found in Python, C, C++ and MATLAB. Text is read, never run. The
+    exit code is 1 if a formula is wrong, or TEXT is unknown.
     """
-    found = compare(formula, options.motion(), options.quantity)
-    text = json.dumps(found.record(), indent=1, ensure_ascii=False)
-    click.echo(text if options.as_json else found.text())
-    if not found.is_equal:
-        context.exit(1)
+    if (options.formula is None) == (not paths):
+        raise click.UsageError("expected --formula TEXT, or paths")
+    motion = options.motion()
+    if options.formula is not None:
+        found = compare(options.formula, motion, options.quantity)
+        click.echo(_json(found.record()) if options.as_json else found.text())
+        context.exit(not found.is_equal)
+    if motion is not None:
+        raise click.UsageError("--rotation and --quantity go with --formula")
+    context.exit(_searched(paths, as_json=options.as_json))
+
+
+def _searched(paths: Sequence[Path], *, as_json: bool) -> bool:
+    """Print the formulas in source files; whether one is wrong."""
+    body = _quadcopter()
+    also = [KnownQuantity(motion=body, rotation=body.name, quantity=name) for name in _OF_BODY]
+    files = list(source_files(paths))
+    wrong, records = False, []
+    with bar("files") as progress:
+        for place, file in enumerate(files):
+            for found in search(file, also):
+                wrong |= not found.comparison.is_equal
+                records.append(found.record())
+                if not as_json:
+                    click.echo(str(found))
+            if progress is not None:
+                progress((place + 1) / len(files))
+    if as_json:
+        click.echo(_json(records))
+    message(f"{len(records)} formulas in {len(files)} files")
+    return wrong
+
+
+def _quadcopter() -> Motion:
+    """The equations of motion of a body, in roll, pitch and yaw."""
+    spec = read("quadcopter_attitude")
+    model = derive("xyz", "rotation_matrix").model
+    return motion_of(replace(spec, models=(model,), quantities=_OF_BODY))
+
+
+def _json(data: Any) -> str:
+    return json.dumps(data, indent=1, ensure_ascii=False)

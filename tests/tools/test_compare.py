@@ -124,3 +124,49 @@ def test_one_wrong_entry_is_found_and_its_repair_is_proved(case, kind):
     (repair,) = found.repairs
     assert (repair.place, repair.kind, found.is_proved) == (place, kind.strip(), True)
     assert not found.is_equal
+
+
+def seeded_whole(kind: str, case: tuple[str, str]) -> sp.Matrix:
+    formula = right(*case).as_mutable()
+    if kind == "transpose":
+        return formula.T
+    if kind == "sign":
+        return -formula
+    if kind == "factor":
+        return formula / 2
+    if kind == "exchange":
+        places = [(i, j) for i in range(formula.rows) for j in range(formula.cols)]
+        one = next(place for place in places if formula[place] != 0)
+        two = next(place for place in places if formula[place] not in (0, formula[one]))
+        formula[one], formula[two] = formula[two], formula[one]
+        return formula
+    if kind == "frame":
+        frames = {"body": "space", "space": "body"}
+        name, frame = case[1].rsplit("_", 1)
+        return right(case[0], f"{name}_{frames[frame]}")
+    assert kind == "order of the turns"
+    return right(case[0].swapcase(), case[1])
+
+
+WHOLE = [
+    (kind, case)
+    for case in [c for c in CASES if c[0].isalpha()]
+    for kind in ("transpose", "sign", "factor", "exchange", "frame", "order of the turns")
+    if not (kind == "transpose" and "velocity" in case[1])
+    and not (kind == "frame" and case[1] == "rotation_matrix")
+]
+
+
+@pytest.mark.parametrize(("kind", "case"), WHOLE, ids=str)
+def test_a_change_of_the_whole_formula_is_named(kind, case):
+    found = rs.compare(seeded_whole(kind, case), *case)
+    (repair,) = found.repairs
+    assert found.is_proved
+    assert kind in (repair.kind,)
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_a_right_formula_is_proved(case):
+    found = rs.compare(str(right(*case).tolist()), *case)
+    assert found.is_equal
+    assert found.is_proved

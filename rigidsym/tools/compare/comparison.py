@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from rigidsym.tools.compare.repair import (
 )
 from rigidsym.tools.compare.targets import KnownQuantity, Names, catalogue, readings, target
 
+_MOST_REPAIRS = 2  # of a formula that nobody has named
 _NEAR = 0.6  # share of entries that must be right for a formula to be close to another
 
 
@@ -35,6 +37,7 @@ class Comparison:
     found: KnownQuantity | None = None  # what it is after the repairs
     names: Names | None = None
     repairs: tuple[Repair, ...] = ()
+    arrangement: str = ""  # "transposed", "scalar last", "twice": what it is of what was found
     is_proved: bool = False  # that the repaired formula is what was found
 
     @property
@@ -50,7 +53,8 @@ class Comparison:
             "proved": self.is_proved,
             "rotation": found.rotation if found else None,
             "quantity": found.quantity if found else None,
-            "names": {str(a): _plain(found, b) for a, b in self._renamed()} if found else {},
+            "arrangement": self.arrangement,
+            "names": self._called(),
             "repairs": [
                 {
                     "kind": repair.kind,
@@ -69,30 +73,31 @@ class Comparison:
         if self.found is None:
             head = f"not {self.asked}" if self.asked else "not a known quantity"
             return f"{head}, and no single change makes it one"
+        what = f"{self.found}{self._in_names()}"
+        if self.arrangement:
+            what += f", {self.arrangement}"
         if not self.repairs:
-            return f"equal to {self.found}{self._in_names()} ({proof})"
+            return f"equal to {what} ({proof})"
         changes = "; ".join(repair.words for repair in self.repairs)
         if self.asked is None:
-            return f"close to {self.found}{self._in_names()}: {changes} (with this, {proof})"
+            return f"close to {what}: {changes} (with this, {proof})"
         is_changed = self.asked.quantity == self.found.quantity
         is_changed &= self.asked.rotation == self.found.rotation
         proof = f"with this, {proof}" if is_changed else proof
         return f"not {self.asked}: {changes}{'' if is_changed else self._in_names()} ({proof})"
 
     def _in_names(self) -> str:
-        pairs = [f"{a} for {_plain(self.found, b)}" for a, b in self._renamed()]
-        return f" with {', '.join(pairs)}" if pairs else ""
+        """The coordinates as the user calls them, in the order of the rotation."""
+        called = self._called()
+        own = self.found.motion.argument("q").names if self.found else ()
+        names = [called.get(name, name) for name in own]
+        return f" in ({', '.join(names)})" if tuple(names) != own else ""
 
-    def _renamed(self) -> Iterator[tuple[sp.Symbol, sp.Expr]]:
-        if self.found:
-            order = {meant: place for place, meant in enumerate(self.found.names.values())}
-            pairs = sorted((self.names or {}).items(), key=lambda p: order.get(p[1], 0))
-            yield from ((a, b) for a, b in pairs if _plain(self.found, b) != str(a))
-
-
-def _plain(found: KnownQuantity | None, meant: sp.Expr) -> str:
-    names = {symbol: name for name, symbol in found.names.items()} if found else {}
-    return names.get(meant, str(meant))
+    def _called(self) -> dict[str, str]:
+        """Names of the user by those of the quantity that was found."""
+        symbols = {meant: str(name) for name, meant in (self.names or {}).items()}
+        known = self.found.names if self.found else {}
+        return {name: symbols[symbol] for name, symbol in known.items() if symbol in symbols}
 
 
 def compare(
@@ -111,7 +116,9 @@ def compare(
     matrix = spelled_out(as_matrix(formula))
     if rotation is None:
         return identified(matrix)
-    return against(matrix, _goal(rotation, quantity))
+    goal = _goal(rotation, quantity)
+    found = against(matrix, goal)
+    return found if found.found or not isinstance(formula, str) else _in_text(found, plain(formula))
 
 
 def as_matrix(formula: Any) -> sp.ImmutableMatrix:
@@ -167,26 +174,67 @@ def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
     return Comparison(formula=formula, asked=goal)
 
 
-def identified(formula: sp.ImmutableMatrix, *, only_equal: bool = False) -> Comparison:
-    """Compare with all quantities of the catalogue; the nearest if none is equal."""
-    near: list[tuple[float, Meaning]] = []
-    for goal in catalogue(formula):
+def identified(
+    formula: sp.ImmutableMatrix, *, only_equal: bool = False, also: Sequence[KnownQuantity] = ()
+) -> Comparison:
+    """Compare with all quantities of the catalogue, and `also`; the nearest if none is equal."""
+    near: list[tuple[float, str, Meaning]] = []
+    for goal in (*catalogue(formula), *also):
+        for arrangement, arranged in _arranged(formula, goal):
+            for names in readings(arranged, goal):
+                reading = Meaning.of(arranged, goal, names)
+                right = reading.right
+                if right.all():
+                    return replace(_made(reading, goal, (), None), arrangement=arrangement)
+                near.append((float(right.mean()), arrangement, reading))
+    near.sort(key=lambda each: -each[0])
+    for share, arrangement, reading in near[:8] if not only_equal else ():
+        repairs = entry_repairs(reading) if share >= _NEAR else ()
+        if 0 < len(repairs) <= _MOST_REPAIRS and all(r.kind != "entry" for r in repairs):
+            found = _made(reading, reading.goal, repairs, None)
+            return replace(found, arrangement=arrangement)
+    return Comparison(formula=formula, asked=None)
+
+
+def _arranged(
+    formula: sp.ImmutableMatrix, goal: KnownQuantity
+) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
+    """(what the formula is of the quantity, the formula as the quantity is written)."""
+    if formula.shape != goal.matrix.shape:
+        return
+    yield "", formula
+    if goal.quantity == "rotation_matrix":
+        yield "transposed (passive, the direction cosine matrix)", formula.T
+    if formula.rows == 4:
+        last = [3, 0, 1, 2]
+        moved = formula[last, last] if formula.cols == 4 else formula[last, :]
+        for words, each in (("", formula), ("scalar last", moved)):
+            yield from ((words, each),) if words else ()
+            yield ", ".join(filter(None, (words, "twice"))), each / 2
+
+
+_SIGNS = {"+": "-", "-": "+", "sin": "cos", "cos": "sin", "**2": ""}
+
+
+def _in_text(unknown: Comparison, text: str) -> Comparison:
+    """The comparison after one change in the text, such as a sign between matrices."""
+    goal = unknown.asked
+    assert goal is not None
+    for match in re.finditer(r"[+-]|\b(?:sin|cos)\b|\*\*2\b", text):
+        changed = text[: match.start()] + _SIGNS[match[0]] + text[match.end() :]
+        formula = spelled_out(read_formula(changed))
         for names in readings(formula, goal):
             reading = Meaning.of(formula, goal, names)
-            right = reading.right
-            if right.all():
-                return _made(reading, goal, (), None)
-            if goal.quantity == "rotation_matrix" and reading.agrees(formula.T, goal):
-                words = "this is the direction cosine matrix Rᵀ (passive)"
-                passive = Repair(kind="passive", words=words, formula=formula.T, goal=goal)
-                return _made(reading, goal, (passive,), None)
-            near.append((float(right.mean()), reading))
-    near.sort(key=lambda pair: -pair[0])
-    for share, reading in near[:8] if not only_equal else ():
-        repairs = entry_repairs(reading) if share >= _NEAR else ()
-        if repairs and all(repair.kind != "entry" for repair in repairs):
-            return _made(reading, reading.goal, repairs, None)
-    return Comparison(formula=formula, asked=None)
+            if reading.agrees(formula, goal):
+                before = text[max(0, match.start() - 15) : match.end() + 15]
+                after = changed[max(0, match.start() - 15) : match.end() + 15]
+                words = f"...{before}... should be ...{after}..."
+                kind = {"s": "sine and cosine", "c": "sine and cosine", "*": "square"}
+                change = Repair(
+                    kind=kind.get(match[0][0], "sign"), words=words, formula=formula, goal=goal
+                )
+                return replace(_made(reading, goal, (change,), goal), formula=unknown.formula)
+    return unknown
 
 
 def _count_right(reading: Meaning) -> int:
@@ -202,7 +250,8 @@ def _made(
 ) -> Comparison:
     """The comparison, with the proof that the repaired formula is what was found."""
     changed = _together(reading.formula, repairs)
-    proof = found.motion.equality(changed.xreplace(dict(reading.names)), found.matrix)
+    ours, theirs = map(found.applied, (found.matrix, changed.xreplace(dict(reading.names))))
+    proof = found.motion.equality(theirs, ours)
     return Comparison(
         formula=reading.formula,
         asked=asked,

@@ -32,22 +32,24 @@ def read_formula(
     text: str,
     names: Mapping[str, Any] | None = None,
     functions: Mapping[str, Callable[..., Any]] | None = None,
+    *,
+    free: bool = False,
 ) -> sp.ImmutableMatrix:
     """The matrix in a text; a scalar is 1x1.
 
-    `names` are the known expressions and matrices; None makes a symbol of every name.
+    `names` are the known expressions and matrices. None, or `free`, makes symbols of all others.
     `functions` take and return expressions and matrices of SymPy. Raises ExpressionError.
     """
     if len(text) > MOST_CHARACTERS:
         raise ExpressionError(
             f"a formula of {len(text)} characters; expected at most {MOST_CHARACTERS}"
         )
-    reader = _FormulaWalk(names, functions or {})
+    reader = _FormulaWalk(names or {}, functions or {}, free=free or names is None)
     try:
         return _matrix(reader.value(ast.parse(text.strip(), mode="eval").body))
     except SyntaxError as error:
         raise ExpressionError(f"not a formula: {error.msg}", column=error.offset or 1) from None
-    except (ValueError, TypeError, IndexError) as error:  # sizes that do not fit, a null character
+    except (ValueError, TypeError, IndexError, AttributeError) as error:  # sizes do not fit
         raise ExpressionError(f"not a formula: {error}") from None
     except (RecursionError, MemoryError):
         raise ExpressionError("operations are nested too deeply") from None
@@ -94,13 +96,13 @@ _OF_MATRICES: dict[str, Callable[..., Any]] = {
     "one": _unit,
     "col": lambda *entries: sp.Matrix(entries),
     "stack": lambda *parts: sp.Matrix.vstack(*map(_matrix, parts)),
-    "dot": lambda a, b: a.dot(b),
+    "dot": lambda a, b: a.dot(b) if 1 in a.shape else a * b,
     "cross": lambda a, b: a.cross(b),
     "outer": lambda a, b: a * b.T,
     "diag": lambda *entries: sp.diag(*entries),
     "trace": lambda matrix: matrix.trace(),
 }
-_WRAPPERS = {"array", "asarray", "matrix", "Matrix", "ImmutableMatrix", "mat", "Array"}
+_WRAPPERS = {"array", "asarray", "matrix", "Matrix", "ImmutableMatrix", "mat", "sym", "Array"}
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
 _CONSTANTS = {"pi": sp.pi, "M_PI": sp.pi}
 
@@ -109,9 +111,10 @@ class _FormulaWalk:
     """Values of the nodes of one formula: Sized, ImmutableMatrix, or a word for a function."""
 
     def __init__(
-        self, names: Mapping[str, Any] | None, functions: Mapping[str, Callable[..., Any]]
+        self, names: Mapping[str, Any], functions: Mapping[str, Callable[..., Any]], *, free: bool
     ) -> None:
         self.names = names
+        self.free = free
         self.functions = functions
         self.known = _OF_MATRICES | dict(functions)
 
@@ -144,12 +147,9 @@ class _FormulaWalk:
         raise ExpressionError(f"{type(node).__name__} is not allowed", column=node.col_offset + 1)
 
     def _name(self, name: str, column: int) -> Any:
-        if self.names is not None and name in self.names:
-            known = self.names[name]
-            return (
-                sp.ImmutableMatrix(known) if isinstance(known, sp.MatrixBase) else _checked(known)
-            )
-        if self.names is None or name in _CONSTANTS:
+        if name in self.names:
+            return _checked(self.names[name])
+        if self.free or name in _CONSTANTS:
             return Sized.atom(_CONSTANTS.get(name, sp.Symbol(name, real=True)))
         raise ExpressionError(f"unknown name {name!r}; {offer(name, self.names)}", column=column)
 

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 
 from rigidsym.errors import ExpressionError
 from rigidsym.text.bounds import FUNCTIONS
+from rigidsym.text.names import GREEK_LETTERS, spelled
 
 _TOKEN = re.compile(
     r"(?P<space>(?:\s|\.\.\.[^\n]*\n|\\\n)+)"
@@ -27,6 +28,8 @@ _NAMES = {f + "f": f for f in FUNCTIONS} | {"power": "pow", "powf": "pow", "squa
 _NAMES |= {"arctan2": "atan2", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "SQ": "sq"}
 _NAMES |= {"fabs": "abs", "Sqrt": "sqrt", "Sin": "sin", "Cos": "cos", "Tan": "tan"}
 _CALLS = {*FUNCTIONS, "pow", "sq", "pi", "M_PI", "one"}
+_OPTION = re.compile(r",\s*\w+\s*=\s*[\w.]+")  # dtype=float
+_BLANKS = (" ", "\n")
 _OPEN, _CLOSE = "([", ")]"
 _KINDS = {"array", "Matrix", "matrix", "ImmutableMatrix", "mat", "asarray", "Array"}
 
@@ -35,7 +38,7 @@ def plain(text: str) -> str:
     """The formula for `read_formula`; raises ExpressionError for characters without a meaning."""
     if "\\" in text and re.search(r"\\[A-Za-z]", text):
         return _tex(text)
-    return "".join(_rows(_tokens(text)))
+    return "".join(_rows(_tokens(_OPTION.sub("", text))))
 
 
 def _tokens(text: str) -> list[str]:
@@ -52,7 +55,8 @@ def _tokens(text: str) -> list[str]:
         elif match["index"]:
             _index(found, match["index"])
         else:
-            token = (match["space"] and " ") or match["number"] or match["operator"]
+            blank = "\n" if "\n" in text[match.start() : place].replace("...", "") else " "
+            token = (match["space"] and blank) or match["number"] or match["operator"]
             found.append(_SAME.get(token, token))
             _call_of_number(found)
     return found
@@ -92,13 +96,11 @@ def _rows(tokens: Sequence[str]) -> list[str]:
         if tokens[at] == "[":
             end = _closing(tokens, at)
             inside = tokens[at + 1 : end]
-            if _is_matlab(inside):
-                rows = _split(inside, (";",))
-                found += ["[", ",".join(f"[{','.join(_columns(row))}]" for row in rows), "]"]
-            else:
-                found += ["[", *_rows(inside), "]"]
+            rows = _matlab_rows(inside)
+            cells = [f"[{','.join(row)}]" for row in rows]
+            found += ["[", *([",".join(cells)] if rows else _rows(inside)), "]"]
             at = end
-        elif tokens[at] != " ":
+        elif tokens[at] not in _BLANKS:
             found.append(tokens[at])
         at += 1
     return found
@@ -113,10 +115,21 @@ def _closing(tokens: Sequence[str], start: int) -> int:
     raise ExpressionError("unclosed bracket")
 
 
-def _is_matlab(inside: Sequence[str]) -> bool:
-    return len(_split(inside, (";",))) > 1 or (
-        len(_split(inside, (",",))) == 1 and len(_columns(inside)) > 1
-    )
+def _matlab_rows(inside: Sequence[str]) -> list[list[str]]:
+    """The rows of [a b; c d], which may also end with their lines; none for other lists."""
+    if ";" in inside:
+        return [_columns(row) for row in _split(inside, (";",))]
+    rows = [_columns(row) for row in _split(inside, ("\n",))]
+    has_commas = len(_split(inside, (",",))) > 1
+    is_table = len(rows) > 1 and len({len(row) for row in rows}) == 1 < len(rows[0])
+    ends = any(row and row[-1] == "," for row in map(_stripped, _split(inside, ("\n",))))
+    if is_table and not ends:
+        return rows
+    return rows if not has_commas and len(rows) == 1 < len(rows[0]) else []
+
+
+def _stripped(tokens: Sequence[str]) -> list[str]:
+    return [token for token in tokens if token not in _BLANKS]
 
 
 def _split(tokens: Sequence[str], marks: Sequence[str]) -> list[list[str]]:
@@ -129,7 +142,7 @@ def _split(tokens: Sequence[str], marks: Sequence[str]) -> list[list[str]]:
             parts.append([])
         else:
             parts[-1].append(token)
-    return [part for part in parts if any(token != " " for token in part)]
+    return [part for part in parts if _stripped(part)]
 
 
 def _columns(row: Sequence[str]) -> list[str]:
@@ -139,12 +152,12 @@ def _columns(row: Sequence[str]) -> list[str]:
     for at, token in enumerate(row):
         depth += (token in _OPEN) - (token in _CLOSE)
         after = row[at + 1] if at + 1 < len(row) else ""
-        is_sign = after in ("+", "-") and at + 2 < len(row) and row[at + 2] != " "
+        is_sign = after in ("+", "-") and at + 2 < len(row) and row[at + 2] not in _BLANKS
         ends = bool(marked) and (marked[-1][-1].isalnum() or marked[-1] in (")", "]", ".T"))
         begins = after[:1].isalnum() or after in ("(", "[") or is_sign
-        is_mark = token == " " and depth == 0 and ends and begins
+        is_mark = token in _BLANKS and depth == 0 and ends and begins
         marked.append("," if is_mark else token)
-    return ["".join(part).replace(" ", "") for part in _split(marked, (",",))]
+    return ["".join(_stripped(part)) for part in _split(marked, (",",))]
 
 
 # LaTeX
@@ -156,17 +169,21 @@ _LAYOUT = re.compile(
 )
 _MATRIX = re.compile(r"\\begin\{([pbB]?matrix|array)\}(?:\{[lcr]*\})?(.*?)\\end\{\1\}", re.DOTALL)
 _DOTS = {r"\dot": "_dot", r"\ddot": "_ddot"}
+_LETTERS = set(map(spelled, GREEK_LETTERS))
 _GREEK = {r"\varphi": "phi", r"\vartheta": "theta"}
 
 
 def _tex(text: str) -> str:
-    """LaTeX: the last matrix in it, or else what stands behind the last sign of equality."""
-    matrix = _MATRIX.findall(text)
+    """LaTeX: the last matrix in it with its factor, or what stands behind the last equals sign."""
+    matrix = list(_MATRIX.finditer(text))
     if not matrix:
         return _TexWalk(text.rsplit("=", 1)[-1]).sum()
-    rows = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?", matrix[-1][1]) if row.strip()]
+    rows = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?", matrix[-1][2]) if row.strip()]
     cells = [[_TexWalk(cell).sum() for cell in row.split("&")] for row in rows]
-    return "[" + ", ".join(f"[{', '.join(row)}]" for row in cells) + "]"
+    before = text[matrix[-2].end() if len(matrix) > 1 else 0 : matrix[-1].start()]
+    factor = _TexWalk(before.rsplit("=", 1)[-1]).sum() if "=" in before or before.strip() else ""
+    listed = ", ".join(f"[{', '.join(row)}]" for row in cells)
+    return f"({factor})*[{listed}]" if factor else f"[{listed}]"
 
 
 class _TexWalk:
@@ -200,6 +217,10 @@ class _TexWalk:
         if self.tokens and self.tokens[-1] == "{":
             self.tokens.pop()
             return self.sum("}")
+        if self.tokens and self.tokens[-1].isdigit():  # frac12
+            digits = self.tokens.pop()
+            self.tokens += [digits[1:]] * (len(digits) > 1)
+            return digits[0]
         return self._atom()
 
     def _atom(self) -> str:
@@ -217,7 +238,7 @@ class _TexWalk:
         if token[:1].isdigit():
             return token
         name = _GREEK.get(token, token.lstrip("\\"))
-        if not name.isalpha():
+        if not name.isalpha() or (token[0] == "\\" and name not in _LETTERS):
             raise ExpressionError(f"unexpected {token or 'end'!r} in LaTeX")
         return name + self._script()
 

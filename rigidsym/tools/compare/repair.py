@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import permutations
+from itertools import permutations, product
 
 import numpy as np
 import sympy as sp
@@ -53,7 +53,12 @@ class Meaning:
         return cls(formula=formula, goal=goal, names=names, values=valued(goal, names))
 
     def numbers(self, matrix: sp.MatrixBase) -> Array:
-        return evaluated(matrix, self.values)
+        found = evaluated(matrix, self.values)
+        if self.goal.rates:
+            found = (
+                found @ np.stack([self.goal.points[rate] for rate in self.goal.rates], 1)[..., None]
+            )
+        return found
 
     def agrees(self, matrix: sp.MatrixBase, goal: KnownQuantity) -> bool:
         return matrix.shape == goal.matrix.shape and bool(
@@ -75,20 +80,20 @@ def whole_repairs(reading: Meaning, *, twofold: bool = False) -> Iterator[Repair
 
     `twofold` gives those that take both: a change, and then another quantity.
     """
-    formula, goal = reading.formula, reading.goal
+    goal = reading.goal
     changes = list(_changes(reading))
-    others = list(_relatives(goal))
-    if not twofold:
-        for kind, words, changed in changes:
-            if reading.agrees(changed, goal):
-                yield Repair(kind=kind, words=words, formula=changed, goal=goal)
-        changes = [("", "", formula)]
-    for kind, words, changed in changes:
-        for change, other in others:
+    itself, related = [("", goal)], list(_relatives(goal))
+    likely = [change for change in changes if change[0] not in OF_NAMES]
+    of_names = [change for change in changes if change[0] in OF_NAMES]
+    none = [("", "", reading.formula)]
+    rounds = [(likely, itself), (none, related), (of_names, itself)]
+    for some, targets in [(changes, related)] if twofold else rounds:
+        for (kind, words, changed), (change, other) in product(some, targets):
             if reading.agrees(changed, other):
+                this = f"this is {other}" + (f", but {words}" if words else "")
                 yield Repair(
-                    kind=f"{kind}, {change}" if kind else change,
-                    words=f"this is {other}" + (f", but {words}" if words else ""),
+                    kind=", ".join(filter(None, (kind, change))),
+                    words=this if change else words,
                     formula=changed,
                     goal=other,
                 )
@@ -148,10 +153,10 @@ def entry_repairs(reading: Meaning) -> tuple[Repair, ...]:
     if reading.formula.shape != reading.goal.matrix.shape:
         return ()
     wrong = [(int(i), int(j)) for i, j in np.argwhere(~reading.right)]
-    if not 0 < len(wrong) <= min(_MOST_ENTRIES, max(1, len(reading.formula) // 3)):
-        return ()
     if len(wrong) == 2 and (exchanged := _exchanged(reading, *wrong)):
         return (exchanged,)
+    if not 0 < len(wrong) <= min(_MOST_ENTRIES, max(1, len(reading.formula) // 3)):
+        return ()
     return tuple(_entry(reading, place) for place in wrong)
 
 
@@ -174,15 +179,28 @@ def _place(place: tuple[int, int]) -> str:
 
 
 def _entry(reading: Meaning, place: tuple[int, int]) -> Repair:
-    """The smallest change of an entry; the entry of the target if no small one is enough."""
-    before = reading.formula[place]
-    wanted = reading.goal.values[:, place[0], place[1]][:, None, None]
-    groups = _groups(reading)
+    """The smallest change of an entry; the entry of the target if no small one is enough.
+
+    If the matrix acts on the rates, any entry of the row may be the wrong one.
+    """
+    formula, goal = reading.formula, reading.goal
+    wanted = goal.values[:, [place[0]], [place[1]]][:, None]
+    groups, row = _groups(reading), formula[place[0], :]
+    variants = [
+        (kind, after, column)
+        for column in (range(formula.cols) if goal.rates else [place[1]])
+        for kind, after in set(_variants(row[column], groups))
+    ]
     back = {meant: symbol for symbol, meant in reading.names.items()}
-    whole = "entry", reading.goal.matrix[place].xreplace(back)
-    variants = sorted(set(_variants(before, groups)), key=_cost)
-    fits = (v for v in variants if agreement(reading.numbers(sp.Matrix([[v[1]]])), wanted).all())
-    kind, after = next(fits, whole)
+    kind, after, column = "entry", goal.matrix[place].xreplace(back), place[1]
+    for variant in sorted(variants, key=_cost):
+        _, entry, j = variant
+        tried = row[:, :j].row_join(sp.Matrix([[entry]])).row_join(row[:, j + 1 :])
+        if agreement(reading.numbers(tried if goal.rates else sp.Matrix([[entry]])), wanted).all():
+            kind, after, column = variant
+            break
+    place = place[0], column
+    before = formula[place]
     changed = reading.formula.as_mutable()
     changed[place] = after
     words = f"entry {_place(place)}: {before} should be {after}"
@@ -211,7 +229,7 @@ _KINDS = {
 }
 
 
-def _cost(variant: tuple[str, sp.Expr]) -> tuple[int, int, str]:
+def _cost(variant: tuple[str, sp.Expr, int]) -> tuple[int, int, str]:
     return list(_KINDS).index(variant[0]), variant[1].count_ops(), str(variant[1])
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import permutations, product
 from typing import Any
@@ -22,7 +22,7 @@ Names = Mapping[sp.Symbol, sp.Expr]  # what the names of a formula stand for
 
 _POINTS = 4
 _TOLERANCE = 1e-9  # of numbers of order one, in double precision
-_TABLE = np.random.default_rng(1775).uniform(0.2, 1.3, (6, 16, _POINTS))  # argument, component
+_TABLE = np.random.default_rng(1775).uniform(0.2, 1.3, (5, 64, _POINTS))  # argument, component
 _ROWS = {"q": 0, "q_dot": 1, "q_ddot": 2, "omega_space": 3, "omega_body": 3}
 _NUMPY: dict[Any, Any] = {
     **{sp.sin: np.sin, sp.cos: np.cos, sp.tan: np.tan, sp.cot: lambda x: 1 / np.tan(x)},
@@ -57,7 +57,6 @@ class KnownQuantity:
     motion: Motion
     rotation: str  # as it was asked for: "ZYX"
     quantity: str
-    cache: Values = field(default_factory=dict, repr=False)
 
     @cached_property
     def matrix(self) -> sp.ImmutableMatrix:
@@ -93,9 +92,18 @@ class KnownQuantity:
             found.update({r: found[r] - along * found[s] for s, r in zip(q, rates, strict=True)})
 
     @cached_property
+    def rates(self) -> tuple[sp.Expr, ...]:
+        """What the matrix acts on, if only the product is unique: C(q, q̇) q̇."""
+        return self.motion.argument("q_dot").symbols if self.quantity == "coriolis_matrix" else ()
+
+    def applied(self, matrix: sp.MatrixBase) -> sp.MatrixBase:
+        """What is compared: the matrix, or its product with the rates."""
+        return matrix * sp.Matrix(self.rates) if self.rates else matrix
+
+    @cached_property
     def values(self) -> Array:
-        """(points, rows, columns)"""
-        return evaluated(self.matrix, dict(self.points))
+        """Of what is compared; (points, rows, columns)."""
+        return evaluated(self.applied(self.matrix), dict(self.points))
 
     @cached_property
     def names(self) -> dict[str, sp.Expr]:
@@ -218,7 +226,13 @@ def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
     if len(stems) > len(q) or len(omega) > 3:
         return
     velocity = next((arguments[a] for a in ("omega_body", "omega_space") if a in inputs), ())
-    moments = [s for name, found in arguments.items() if name not in _ROWS for s in found]
+    moments = [
+        s
+        for name, found in arguments.items()
+        if name not in _ROWS
+        for s in found
+        if goal.matrix.has(s)
+    ]
     if len(others) > len(moments):
         return
     fixed = dict(zip(others, moments, strict=False))

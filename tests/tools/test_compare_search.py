@@ -1,0 +1,255 @@
+"""`rigidsym compare` on source files and functions: what is found, named, and found wrong.
+
+Formulas of public code are written in their own files here, with the repository and the line they
+stand in; only the formula is theirs.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import rigidsym as rs
+from helpers.command import ROOT
+from rigidsym.commands.cli import commands
+from rigidsym.errors import ExpressionError
+from rigidsym.tools.compare.plain import plain
+from rigidsym.tools.compare.search import formulas, search, source_files
+
+W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(b)]]"
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ("{{cosf(a), -sinf(a)}, {sinf(a), std::cos(a)}}", "[[cos(a),-sin(a)],[sin(a),cos(a)]]"),
+        ("[1 -s; 0 q(2)^2]", "[[1,-s],[0,q_2**2]]"),
+        ("[1 - s, 0\n 2 c*s]", "[[1-s,0],[2,c*s]]"),
+        ("[a; b]'", "[[a],[b]].T"),
+        ("np.array([self.phi, x[3]*2.0f], dtype=float)", "array([phi,x_3*2.0])"),
+        ("pow(q.w(), 2) + state->roll", "pow(q_w,2)+roll"),
+        (r"\dot\phi \sin^2\theta + \tfrac12 x_1", "phi_dot*sin(theta)**(2)+((1)/(2))*x_1"),
+        (r"R = \begin{pmatrix} a & b \\[2pt] w\,x & \sin 2\theta \end{pmatrix}", None),
+    ],
+)
+def test_notations_are_read_as_one_language(text, read):
+    assert plain(text) == (read or "[[a, b], [w*x, sin(2*theta)]]")
+
+
+@pytest.mark.parametrize("name", ["ZXZ", "xyz", "unit_quaternion"])
+def test_printed_latex_of_notes_is_read_back(name):
+    motion = rs.derive(name)
+    for quantity in ("rate_matrix_body", "angular_velocity_space", "inverse_rate_matrix_space"):
+        text = motion.latex(quantity)
+        if "pmatrix" in text:
+            assert rs.compare(text, motion, quantity).is_equal, text
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("__import__('os')", "(lambda: 1)()", "[x for x in y]", "9**9**9", "1e999"),
+        *("(" * 5000, "[" * 300 + "]" * 300, "x" * 30_000, "\0", "[1, [2, [3]]", "one(10**9)"),
+        *("[[a, b], [c]]", r"\frac{", r"\begin{pmatrix} & \end{pmatrix}", r"\input{a}"),
+    ],
+)
+def test_hostile_text_is_refused(text):
+    with pytest.raises(ExpressionError):
+        rs.compare(text)
+
+
+def run(*arguments):
+    return CliRunner().invoke(commands, ["compare", *arguments])
+
+
+def found_in(tmp_path, name, text):
+    file = tmp_path / name
+    file.write_text(text, encoding="utf-8")
+    return list(search(file))
+
+
+def test_abbreviations_entries_and_products_are_followed_in_python(tmp_path):
+    text = """
+def rot(roll, pitch):  # R = [[1, 2]]
+    cr, sr = np.cos(roll), np.sin(roll)
+    A = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
+    B = np.array([[cos(pitch), 0, sin(pitch)], [0, 1, 0], [-sin(pitch), 0, cos(pitch)]])
+    return B @ A
+"""
+    found = [
+        (f.line, f.name, f.comparison.found.rotation) for f in found_in(tmp_path, "a.py", text)
+    ]
+    assert found == [
+        (4, "A", "x(angle)"),
+        (5, "B", "y(angle)"),
+        (6, "returned", "y(first) x(second)"),
+    ]
+
+
+def test_quaternion_kinematics_is_found_in_c(tmp_path):
+    text = """
+void rate(float gx) { /* Madgwick */
+    qDot1 = 0.5f * (-q1 * gx - q2 * gy - q3 * gz);
+    qDot2 = 0.5f * (q0 * gx + q2 * gz - q3 * gy);
+    qDot3 = 0.5f * (q0 * gy - q1 * gz + q3 * gx);
+    qDot4 = 0.5f * (q0 * gz + q1 * gy - q2 * gx);
+}"""
+    (found,) = found_in(tmp_path, "a.c", text)
+    assert found.comparison.found.quantity == "rates_from_angular_velocity_body"
+    assert found.comparison.is_equal
+
+
+def test_a_wrong_entry_of_a_matrix_filled_entry_by_entry_is_named(tmp_path):
+    entries = {
+        "0][0": "1 - 2*(y*y + z*z)", "0][1": "2*(x*y - w*z)", "0][2": "2*(x*z + w*y)",
+        "1][0": "2*(x*y + w*z)", "1][1": "1 - 2*(x*x + z*z)", "1][2": "2*(y*z + w*x)",
+        "2][0": "2*(x*z - w*y)", "2][1": "2*(y*z + w*x)", "2][2": "1 - 2*(x*x + y*y)",
+    }  # fmt: skip
+    text = "\n".join(f"  m[{place}] = {entry};" for place, entry in entries.items())
+    (found,) = found_in(tmp_path, "a.cpp", text)
+    (repair,) = found.comparison.repairs
+    assert (repair.place, repair.kind, found.line) == ((2, 3), "sign", 1)
+
+
+PUBLIC = {  # formula: (rotation, quantity, kind and entry of the error)
+    # mugreenstein/AE-352-Final-Project, source/math.py, line 6
+    "R = [cos(phi)*cos(psi)-cos(theta)*sin(phi)*sin(psi), -cos(psi)*sin(phi)-cos(phi)*cos(theta)"
+    "*sin(psi), sin(theta)*sin(psi); cos(theta)*cos(psi)*sin(phi)+cos(phi)*sin(psi), cos(phi)*"
+    "cos(psi)-sin(phi)*sin(psi), -cos(psi)*sin(theta); sin(phi)*sin(theta), cos(phi)*sin(theta), "
+    "cos(theta)];": ("zxz", "rotation_matrix", ("product", (2, 2))),
+    # yzd0014/Matlab-Codes, EulerDot.m, line 4
+    "A=sym([1 0 -sin(beta);0 cos(alpha) sin(alpha)*cos(beta);0 -sin(alpha) cos(alpha)*cos(beta)]);":
+    ("xyz", "rate_matrix_body", None),
+    # duncang/dmnl, functions/T_EulerRate2pqrbody.m
+    "Ctheta = cos(T); Cphi = cos(P); Stheta = sin(T); Sphi = sin(P);\nM(1,1)=1;M(1,2)=0;M(1,3)="
+    "-Stheta;M(2,1)=0;M(2,2)=Cphi;M(2,3)=Ctheta*Sphi;M(3,1)=0;M(3,2)=-Sphi;M(3,3)=Ctheta*Cphi;":
+    ("xyz", "rate_matrix_body", None),
+    # ugurcanozalp/heli-gym, heligym/envs/dynamics/kinematic.py, line 25
+    "mat = [1, sin[0]*sin[1]/cos[1], cos[0]*sin[1]/cos[1]; 0, cos[0], -sin[0]; "
+    "0, sin[0]/cos[1], cos[0]/cos[1]];": ("xyz", "inverse_rate_matrix_body", None),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "expected"), PUBLIC.items(), ids=range(len(PUBLIC)))
+def test_formulas_of_public_code_are_named(tmp_path, text, expected):
+    (found,) = found_in(tmp_path, "a.m", text)
+    rotation, quantity, error = expected
+    comparison = found.comparison
+    assert (comparison.found.rotation, comparison.found.quantity) == (rotation, quantity)
+    assert [(r.kind, r.place) for r in comparison.repairs] == ([error] if error else [])
+    assert comparison.is_proved
+
+
+def quadcopter(square):
+    """The Coriolis matrix that public programs hold, with or without a square in entry (2, 1)."""
+    return f"""
+function C = coriolis(phi, theta, phid, thetad, psid)
+s = sin(phi); c = cos(phi); st = sin(theta); ct = cos(theta);
+C = [0, (Iy-Iz)*(thetad*c*s + psid*s^2*ct) + (Iz-Iy)*psid*c^2*ct - Ix*psid*ct, ...
+     (Iz-Iy)*psid*c*s*ct^2;
+     (Iz-Iy)*(thetad*c*s + psid*s{square}*ct) + (Iy-Iz)*psid*c^2*ct + Ix*psid*ct, ...
+     (Iz-Iy)*phid*c*s, -Ix*psid*st*ct + Iy*psid*s^2*st*ct + Iz*psid*c^2*st*ct;
+     (Iy-Iz)*psid*ct^2*s*c - Ix*thetad*ct, (Iz-Iy)*(thetad*c*s*st + phid*s^2*ct) ...
+     + (Iy-Iz)*phid*c^2*ct + Ix*psid*st*ct - Iy*psid*s^2*st*ct - Iz*psid*c^2*st*ct, ...
+     (Iy-Iz)*phid*c*s*ct^2 - Iy*thetad*s^2*ct*st - Iz*thetad*c^2*ct*st + Ix*thetad*ct*st];
+"""
+
+
+def test_the_square_missing_in_copies_of_a_coriolis_matrix_is_found(tmp_path):
+    (tmp_path / "good.m").write_text(quadcopter("^2"))
+    (tmp_path / "wrong.m").write_text(quadcopter(""))
+    done = run(str(tmp_path), "--json")
+    good, wrong = json.loads(done.stdout)
+    assert (done.exit_code, good["equal"], good["quantity"]) == (1, True, "coriolis_matrix")
+    (repair,) = wrong["repairs"]
+    assert (repair["kind"], repair["entry"], wrong["proved"]) == ("square", [2, 1], True)
+
+
+def test_files_are_those_of_known_languages(tmp_path):
+    for name in ("b.py", "a.c", "notes.txt", "sub/d.m"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("x = 1")
+    (tmp_path / "large.py").write_text(" " * 300_001)
+    found = [file.relative_to(tmp_path).as_posix() for file in source_files([tmp_path])]
+    assert found == ["a.c", "b.py", "sub/d.m"]
+
+
+@pytest.mark.parametrize("text", ["R = [" * 3000, "= << = (((", "x = " * 5000, '""" \' " {', "R[0"])
+def test_hostile_files_are_passed_over(text):
+    for suffix in (".py", ".cpp", ".m"):
+        assert list(formulas(text, suffix)) == []
+
+
+def test_the_wrong_sign_in_the_inverse_right_jacobian_of_a_paper_is_found():
+    """Forster et al., On-manifold preintegration, the equation between (9) and (10)."""
+    n, v = "sqrt(v1**2 + v2**2 + v3**2)", "C([v1, v2, v3])"
+    printed = f"one(3) + {v}/2 + (1/{n}**2 + (1 + cos({n}))/(2*{n}*sin({n})))*{v}**2"
+    found = rs.compare(printed, "rotation_vector", "inverse_rate_matrix_body")
+    (repair,) = found.repairs
+    assert (repair.kind, found.is_proved) == ("sign", True)
+
+
+def rate_matrix(q):
+    phi, theta, _ = q
+    return np.array(
+        [
+            [1, 0, -np.sin(theta)],
+            [0, np.cos(phi), np.sin(phi) * np.cos(theta)],
+            [0, -np.sin(phi), np.cos(phi) * np.cos(theta)],
+        ]
+    )
+
+
+def test_a_function_is_compared_by_numbers_and_its_transpose_is_named():
+    found = rs.compare(rate_matrix, "xyz", "rate_matrix_body")
+    assert found.is_equal
+    assert not found.is_proved
+    (repair,) = rs.compare(lambda q: rate_matrix(q).T, "xyz", "rate_matrix_body").repairs
+    assert repair.kind == "transpose"
+
+
+def test_a_function_of_symbols_is_proved():
+    found = rs.compare(
+        lambda phi, theta, psi: [[1, 0], [0, phi + theta + psi]], "ZYX", "rotation_matrix"
+    )
+    assert found.found is None
+    import sympy as sp
+
+    turn = lambda a: [[sp.cos(a), -sp.sin(a), 0], [sp.sin(a), sp.cos(a), 0], [0, 0, 1]]  # noqa: E731
+    assert rs.compare(lambda q: turn(q[0]), "z(a)", "rotation_matrix").is_proved
+
+
+def test_a_function_with_other_arguments_is_refused():
+    with pytest.raises(ExpressionError, match="takes 2 arguments; expected 1 vectors or 3 numbers"):
+        rs.compare(math.atan2, "ZYX", "rotation_matrix")
+
+
+test_a_decorated_function_is_its_own_test = rs.checked("xyz", "rate_matrix_body")(rate_matrix)
+
+
+def test_a_decorated_function_that_is_wrong_says_so_and_still_computes():
+    @rs.checked("xyz", "rate_matrix_body")
+    def wrong(q):
+        return -rate_matrix(q)
+
+    assert wrong(np.zeros(3))[0, 0] == -1
+    with pytest.raises(AssertionError, match="all signs are the other way round"):
+        wrong()
+
+
+def test_the_command_says_what_is_wrong_and_returns_one():
+    text = W_BODY.replace("-sin(b)", "sin(b)")
+    done = run("--formula", text, "--rotation", "xyz", "--quantity", "rate_matrix_body")
+    assert done.exit_code == 1
+    assert "entry (1, 3): sin(b) should be -sin(b)" in done.stdout
+    assert run("--formula", W_BODY).exit_code == 0
+
+
+def test_the_command_needs_a_formula_or_paths():
+    assert run().exit_code == 2
+    assert run("--formula", "[a, b]", "--rotation", "ZYX").exit_code == 2
+    assert run(str(ROOT / "README.md")).exit_code == 0
