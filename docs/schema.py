@@ -264,6 +264,7 @@ def _output() -> Schema:
             **{name: _target(name) for name in VOCABULARY.target_options},
             "note": texts("formats of the note, tex and html by default", *VOCABULARY.note),
             "style": text("of the note, lecture by default", *VOCABULARY.styles),
+            "language": text("of the note, en by default", *VOCABULARY.languages),
             "conversions": flag("add functions to and from quaternions and matrices"),
             "derivatives": texts('Jacobians, such as "angular_velocity_body by q"'),
         },

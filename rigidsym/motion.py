@@ -114,13 +114,15 @@ class Motion(Derivation):
         conversions: bool = False,
         style: str = "lecture",
         text: OwnText | None = None,
+        language: str = "en",
     ) -> Note:
         """The document of the derivation: `.latex()`, `.html()`, `.markdown()`, `.notebook()`.
 
         `style` is "lecture", which explains, "paper", which is terse, or "audit", which shows every
         identity and, with `with_kernels`, the function of the NumPy module beside its equation.
         `conversions` adds a section on the unit quaternion and the matrix; `text` adds sentences,
-        sources and a byline of your own, and leaves parts out.
+        sources and a byline of your own, and leaves parts out. `language` is "en" or "de"; own
+        text stays as it is.
         """
         from rigidsym.notes.note import note
 
@@ -131,6 +133,7 @@ class Motion(Derivation):
             conversions=self.conversions if conversions else None,
             style=style,
             text=text,
+            language=language,
         )
 
     def simulate(

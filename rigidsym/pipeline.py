@@ -14,6 +14,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -122,6 +123,7 @@ def vocabulary() -> Vocabulary:
         target_options={name: target.options for name, target in TARGETS.items() if target.options},
         note=note_formats(),
         styles=STYLES,
+        languages=resources.languages(),
         notation=Notation,
         choices=CHOICES,
         text=OwnText,
@@ -184,19 +186,21 @@ def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
 
 
 def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
-    note = motion.note(
+    in_language = partial(
+        motion.note,
         with_kernels="numpy" in spec.kernels,
         conversions=spec.conversions,
         style=spec.style,
         text=cast("OwnText | None", spec.text),
     )
+    note = in_language(language=spec.language)
     for ending in FORMATS:
         if ending in spec.note or (ending == "tex" and PDF in spec.note):
             yield f"{spec.name}.{ending}", note.render(ending)
     if PAGE in spec.note:
         from rigidsym.page.print_page import print_page
 
-        yield page_name(spec.name), print_page(motion, note.document)
+        yield page_name(spec.name), print_page(motion, in_language(language="en").document)
 
 
 def digest(content: bytes) -> str:

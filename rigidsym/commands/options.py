@@ -17,7 +17,7 @@ from rigidsym.kernels.lowering.derivatives import read_requests
 from rigidsym.kernels.targets import check_target
 from rigidsym.motion import QUANTITIES, offered
 from rigidsym.spec.derivation_spec import DerivationSpec
-from rigidsym.system.resources import overridden_by
+from rigidsym.system.resources import languages, overridden_by
 
 MOST_LINES = 150  # that a terminal shows by default
 _LEAN: dict[str, str | bool] = {"precision": "double", "arrays": False, "libm": True}
@@ -188,6 +188,11 @@ class OutputOptions:
         help="Style of the note: lecture explains, paper is terse, audit shows every identity and "
         "function.  [default: lecture]",
     )
+    language: str | None = option(
+        "--language",
+        type=click.Choice(languages()),
+        help="Language of the note.  [default: en]",
+    )
     pdf: bool = option("--pdf", is_flag=True, help="Also typeset the note; needs TeX.")
     fragment: bool = option(
         "--fragment", is_flag=True, help="Also write the note without a preamble, for \\input."
@@ -222,6 +227,7 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, KernelOptio
             kernels=tuple(dict.fromkeys((*(targets or spec.kernels), *lean))),
             target_options={**spec.target_options, **lean},
             style=self.style or spec.style,
+            language=self.language or spec.language,
         )
 
 

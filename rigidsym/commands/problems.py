@@ -12,6 +12,7 @@ from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.problems.exercise import sheet_of
 from rigidsym.notes.problems.subjects import SUBJECTS
+from rigidsym.system import resources
 from rigidsym.system.files import write_bytes, write_text
 
 _ENDINGS = ("tex", "html")
@@ -29,6 +30,13 @@ _ENDINGS = ("tex", "html")
 )
 @click.option("--author", default="", help="A name below the title.")
 @click.option("--course", default="", help="A course below the title.")
+@click.option(
+    "--language",
+    type=click.Choice(resources.languages()),
+    default="en",
+    show_default=True,
+    help="Language of the sheet.",
+)
 @click.option("--pdf", is_flag=True, help="Also typeset the sheet and solutions; needs TeX.")
 @click.option("--moodle", is_flag=True, help="Also write a question bank in Moodle XML.")
 @click.option(
@@ -44,6 +52,7 @@ def command(
     variant: int,
     author: str,
     course: str,
+    language: str,
     pdf: bool,
     moodle: bool,
     out: Path,
@@ -53,7 +62,7 @@ def command(
     SUBJECT is euler (Euler angles), bodies (moments of inertia) or all. Every answer is derived.
     The files are LaTeX and HTML.
     """
-    sheet = sheet_of(subject, SUBJECTS, count=number, variant=variant)
+    sheet = sheet_of(subject, SUBJECTS, count=number, variant=variant, language=language)
     own = OwnText(author=author, course=course)
     documents = [own.applied(sheet.document(solved=solved)) for solved in (False, True)]
     for document in documents:

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from rigidsym.errors import ModelError
 from rigidsym.formula.notation import DEFAULT, FRAMES, Notation
 from rigidsym.mechanics.derivation import Derivation
+from rigidsym.notes.document.catalogue import language_of
 from rigidsym.notes.document.document import Document
 from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats import FORMATS
@@ -62,13 +64,20 @@ def note(
     conversions: Conversions | None = None,
     style: str = "audit",
     text: OwnText | None = None,
+    language: str = "en",
 ) -> Note:
     """The note of a derivation, and of the conversions if they are given, in a style.
 
     `module` is the file name of its kernel module, if there is one; `functions` are the quantities
     that module evaluates, all of them by default. Each equation of an audit names its function.
-    `text` is what its user adds or leaves out; raises ModelError for a name that it has not.
+    `text` is what its user adds or leaves out. Raises ModelError for a name that the note has not,
+    for a `language` without a catalogue, and for names of frames in another language than English.
     """
+    into = language_of(language)
+    if notation.frames != FRAMES and language != "en":
+        raise ModelError(
+            f"notation: frames have names of their own only in English, not {language!r}"
+        )
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
     composer = _composer_of(derivation)(
@@ -81,7 +90,7 @@ def note(
     document = composer.document
     if notation.frames != FRAMES:
         document = document.changed(lambda text: tuple(map(notation.named, text)))
-    document = in_style(document, style, is_short=composer.is_short)
+    document = in_style(document, style, is_short=composer.is_short).translated(into)
     return Note(text.applied(document) if text else document)
 
 

@@ -28,7 +28,7 @@ _DYNAMICS = ("potential", "forces", "torque", "first_integrals", "parts", "frame
 _FORMER = ("measured",)  # in old records: errors that were printed with the kernels
 _LINES = ("author", "course", "date")
 _SENTENCES = ("before", "after", "sources")
-_OUTPUT = ("quantities", "kernels", "note", "style", "conversions", "derivatives")
+_OUTPUT = ("quantities", "kernels", "note", "style", "language", "conversions", "derivatives")
 
 
 def read_file(file: str, words: Vocabulary) -> DerivationSpec:
@@ -188,6 +188,7 @@ class _Reader:
             "kernels": table.choices("kernels", words.kernels, may_be_empty=True),
             "note": table.choices("note", words.note, may_be_empty=True),
             "style": table.choice("style", words.styles),
+            "language": table.choice("language", words.languages),
             "conversions": table.flag("conversions"),
         }
         chosen["target_options"] = self.target_options(table) or None

@@ -44,6 +44,7 @@ class DerivationSpec:
     target_options: Mapping[str, Mapping[str, str | bool]] = field(default_factory=dict)
     note: tuple[str, ...] = ("tex", "html")
     style: str = "lecture"  # of the note
+    language: str = "en"  # of the note
     conversions: bool = False  # to and from quaternion and matrix
     derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
     notation: NotationChoice | None = None  # of notes and terminal; None: the default
@@ -82,6 +83,7 @@ class DerivationSpec:
             "theory": self.theory,
             "dynamics": dict(self.dynamics or {}),
             "style": self.style if self.style != "lecture" else "",
+            "language": self.language if self.language != "en" else "",
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),
             "notation": self._notation_data(),

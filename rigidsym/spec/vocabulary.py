@@ -40,6 +40,7 @@ class Vocabulary:
     target_options: Mapping[str, Mapping[str, tuple[str | bool, ...]]]  # of [output.TARGET]
     note: tuple[str, ...]
     styles: tuple[str, ...]  # of a note, the default first
+    languages: tuple[str, ...]  # of a note, the default first
     notation: Callable[..., NotationChoice]  # raises ModelError for names of frames
     choices: Mapping[str, tuple[str, ...]]  # of [notation], the default first
     text: Callable[..., TextChoice]  # raises ModelError for a sentence that cannot be read

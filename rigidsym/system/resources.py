@@ -46,6 +46,11 @@ def names(kind: str, suffix: str) -> tuple[str, ...]:
     return tuple(sorted(f.name.removesuffix(suffix) for f in files if f.name.endswith(suffix)))
 
 
+def languages() -> tuple[str, ...]:
+    """The codes of the languages of a note: English, and those with a catalogue of sentences."""
+    return ("en", *names(NOTES, ".toml"))
+
+
 @contextmanager
 def overridden_by(own: Path) -> Iterator[None]:
     """Inside, the templates in a folder of the user replace those of the same name.

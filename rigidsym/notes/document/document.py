@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain, zip_longest
+from itertools import chain, groupby, zip_longest
 
 from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.sentence import sentence
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.tree import Formula, Row, Words
 from rigidsym.models.rotation import Citation
+from rigidsym.notes.document.catalogue import ENGLISH, Catalogue
 from rigidsym.notes.figure.drawing import Drawing
 
 
@@ -148,6 +149,7 @@ class Document:
     byline: tuple[str, ...] = ()  # below the title: author, course, date
     program: str = ""  # lines of Python that derive it again, for a notebook
     more_sources: tuple[str, ...] = ()  # listed whether they are cited or not
+    language: Catalogue = ENGLISH
 
     @property
     def equations(self) -> Iterator[Equation]:
@@ -198,6 +200,56 @@ class Document:
         )
         return replace(self, sections=tuple(sections))
 
+    def translated(self, language: Catalogue) -> Document:
+        """The document in a language, into which an English one is translated."""
+        if language is ENGLISH:
+            return self
+        changed = self.changed(lambda text: _translated(text, language))
+        sections = (_with_claims(section, language) for section in changed.sections)
+        return replace(
+            changed,
+            title=language.words(self.title),
+            subtitle=language.words(self.subtitle),
+            sections=tuple(replace(s, title=language.words(s.title)) for s in sections),
+            language=language,
+        )
+
+
+def _translated(text: Text, language: Catalogue) -> Text:
+    """Strong words are sentences of their own."""
+    found: list[Span] = []
+    for is_strong, spans in groupby(text, lambda span: isinstance(span, Strong)):
+        if is_strong:
+            found += [Strong(language.words(s.text)) for s in spans if isinstance(s, Strong)]
+        else:
+            spelt = (_spelt(s, language) if isinstance(s, Formula) else s for s in spans)
+            found += language.text(tuple(spelt))
+    return tuple(found)
+
+
+def _with_claims(section: Section, language: Catalogue) -> Section:
+    """The section with the words in what was proved of its equations."""
+
+    def translated(block: NoteBlock) -> NoteBlock:
+        if not isinstance(block, Equation):
+            return block
+        proved, unproved = (
+            tuple(_spelt(claim, language) for claim in claims)
+            for claims in (block.proved, block.unproved)
+        )
+        return replace(block, proved=proved, unproved=unproved)
+
+    return replace(section, blocks=tuple(map(translated, section.blocks)))
+
+
+def _spelt(formula: Formula, language: Catalogue) -> Formula:
+    """The formula with the words in its row, such as: f for every integral."""
+    if isinstance(formula, Words):
+        return Words(language.words(formula.text))
+    if isinstance(formula, Row):
+        return Row(tuple(_spelt(part, language) for part in formula.parts))
+    return formula
+
 
 def texts_of(block: NoteBlock) -> Iterator[Text]:
     """The texts of a block, in order."""
@@ -219,5 +271,6 @@ def _changed(block: NoteBlock, change: Callable[[Text], Text]) -> NoteBlock:
             return replace(block, caption=caption, description=description)
         case NoteTable():
             rows = tuple(tuple(map(change, row)) for row in block.rows)
-            return replace(block, head=tuple(map(change, block.head)), rows=rows)
+            head, called = tuple(map(change, block.head)), plain(change((block.caption,)))
+            return replace(block, caption=called, head=head, rows=rows)
     return block

@@ -53,6 +53,12 @@ class OwnText:
 
         Raises ModelError, with the nearest name, for one that the document does not have.
         """
+        words = document.language.words  # titles may be given in English, too
+        before, after = ({words(k): v for k, v in own.items()} for own in (self.before, self.after))
+        own = replace(self, omit=tuple(map(words, self.omit)), before=before, after=after)
+        return own._applied(document)
+
+    def _applied(self, document: Document) -> Document:
         known = [*(s.title for s in document.sections), *(e.label for e in document.equations)]
         for name in (*self.omit, *self.before, *self.after):
             if not any(map(_Named(name), known)):

@@ -46,7 +46,7 @@ _SCRIPTS = {"<super>": "^", "<sub>": "_"}  # as Unicode tells of ², ₀, ₊ an
 _PLAIN = frozenset(f"{ascii_letters}{digits}+-=()")  # what LaTeX writes there as it is
 _TEXT_ACCENTS = {"\u0307": r"\.", "\u0308": r"\""}
 _MATH_ACCENTS = {"\u0307": r"\dot", "\u0308": r"\ddot"}
-_PUNCTUATION = "–—‘’“”…€"
+_PUNCTUATION = "–—‘’“”„…€"
 _MISSING = set("ĦħĸĿŀŉŦŧſ")  # in the range of Latin letters, but not in the T1 fonts
 _LIGATURES = re.compile(r"([-,'])(?=\1)")
 _CLUSTERS = re.compile(r"(?s)(.)([\u0300-\u036f]*)")

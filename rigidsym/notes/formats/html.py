@@ -28,7 +28,6 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.figure.svg import svg
 from rigidsym.notes.formats.printer import NotePrinter
-from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
 
@@ -54,6 +53,8 @@ def rendered(template: str, printer: HtmlPrinter, **more: object) -> str:
         resources.environment()
         .get_template(template)
         .render(
+            language=document.language.code,
+            words=lambda english: escape(printer.said(english)),
             title=escape(document.title),
             subtitle=escape(document.subtitle),
             byline=escape(" · ".join(document.byline)),
@@ -66,7 +67,7 @@ def rendered(template: str, printer: HtmlPrinter, **more: object) -> str:
                 for place, section in enumerate(document.sections, start=1)
             ],
             sources=[
-                {"key": f"source-{place}", "text": escape(source)}
+                {"key": f"source-{place}", "text": escape(printer.said(source))}
                 for place, source in enumerate(document.sources, start=1)
             ],
             **more,
@@ -106,10 +107,11 @@ class HtmlPrinter(NotePrinter):
         if not equation.number:
             return f'<div class="equation">{shown}</div>'
         label, number = escape(equation.label), equation.number
+        named = escape(self.said(f"Equation {number}"))
         said = " ".join(f"{claim}." for claim in self.claims(equation))
         function = f" {self.code(equation.function)}" if equation.function else ""
         lines = (
-            f'<div class="equation" id="{label}" role="group" aria-label="Equation {number}">',
+            f'<div class="equation" id="{label}" role="group" aria-label="{named}">',
             shown,
             f'<a class="number" href="#{label}">({number})</a>',
             "</div>",
@@ -122,7 +124,8 @@ class HtmlPrinter(NotePrinter):
         """The display, which scrolls sideways on a phone if it is too wide."""
         shown = display(equation, self.document.letters, _PAGE, self.pen)
         formula = math(shown.text, spoken(equation, self.document.letters), is_display=True)
-        return f'<div class="display">{self._lead(equation, shown)}{_fitted(formula, shown)}</div>'
+        inside = self._lead(equation, shown) + self._fitted(formula, shown)
+        return f'<div class="display">{inside}</div>'
 
     def tools(self, equation: Equation) -> str:  # noqa: ARG002  (a page has some)
         """What stands behind a numbered equation, to be used on it."""
@@ -135,9 +138,22 @@ class HtmlPrinter(NotePrinter):
             sides = display(without, letters, _PAGE, self.pen)
             if sides.lines > 1 or sides.width > _IN_WORDS * _PAGE:
                 formula = math(sides.text, spoken(without, letters), is_display=True)
-                return f"{_fitted(formula, sides)}<p>Its entries are</p>"
-        announced = self.text(announcement(equation, shown.done))
+                return f"{self._fitted(formula, sides)}<p>{self.said('Its entries are')}</p>"
+        announced = self.announced(equation, shown.done)
         return f"<p>{announced}</p>" if announced else ""
+
+    def _fitted(self, formula: str, shown: Display) -> str:
+        """A formula in smaller type where it is too wide for a phone, if that can be read."""
+        if shown.width <= _PHONE:
+            return f'<div class="formula">{formula}</div>'
+        if shown.width <= _SMALLER * _PHONE:
+            size = f"min(1em, calc((100vw - 2rem) / {_SAFE * shown.width:.1f}))"
+            return f'<div class="formula" style="font-size: {size}">{formula}</div>'
+        # what has to be scrolled must be within reach of the keyboard
+        label = escape(self.said("wide formula"))
+        return (
+            f'<div class="formula" tabindex="0" role="group" aria-label="{label}">{formula}</div>'
+        )
 
     def notetable(self, table: NoteTable) -> str:
         head = "".join(f'<th scope="col">{self.text(cell)}</th>' for cell in table.head)
@@ -156,7 +172,7 @@ class HtmlPrinter(NotePrinter):
         number = self.document.figures.index(figure) + 1
         drawing = svg(
             figure.drawing,
-            title=f"Figure {number}",
+            title=self.said(f"Figure {number}"),
             description=plain((*figure.caption, " ", *figure.description)),
             name=f"figure-{number}",
         )
@@ -210,18 +226,6 @@ def _whole(parts: Sequence[str], opening: str, points: str) -> str:
     if points:
         written[-1] = f'<span class="whole">{written[-1]}{points}</span>'
     return " ".join(written)
-
-
-def _fitted(formula: str, shown: Display) -> str:
-    """A formula in smaller type where it is too wide for a phone, as far as that can be read."""
-    if shown.width <= _PHONE:
-        return f'<div class="formula">{formula}</div>'
-    if shown.width <= _SMALLER * _PHONE:
-        size = f"min(1em, calc((100vw - 2rem) / {_SAFE * shown.width:.1f}))"
-        return f'<div class="formula" style="font-size: {size}">{formula}</div>'
-    # what has to be scrolled must be within reach of the keyboard
-    reach = ' tabindex="0" role="group" aria-label="wide formula"'
-    return f'<div class="formula"{reach}>{formula}</div>'
 
 
 def _breakable(name: str) -> str:

@@ -22,7 +22,6 @@ from rigidsym.notes.document.document import (
 from rigidsym.notes.figure.tikz import tikz
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.printer import NotePrinter
-from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
 from rigidsym.version import __version__
@@ -64,6 +63,8 @@ def rendered(template: str, document: Document) -> str:
         resources.environment(**_DELIMITERS)
         .get_template(template)
         .render(
+            babel=document.language.babel,
+            words=lambda english: escape(printer.said(english)),
             title=escape(document.title),
             subtitle=escape(document.subtitle),
             byline=escape(" · ".join(document.byline)),
@@ -71,7 +72,7 @@ def rendered(template: str, document: Document) -> str:
             last=[section for is_last, section in written if is_last],
             metadata=metadata(document),
             sources=[
-                {"key": printer.key(place), "text": escape(source)}
+                {"key": printer.key(place), "text": escape(printer.said(source))}
                 for place, source in enumerate(document.sources, start=1)
             ],
         )
@@ -114,7 +115,7 @@ class _LatexPrinter(NotePrinter):
     def equation(self, equation: Equation) -> str:
         width = PAGE if equation.number else _LINE
         shown = display(equation, self.document.letters, width, self.pen)
-        announced = self.text(announcement(equation, shown.done))
+        announced = self.announced(equation, shown.done)
         lines = [announced] if announced else []
         if shown.rows is not None and shown.rows.height > _TALL:
             lines += self._over_pages(equation, shown.rows)

@@ -25,7 +25,6 @@ from rigidsym.notes.document.document import (
     Text,
 )
 from rigidsym.notes.formats.printer import NotePrinter
-from rigidsym.notes.prose.prose import announcement
 from rigidsym.notes.sanitize import cleaned
 from rigidsym.version import OWNERSHIP
 
@@ -82,15 +81,16 @@ class _MarkdownPrinter(NotePrinter):
             yield "\n\n".join(prose)
 
     def sources(self) -> str:
-        lines = (f"{place}. {escape(s)}" for place, s in enumerate(self.document.sources, start=1))
-        return "\n".join(["## Sources", "", *lines])
+        sources = map(self.said, self.document.sources)
+        lines = (f"{place}. {escape(source)}" for place, source in enumerate(sources, start=1))
+        return "\n".join([f"## {escape(self.said('Sources'))}", "", *lines])
 
     def paragraph(self, block: Paragraph) -> str:
         return _LINE_START.sub(_unlisted, self.text(block.text).lstrip())
 
     def equation(self, equation: Equation) -> str:
         shown = display(equation, self.document.letters, _WIDTH, self.pen)
-        announced = self.text(announcement(equation, shown.done))
+        announced = self.announced(equation, shown.done)
         tag = f"\n\\tag{{{equation.number}}}" if equation.number else ""
         function = [_code(equation.function)] if equation.function else []
         remarks = " · ".join([*self.claims(equation), *function])

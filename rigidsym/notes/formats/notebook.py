@@ -25,7 +25,7 @@ def render(document: Document) -> str:
     nbformat = _nbformat()
     pieces = list(parts(document))
     if document.program and not any(isinstance(part, CodeBlock) for part in pieces):
-        pieces += ["In Python:", CodeBlock(document.program)]
+        pieces += [document.language.words("In Python:"), CodeBlock(document.program)]
     cells = [_cell(nbformat, part, place) for place, part in enumerate(pieces, start=1)]
     notebook = nbformat.v4.new_notebook(cells=cells, metadata=_METADATA)
     nbformat.validate(notebook)

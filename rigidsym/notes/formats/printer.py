@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import ClassVar
 
+from rigidsym.formula.display import Done
 from rigidsym.formula.sheet_pen import Inline, SheetPen
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import (
@@ -23,6 +24,7 @@ from rigidsym.notes.document.document import (
     Strong,
     Text,
 )
+from rigidsym.notes.prose.prose import announcement
 
 
 class NotePrinter:
@@ -38,6 +40,7 @@ class NotePrinter:
 
     def __init__(self, document: Document, pen: SheetPen) -> None:
         self.document = document
+        self.language = document.language
         self.pen = pen
         self._inlines = pen.inline(document.formulas)
 
@@ -63,15 +66,24 @@ class NotePrinter:
             case EquationReference(label):
                 return self.reference(label)
             case Cited():
-                return self.citation(self.document.source_number(span), span.place)
+                return self.citation(self.document.source_number(span), self.said(span.place))
 
     def inline(self, formula: Formula) -> Inline:
         """A formula as it stands among words."""
         return self._inlines.get(formula) or self.pen.inline((formula,))[formula]
 
+    def said(self, english: str) -> str:
+        """Words of the page in the language of the document."""
+        return self.language.words(english)
+
+    def announced(self, equation: Equation, done: Done) -> str:
+        """What is said before an equation of the way it is set."""
+        return self.text(self.language.text(announcement(equation, done)))
+
     def claims(self, equation: Equation) -> Iterator[str]:
         """What was proved of an equation, and what was not."""
-        kinds = (("Proved", equation.proved), (self.strong("Unproved"), equation.unproved))
+        proved, unproved = self.said("Proved"), self.strong(self.said("Unproved"))
+        kinds = ((proved, equation.proved), (unproved, equation.unproved))
         for kind, claims in kinds:
             if claims:
                 yield f"{kind}: {', '.join(map(self.claim, claims))}"
@@ -82,6 +94,5 @@ class NotePrinter:
     def figure_words(self, figure: Figure) -> str:
         """What is said below a figure."""
         number = self.document.figures.index(figure) + 1
-        return self.text(
-            (Strong(f"Figure {number}."), " ", *figure.caption, " ", *figure.description)
-        )
+        named = Strong(self.said(f"Figure {number}."))
+        return self.text((named, " ", *figure.caption, " ", *figure.description))

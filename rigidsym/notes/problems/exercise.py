@@ -13,6 +13,7 @@ from rigidsym.formula.display import display
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.tree import MINUS, Formula, Numeral, equal, row
 from rigidsym.mechanics.derivation import Argument
+from rigidsym.notes.document.catalogue import language_of
 from rigidsym.notes.document.document import (
     Document,
     Equation,
@@ -85,6 +86,7 @@ class Sheet:
     title: str
     variant: int
     problems: tuple[Exercise, ...]
+    language: str = "en"
 
     @property
     def name(self) -> str:
@@ -101,7 +103,7 @@ class Sheet:
                 Section(p.title, (*p.question, *_solution(p)) if solved else p.question)
                 for p in self.problems
             ),
-        )
+        ).translated(language_of(self.language))
 
     @property
     def letters(self) -> Letters:
@@ -110,13 +112,8 @@ class Sheet:
     @property
     def moodle(self) -> str:
         """A question bank in Moodle XML: one question with embedded answers a problem."""
-        questions = "".join(
-            '<question type="cloze">\n'
-            f"<name><text>{escape(p.title)}</text></name>\n"
-            f'<questiontext format="html"><text><![CDATA[{_html(p, self.letters)}]]></text>'
-            "</questiontext>\n</question>\n"
-            for p in self.problems
-        )
+        asked = zip(self.document(solved=False).sections, self.problems, strict=True)
+        questions = "".join(_question(*each, self.letters) for each in asked)
         return f'<?xml version="1.0" encoding="UTF-8"?>\n<quiz>\n{questions}</quiz>\n'
 
 
@@ -130,11 +127,12 @@ def sheet_of(
     *,
     count: int,
     variant: int,
+    language: str = "en",
 ) -> Sheet:
     """`count` problems of a subject, its kinds in turn; the same variant is the same sheet.
 
     No two are alike: a problem is drawn again, and where a kind has no more, of the next kind.
-    Raises ModelError for a subject that is not among the kinds.
+    Raises ModelError for a subject that is not among the kinds, and an unknown language.
     """
     if subject not in kinds:
         raise ModelError(f"no problems on {subject!r}; there are {', '.join(kinds)}")
@@ -143,7 +141,13 @@ def sheet_of(
     for k in range(count):
         drawn = _drawn(made, k, f"{subject} {variant} {k}")
         problems.append(next(p for p in drawn if not any(map(p.is_like, problems))))
-    return Sheet(subject=subject, title=title, variant=variant, problems=tuple(problems))
+    return Sheet(
+        subject=subject,
+        title=title,
+        variant=variant,
+        problems=tuple(problems),
+        language=language_of(language).code,
+    )
 
 
 def _drawn(kinds: Sequence[_Kind], start: int, seed: str) -> Iterator[Exercise]:
@@ -167,8 +171,18 @@ def numeral(value: float) -> Formula:
     return row(MINUS, digits) if value < 0 else digits
 
 
-def _html(problem: Exercise, letters: Letters) -> str:
-    parts = [_block(block, letters) for block in problem.question]
+def _question(section: Section, problem: Exercise, letters: Letters) -> str:
+    """A problem, asked in the words of a section."""
+    return (
+        '<question type="cloze">\n'
+        f"<name><text>{escape(section.title)}</text></name>\n"
+        f'<questiontext format="html"><text><![CDATA[{_html(section, problem, letters)}]]></text>'
+        "</questiontext>\n</question>\n"
+    )
+
+
+def _html(question: Section, problem: Exercise, letters: Letters) -> str:
+    parts = [_block(block, letters) for block in question.blocks]
     for answer in problem.answers:
         asked = f"\\({answer.symbol.latex}\\) = " if answer.symbol else ""
         parts.append(f"<p>{asked}{answer.cloze}</p>")

@@ -20,6 +20,7 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Strong,
     Text,
+    listed,
     said,
     words,
 )
@@ -54,15 +55,9 @@ def _part(part: MovingPart, letters: Letters) -> Text:
             "A point of mass {} moves with the body, with the velocity ({}, {}, {}) in space.",
             *(entries[3], *entries[:3]),
         )
-    turns = [formula_of(turn.angle, letters) for turn in part.rotation.turns]
-    return words(
-        "Another body turns with it by {} only; its principal moments are {}, {} and {}."
-        if len(turns) == 1
-        else f"Another body turns with it by {' and '.join(['{}'] * len(turns))} only; its "
-        "principal moments are {}, {} and {}.",
-        *turns,
-        *entries,
-    )
+    turns = listed([(formula_of(turn.angle, letters),) for turn in part.rotation.turns])
+    moments = words(" only; its principal moments are {}, {} and {}.", *entries)
+    return ("Another body turns with it by ", *turns, *moments)
 
 
 def what_is_constant(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
