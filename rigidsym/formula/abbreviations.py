@@ -44,7 +44,10 @@ class Namer:
         self._known_before = len(self._known)
         factor, inside = factored(matrix)  # what stands before the matrix needs no name
         before = self.letters.shortened(factor)
-        entries = [self.letters.shortened(entry) for entry in inside]
+        is_symmetric = inside.rows > 1 and inside == inside.T  # then half of it is listed
+        places = [divmod(k, inside.cols) for k in range(len(inside))]
+        places = [(i, j) for i, j in places if i <= j or not is_symmetric]
+        entries = [self.letters.shortened(inside[place]) for place in places]
         moving = sp.Tuple(*entries).atoms(AppliedUndef, sp.Derivative)
         as_symbols = {part: sp.Symbol(f"at_{k}") for k, part in enumerate(sorted(moving, key=str))}
         still = [entry.xreplace(as_symbols) for entry in entries]  # a rate is not taken apart
@@ -56,7 +59,9 @@ class Namer:
         if before != 1:  # a fraction may have to go below each entry, where no line can break
             more, entries = self._breakable((), [before * entry for entry in entries], room)
             parts = list(dict.fromkeys([*parts, *more]))
-        return tuple(parts), sp.ImmutableMatrix(*matrix.shape, entries)
+        shown = {(j, i): e for (i, j), e in zip(places, entries, strict=True) if is_symmetric}
+        shown |= dict(zip(places, entries, strict=True))
+        return tuple(parts), sp.ImmutableMatrix(*matrix.shape, lambda i, j: shown[int(i), int(j)])
 
     def forget(self) -> None:
         """Free the names that were given last, where they come to stand nowhere."""
@@ -72,9 +77,10 @@ class Namer:
         for symbol, value in found:
             whole = value.xreplace(written)
             if self._is_worth_it(whole, times[symbol]):
-                name = self._name_of(whole)
-                written[symbol] = name
-                parts.append((name, whole))
+                sign = -1 if whole.as_coeff_Mul()[0].is_negative or -whole in self._known else 1
+                name = self._name_of(sign * whole)
+                written[symbol] = sign * name
+                parts.append((name, sign * whole))
             else:
                 written[symbol] = whole
         return parts, [entry.xreplace(written) for entry in entries]

@@ -9,7 +9,7 @@ import sympy as sp
 
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import break_lines
-from rigidsym.formula.scalars import formula_of, matrix_of
+from rigidsym.formula.scalars import formula_of, listed_entries, matrix_of
 from rigidsym.formula.tree import Formula, Matrix, equal
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 
@@ -72,7 +72,7 @@ class Console:
         for lines in _forms(self._heads(sides), self._texts(rows)):
             if max(map(columns, lines)) <= self.width:
                 return lines
-        return list(self.listing(names, [entry for line in rows for entry in line]))
+        return list(self.listing(*zip(*listed_entries(names, matrix), strict=True)))
 
     def listing(
         self, names: Iterable[Formula], entries: Iterable[Formula | sp.Expr]

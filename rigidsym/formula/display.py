@@ -16,7 +16,7 @@ import sympy as sp
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Line, break_lines
-from rigidsym.formula.scalars import factored, formula_of, matrix_of
+from rigidsym.formula.scalars import factored, formula_of, listed_entries, matrix_of
 from rigidsym.formula.sheet_pen import Aligned, SheetPen
 from rigidsym.formula.tree import EQUALS, Formula, Matrix, equal, row
 from rigidsym.formula.unicode_pen import UnicodePen
@@ -188,7 +188,9 @@ class _Setter:
             for form in self._forms(sides, full, self.pen.but(short=True)):
                 if form.width <= width:
                     return replace(form, done="abbreviated")
-        lines, needed = self._listing(equation.entries, [e for row in rows for e in row], width)
+        listed = listed_entries(equation.entries, equation.matrix)
+        values = [formula_of(value, self.letters) for _, value in listed]
+        lines, needed = self._listing([name for name, _ in listed], values, width)
         return self._below(Rows(tuple(lines)), needed, "listed")
 
     def _whole(self, matrix: sp.ImmutableMatrix) -> Formula:

@@ -37,6 +37,7 @@ from rigidsym.formula.tree import (
     Matrix,
     Numeral,
     Power,
+    Prime,
     Radical,
     Rate,
     Row,
@@ -296,14 +297,17 @@ def named(label: str, order: int = 0) -> Formula:
     """
     head, above, below = split_super_sub(label)
     index = tuple(map(_part, below))
+    prime: Prime = "′" if head.endswith("'") else ""  # I'_12: of the body
+    head = head.removesuffix("'")
     symbol = Symbol(
         _letter(head),
+        prime=prime,
         index=(index[0] if len(index) == 1 else Row(index)) if index else None,
         macro=_macro(head),
     )
     is_word = len(symbol.letter) > 1 and not symbol.macro
     if not is_word:
-        symbol = Symbol(symbol.letter, dots=order, index=symbol.index, macro=symbol.macro)
+        symbol = replace(symbol, dots=order)
     raised = Power(symbol, Row(tuple(map(_part, above)))) if above else symbol
     return Rate(raised, order) if is_word and order else raised
 

@@ -35,6 +35,7 @@ from rigidsym.formula.tree import (
     Row,
     Sign,
     Symbol,
+    equal,
     joined,
     row,
 )
@@ -93,19 +94,41 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     constants = _constants_in_all([rest for _, rest in contents if rest != 0])
     if divisor == 1 and number.is_Integer and constants == 1:
         return sp.S.One, matrix
-    rest = [content / number * (primitive / constants) for content, primitive in contents]
+    rest = [
+        content / number * sp.Add(*(term / constants for term in sp.Add.make_args(primitive)))
+        for content, primitive in contents
+    ]
     return number * constants / divisor, sp.ImmutableMatrix(*matrix.shape, rest)
 
 
 def _constants_in_all(entries: Sequence[sp.Expr]) -> sp.Expr:
     """The product of the powers of symbols that every entry has as factors."""
-    first, *others = (dict(map(power_of, sp.Mul.make_args(entry))) for entry in entries)
+    terms = [term for entry in entries for term in sp.Add.make_args(entry)]
+    first, *others = (dict(map(power_of, sp.Mul.make_args(term))) for term in terms)
     common = sp.S.One
     for base, power in first.items():
         powers = [power, *(other.get(base, sp.S.Zero) for other in others)]
         if base.is_Symbol and all(p.is_Integer and p > 0 for p in powers):
             common *= base ** min(powers)
     return common
+
+
+def listed_entries(
+    names: Sequence[Formula], matrix: sp.ImmutableMatrix
+) -> list[tuple[Formula, sp.Expr]]:
+    """Each entry with its name, row by row; of a symmetric matrix six in place of nine.
+
+    Two entries that are equal by symmetry have both names: I₁₂ = I₂₁.
+    """
+    rows, columns = matrix.shape
+    places = [(i, j) for i in range(rows) for j in range(columns)]
+    if rows == 1 or matrix != matrix.T:
+        return [*zip(names, matrix, strict=True)]
+    return [
+        (equal(*dict.fromkeys((names[columns * i + j], names[columns * j + i]))), matrix[i, j])
+        for i, j in places
+        if i <= j
+    ]
 
 
 def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> list[list[Formula]]:

@@ -198,7 +198,7 @@ def test_a_step_shows_itself_in_jupyter():
 
 def test_a_step_of_a_vector_shows_itself_as_one():
     latex = rs.derive("rotation_vector").step("angular_velocity_body")._repr_latex_()
-    assert r"= \dot{\mathbf{v}} + \frac{\cos n - 1}{n^2}" in latex
+    assert r"= \dot{\mathbf{v}} - \frac{1 - \cos n}{n^2}" in latex
     assert "pmatrix" not in latex
 
 

@@ -12,6 +12,8 @@ from helpers.printing import text
 from helpers.typesetting import bound_together, pages_of, sheet_of
 from rigidsym.formula.abbreviations import Namer
 from rigidsym.formula.display import PAGE, display
+from rigidsym.formula.scalars import factored, listed_entries
+from rigidsym.mechanics.kinematics.vector_forms import LENGTH
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import hat
@@ -24,8 +26,9 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.formats.latex import render as print_latex
 from rigidsym.notes.formats.pdf import typeset
-from rigidsym.notes.formula.derivation_letters import length_of, letters_of
+from rigidsym.notes.formula.derivation_letters import entry_names, length_of, letters_of
 from rigidsym.notes.formula.vector_rates import rate_of_form
+from rigidsym.notes.prose.vector_words import by_half_angle, sign_outside, sum_of_vectors
 
 TURNS = (
     "z(phi)",
@@ -284,3 +287,69 @@ def test_a_summary_says_by_vectors_what_they_can_say(rotation):
         equation = shown[str(step.quantity.symbol)]
         assert equation.matrix is None
         assert len(equation.sides) == 2
+
+
+def test_coefficients_of_the_rotation_vector_are_those_of_a_textbook():
+    """(1 − (n/2) cot(n/2))/n² in W⁻¹, and signs before fractions; each has its proved value."""
+    motion = rs.derive("rotation_vector")
+    letters = letters_of(motion.arguments, model=motion.model)
+    shown = {}
+    for step in motion.steps:
+        if step.vector_form is not None:
+            shown[step.quantity.name] = sum_of_vectors(step.vector_form, letters).text
+            for term in step.vector_form.terms:
+                minus, coefficient = sign_outside(by_half_angle(term.coefficient))
+                sign = -1 if minus else 1
+                for n in (0.3, 2.5, 5.0):
+                    value = {LENGTH: n, letters.length.rate: 0.7}
+                    one, other = (e.xreplace(value) for e in (term.coefficient, coefficient))
+                    assert float(one) == pytest.approx(sign * float(other), rel=1e-12)
+    inverse = shown["inverse_rate_matrix_space"]
+    assert inverse == "1 − ½C(v) + ((2 − n cot(n/2))/(2n²)) C(v)²"
+    assert "− ((1 − cos n)/n²) v × v̇" in shown["angular_velocity_body"]
+    assert not any("cos n − " in text for text in shown.values())
+
+
+def test_no_name_is_the_negative_of_another():
+    x, y, theta = sp.symbols("x y theta")
+    part = (2 * sp.cos(theta) ** 2 - 1) * x
+    matrix = sp.ImmutableMatrix([[(y - part) ** 2, sp.sin(y + part)], [(y - part) * x, part * y]])
+    parts, short = Namer(letters_of(())).named(matrix, 40.0)
+    assert parts
+    values = [value for _, value in parts]
+    assert not any(-value in values for value in values)
+    for symbol, value in reversed(parts):
+        short = short.subs(symbol, value)
+    assert all(_agree_at(one, other) for one, other in zip(short, matrix, strict=True))
+
+
+def _agree_at(one: sp.Expr, other: sp.Expr) -> bool:
+    point = {s: sp.Rational(k + 2, 7) for k, s in enumerate(sp.symbols("x y theta"))}
+    return abs((one - other).xreplace(point).evalf(30)) < 1e-25
+
+
+def test_of_a_symmetric_tensor_six_entries_are_listed_with_both_names():
+    motion = rs.derive("ZXZ", ("inertia_tensor_space",), body=rs.general_inertia())
+    (step,) = motion.steps
+    assert step.expression == step.expression.T
+    listed = listed_entries(entry_names(step, motion.arguments), step.expression)
+    assert [name.text for name, _ in listed] == [
+        "I₁₁", "I₁₂ = I₂₁", "I₁₃ = I₃₁", "I₂₂", "I₂₃ = I₃₂", "I₃₃",
+    ]  # fmt: skip
+    letters = letters_of(motion.arguments)  # the tensor in the body has primes
+    names = {letters.name(symbol).text for symbol in step.expression.free_symbols}
+    assert {"I′₁₁", "I′₁₂"} <= names
+
+
+def test_mirror_entries_about_a_point_look_the_same():
+    motion = rs.derive("ZXZ", ("inertia_tensor_point",), body=rs.solid("cone"))
+    (tensor,) = (step.expression for step in motion.steps)
+    assert tensor == tensor.T
+
+
+def test_a_factor_of_all_terms_goes_before_the_matrix():
+    a, m = sp.symbols("a m", positive=True)
+    entries = [11 * a**2 * m + sp.sqrt(13) * a**2 * m, 22 * a**2 * m]
+    factor, rest = factored(sp.ImmutableMatrix(entries))
+    assert factor == a**2 * m
+    assert rest == sp.ImmutableMatrix([11 + sp.sqrt(13), 22])

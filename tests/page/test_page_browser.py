@@ -724,7 +724,7 @@ def test_numbers_of_contents_keep_clear_of_the_column_before(tab, tmp_path):
 
 def test_sources_are_no_numbered_section(tab, tmp_path):
     opened(tab, page_of("ZXZ"), tmp_path)
-    numbers = "[...document.querySelectorAll('main h2')].map((h) => getComputedStyle(h, '::before').content)"
-    *sections, sources = tab.run(numbers)
+    number = "(heading) => getComputedStyle(heading, '::before').content"
+    *sections, sources = tab.run(f"[...document.querySelectorAll('main h2')].map({number})")
     assert all("counter" in number for number in sections)
     assert sources == "none"

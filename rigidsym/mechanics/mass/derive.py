@@ -133,7 +133,7 @@ class _Inertia:
             3,
             3,
             lambda i, j: (
-                mass * (sum(d[k] ** 2 for k in range(3) if k != i) if i == j else -d[i] * d[j])
+                mass * sum(d[k] ** 2 for k in range(3) if k != i) if i == j else -mass * d[i] * d[j]
             ),
         )
 

@@ -103,7 +103,10 @@ def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument,
         return ()
     about = ["angles in radians, components of axes"] if model.constants else []
     about += ["masses, moments of inertia, lengths of the body"] if of_body else []
-    found = _vector("parameters", symbols, "", f"constants: {'; '.join(about)}")
+    entries = {sp.Symbol(f"I_{i}{j}") for i in (1, 2, 3) for j in (1, 2, 3)}
+    primed = entries & (body.inertia.free_symbols if body else set())  # along axes of the body
+    notation = [named(s.name.replace("_", "'_") if s in primed else s.name) for s in symbols]
+    found = _vector("parameters", symbols, "", f"constants: {'; '.join(about)}", notation)
     units = ("",) * len(model.constants) + tuple(p.unit for p in of_body)
     return (replace(found, units=units),)
 

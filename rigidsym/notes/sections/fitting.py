@@ -19,7 +19,7 @@ import sympy as sp
 from rigidsym.formula.abbreviations import Namer, Part
 from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.scalars import formula_of
+from rigidsym.formula.scalars import formula_of, listed_entries
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
@@ -96,13 +96,17 @@ class Fitter:
         if equation.matrix is None and equation.scalar is None:
             return False
         shown = display(equation, self.letters, PAGE)
-        lines = min(len(equation.sides), 2) if equation.matrix is None else len(equation.entries)
+        matrix = equation.matrix
+        lines = min(len(equation.sides), 2)
+        if matrix is not None:
+            lines = len(listed_entries(equation.entries, matrix))
         return shown.lines > lines or shown.width > PAGE
 
     def _named(self, equation: Equation) -> _Form:
         scalar = equation.scalar
         matrix = sp.ImmutableMatrix([scalar]) if equation.matrix is None else equation.matrix
-        parts, short = self._namer.named(matrix, PAGE - _ROOM_OF_A_NAME)
+        names = 1.5 if matrix.rows > 1 and matrix == matrix.T else 1.0  # I₁₂ = I₂₁
+        parts, short = self._namer.named(matrix, PAGE - names * _ROOM_OF_A_NAME)
         value = {"scalar": short[0]} if equation.matrix is None else {"matrix": short}
         return _Form(replace(equation, **value), parts)
 

@@ -81,7 +81,7 @@ def _named(body: RigidBody) -> tuple[Parts, RigidBody]:
 
 
 def _entry(row: int, column: int) -> sp.Symbol:
-    return sp.Symbol(f"I_{min(row, column) + 1}{max(row, column) + 1}")
+    return sp.Symbol(f"I'_{min(row, column) + 1}{max(row, column) + 1}")
 
 
 def textbook_form(name: str, derivation: Derivation) -> tuple[Formula, ...]:
