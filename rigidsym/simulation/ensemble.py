@@ -15,6 +15,7 @@ from rigidsym.simulation.samples import Array, relative_changes
 from rigidsym.simulation.solver import with_motion
 
 _ANGLE = 0.05  # radians that the fastest body turns in a step
+_BLOCK = 1000  # motions whose stages stay in the cache
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -73,28 +74,26 @@ def simulate_ensemble(
     members = _members(initial, parameters)
     first = Problem(with_motion(derivation), *_of(0, initial, parameters))
     constants = np.array(first.constants, float)
-    y = np.array([first.state_of(_of(k, initial, {})[0]) for k in range(members)])
-    if first.constants:
+    start = first.state_of(initial)
+    start = np.broadcast_to(start, (members, start.shape[-1]))
+    if first.constants and any(map(np.ndim, parameters.values())):
         names = first.names["parameters"]
-        known = {name: np.broadcast_to(parameters.get(name, 1.0), members) for name in names}
-        constants = np.stack([known[name] for name in names], axis=1).astype(float)
-
-    def slopes(t: float, y: Array) -> Array:
-        given = (constants,) if first.constants else ()
-        return np.asarray(first.kernels.state_derivative(t, y, *given))
-
+        known = [np.broadcast_to(parameters.get(name, 1.0), members) for name in names]
+        constants = np.stack(known, axis=1).astype(float)
     times = np.linspace(0.0, t_end, samples)
-    speed = float(np.linalg.norm(first.omega(y), axis=1).max()) or 1.0
+    speed = float(np.linalg.norm(first.omega(start), axis=1).max()) or 1.0
     count = max(1, int(np.ceil(times[1] / (step or _ANGLE / speed))))
-    found = [y]
-    for start, end in zip(times[:-1].tolist(), times[1:].tolist(), strict=True):
-        h = (end - start) / count
-        for k in range(count):
-            y = _stepped(DOP853, slopes, start + k * h, y, h)
-        found.append(y)
-        if progress is not None:
-            progress(end / t_end)
-    states = np.array(found)
+    states = np.empty((samples, *start.shape))
+    blocks = range(0, members, _BLOCK)
+    for done, at in enumerate(blocks):
+        these = slice(at, at + _BLOCK)
+        given = (constants if constants.ndim < 2 else constants[these],) if len(constants) else ()
+        method = _RungeKutta(DOP853, first.kernels.state_derivative, given)
+        states[0, these] = start[these]
+        for k in range(1, samples):
+            states[k, these] = method.moved(states[k - 1, these], times[k - 1], times[k], count)
+            if progress is not None:
+                progress((done + k / (samples - 1)) / len(blocks))
     momentum = np.linalg.norm(first.omega(states[0]) @ first.inertia, axis=1)
     changes = relative_changes(first.integrals(times[:, None], states, constants), momentum)
     return Ensemble(
@@ -130,12 +129,22 @@ def _of(k: int, *given: Mapping[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
-def _stepped(
-    method: Any, slopes: Callable[[float, Array], Array], t: float, y: Array, h: float
-) -> Array:
-    """One step of an explicit Runge-Kutta method with the tableau (A, B, C)."""
-    stages: list[Array] = []
-    for node, weights in zip(method.C[: method.n_stages], method.A, strict=False):
-        moved = sum((w * s for w, s in zip(weights, stages, strict=False) if w), start=0 * y)
-        stages.append(slopes(t + node * h, y + h * moved))
-    return y + h * sum((b * s for b, s in zip(method.B, stages, strict=True) if b), start=0 * y)
+class _RungeKutta:
+    """Steps of an explicit method with the tableau (A, B, C) of one of SciPy's."""
+
+    def __init__(self, method: Any, slopes: Callable[..., Array], given: tuple[Array, ...]) -> None:
+        count = method.n_stages
+        self.sums, self.nodes, self.weights = method.A[:count, :count], method.C[:count], method.B
+        self.slopes, self.given = slopes, given
+
+    def moved(self, y: Array, start: float, end: float, count: int) -> Array:
+        """The states at `end`, after `count` steps."""
+        h = (end - start) / count
+        stages = np.empty((len(self.nodes), *y.shape))
+        flat = stages.reshape(len(stages), -1)
+        for step in range(count):
+            for k, node in enumerate(self.nodes):
+                moved = y + h * (self.sums[k, :k] @ flat[:k]).reshape(y.shape)
+                stages[k] = self.slopes(start + (step + node) * h, moved, *self.given)
+            y = y + h * (self.weights @ flat).reshape(y.shape)
+        return y

@@ -73,16 +73,20 @@ class Problem:
         return set().union(*(expression.free_symbols for expression in held))
 
     def state_of(self, initial: Mapping[str, Any]) -> Array:
-        """The state at t = 0, from coordinates and rates by name or the angular velocity."""
+        """The state at t = 0, (..., k), from coordinates and rates by name or the angular velocity.
+
+        Values that are arrays broadcast.
+        """
         rates = (OMEGA,) if OMEGA in initial else self.names["q_dot"]
         wanted = (*self.coordinates, *rates)
         known = (*self.coordinates, *self.names["q_dot"], OMEGA)
         check_names("initial values", initial, wanted, wanted if OMEGA in initial else known)
-        q = np.array([initial[name] for name in self.coordinates], float)
-        given = np.array(
-            initial[OMEGA] if OMEGA in initial else [initial[name] for name in rates], float
-        )
-        if OMEGA in initial and given.shape != (3,):
+        q = _stacked([initial[name] for name in self.coordinates])
+        if OMEGA in initial:
+            given = np.asarray(initial[OMEGA], float)
+        else:
+            given = _stacked([initial[name] for name in rates])
+        if OMEGA in initial and given.shape[-1:] != (3,):
             raise ModelError(f"{OMEGA}: expected three components, got {initial[OMEGA]}")
         if OMEGA in initial and not self.is_euler:
             given = self.kernels.rates_from_angular_velocity_body(q, given, *self.angles)
@@ -94,7 +98,9 @@ class Problem:
                 )
         elif OMEGA not in initial and self.is_euler:
             given = self.kernels.angular_velocity_body(q, given, *self.angles)
-        return np.concatenate([q, given])
+        many = np.broadcast_shapes(q.shape[:-1], given.shape[:-1])
+        parts = [np.broadcast_to(part, (*many, part.shape[-1])) for part in (q, given)]
+        return np.concatenate(parts, axis=-1)
 
     def given(self, function: str) -> list[float]:
         """The parameters, if a function takes them."""
@@ -168,6 +174,11 @@ class Problem:
         inputs = self.derivation.step("first_integrals").quantity.inputs
         values = np.asarray(self.kernels.first_integrals(*map(known.get, inputs)))
         return {name: values[..., k] for k, name in enumerate(names)}
+
+
+def _stacked(values: Sequence[Any]) -> Array:
+    """Numbers or arrays as the components of one array."""
+    return np.stack(np.broadcast_arrays(*values), axis=-1).astype(float)
 
 
 def check_names(
