@@ -18,7 +18,7 @@ from fractions import Fraction
 from functools import reduce
 from itertools import combinations
 from math import gcd, lcm
-from operator import sub
+from operator import add, itemgetter, sub
 from typing import NamedTuple
 
 import sympy as sp
@@ -35,34 +35,35 @@ def shortest(ring: Ring, element: PolyElement) -> PolyElement:
     if element.is_ground:
         return element
     best = current = element
+    least = length = _length(element)
     seen = {current}
     for _ in range(_MOST_STEPS):
-        candidate = _shortest_outside(seen, list(_neighbours(ring, current)))
-        if candidate is None or _length(candidate) > _length(current):
+        neighbours = sorted(_neighbours(ring, current, length), key=itemgetter(0))
+        found = ((n.length, current - n.relation.mul_term(n.term)) for n in neighbours)
+        fresh = next((neighbour for neighbour in found if neighbour[1] not in seen), None)
+        if fresh is None or fresh[0] > length:
             break
-        seen.add(candidate)
-        current = candidate
-        if _length(current) < _length(best):
-            best = current
+        length, current = fresh
+        seen.add(current)
+        if length < least:
+            least, best = fresh
     return best
-
-
-def _shortest_outside(seen: set[PolyElement], found: Sequence[PolyElement]) -> PolyElement | None:
-    """The first of the shortest that are not in the set; only these are looked up and added up."""
-    for count in sorted(set(map(len, found))):
-        short = sorted((element for element in found if len(element) == count), key=_length)
-        fresh = next((element for element in short if element not in seen), None)
-        if fresh is not None:
-            return fresh
-    return None
 
 
 def _length(element: PolyElement) -> tuple[int, int]:
     """The number of terms, then the sum of the degrees."""
-    return len(element), sum(sum(monomial) for monomial in element)
+    return len(element), sum(map(sum, element))
 
 
-def _neighbours(ring: Ring, element: PolyElement) -> Iterator[PolyElement]:
+class Neighbour(NamedTuple):
+    """What is left when a multiple of a relation is subtracted; made only where it is short."""
+
+    length: tuple[int, int]
+    relation: PolyElement
+    term: tuple[Monomial, object]  # which multiplies the relation
+
+
+def _neighbours(ring: Ring, element: PolyElement, length: tuple[int, int]) -> Iterator[Neighbour]:
     """Each polynomial in which one term was replaced by means of one relation."""
     domain = ring.polynomials.domain
     highest = tuple(map(max, zip(*element, strict=True)))
@@ -73,9 +74,18 @@ def _neighbours(ring: Ring, element: PolyElement) -> Iterator[PolyElement]:
             if any(monomial[k] < power for k, power in needed):
                 continue
             times, left = domain.div(coefficient, factor)
-            if not left:  # in Z a coefficient may not be divisible
-                rest = tuple(map(sub, monomial, part))
-                yield element - relation.mul_term((rest, times))
+            if left:  # in Z a coefficient may not be divisible
+                continue
+            rest = tuple(map(sub, monomial, part))
+            count, degrees = length
+            for own, number in relation.items():
+                changed = tuple(map(add, own, rest))
+                before = element.get(changed)
+                if before is None:
+                    count, degrees = count + 1, degrees + sum(changed)
+                elif before == number * times:
+                    count, degrees = count - 1, degrees - sum(changed)
+            yield Neighbour((count, degrees), relation, (rest, times))
 
 
 Angle = tuple[int, int]  # places of sine and cosine
