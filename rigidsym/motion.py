@@ -16,7 +16,6 @@ from rigidsym.formula.notation import CHOICES as CHOICES, DEFAULT as DEFAULT, No
 from rigidsym.formula.tree import Words
 from rigidsym.kernels.lowering.derivatives import Asked
 from rigidsym.kernels.module import KernelModule as KernelModule, generate
-from rigidsym.mechanics.conversions.conversions import Conversions, conversions_of
 from rigidsym.mechanics.derivation import Derivation, Proof, Step
 from rigidsym.mechanics.derive import Body, derive as derivation_of
 from rigidsym.mechanics.prove import identity
@@ -34,6 +33,7 @@ from rigidsym.models.rotation_text import rotation_from
 from rigidsym.system.limits import time_limit
 
 if TYPE_CHECKING:
+    from rigidsym.mechanics.conversions.conversions import Conversions
     from rigidsym.notes.document.own_text import OwnText
     from rigidsym.notes.note import Note
     from rigidsym.simulation.ensemble import Ensemble
@@ -105,6 +105,8 @@ class Motion(Derivation):
     @property
     def conversions(self) -> Conversions:
         """The conversions between the coordinates, the unit quaternion and R, with proofs."""
+        from rigidsym.mechanics.conversions.conversions import conversions_of
+
         return conversions_of(self.model)
 
     def note(

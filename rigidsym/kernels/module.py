@@ -9,9 +9,8 @@ from types import ModuleType
 
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.derivatives import Asked, derivatives_of, read_requests
-from rigidsym.kernels.lowering.lower import lower
+from rigidsym.kernels.lowering.lower import NO_CONVERSIONS, lower
 from rigidsym.kernels.targets import TARGETS, check_options, printer
-from rigidsym.mechanics.conversions.conversions import conversions_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.system.files import write_text
 
@@ -85,8 +84,12 @@ def generate(
     check_options(target, options)
     language = printer(target)
     asked = derivatives_of(derivation, read_requests(derivatives))
-    converting = conversions_of(derivation.model) if conversions else None
-    program = lower(derivation, language.RESERVED, asked, converting)
+    added = NO_CONVERSIONS
+    if conversions:
+        from rigidsym.mechanics.conversions.conversion_functions import converted
+
+        added = converted(derivation)
+    program = lower(derivation, language.RESERVED, asked, added)
     if not program.kernels:
         raise _nothing_to_write(derivation)
     return KernelModule(

@@ -11,7 +11,7 @@ from typing import Any
 from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets.javascript import printer as javascript
-from rigidsym.mechanics.conversions.conversions import conversions_of
+from rigidsym.mechanics.conversions.conversion_functions import converted
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.rotation import RotationModel
@@ -57,9 +57,8 @@ def _data(name: str, derivation: Derivation) -> dict[str, Any]:
 
 def _kernels(name: str, derivation: Derivation) -> Iterator[Kernel]:
     steps = (turns_step(derivation.model),) if has_turns(derivation.model) else ()
-    conversions = conversions_of(derivation.model)
     shown = replace(derivation, steps=steps, singularities=None)
-    program = lower(shown, javascript.RESERVED, conversions=conversions)
+    program = lower(shown, javascript.RESERVED, added=converted(shown))
     for kernel in program.kernels:
         if kernel.name in (_FROM_MATRIX, "turns"):
             yield replace(kernel, name=f"{kernel.name.removesuffix('_rotation_matrix')}_{name}")

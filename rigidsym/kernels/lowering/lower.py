@@ -24,9 +24,7 @@ from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.read import Reader
 from rigidsym.kernels.lowering.schedule import write
-from rigidsym.mechanics.conversions.conversion_functions import Continuity, Converted, converted
-from rigidsym.mechanics.conversions.conversions import Conversions
-from rigidsym.mechanics.conversions.function import ConversionFunction
+from rigidsym.mechanics.conversions.function import Continuity, ConversionFunction, Converted
 from rigidsym.mechanics.derivation import (
     Argument as Vector,
     Derivation,
@@ -37,6 +35,7 @@ from rigidsym.mechanics.quantities.energy import body_in_words
 from rigidsym.models.rotation import RotationModel
 
 MARGIN = "singularity_margin"
+NO_CONVERSIONS = Converted()
 _SYMBOLS: Mapping[str, str] = {  # by the measure of singularity
     "det W": "|det W|",
     "det W Wᵀ": "√det(W Wᵀ)",
@@ -49,10 +48,10 @@ def lower(
     derivation: Derivation,
     reserved: Iterable[str] = (),
     derivatives: Iterable[Derivative] = (),
-    conversions: Conversions | None = None,
+    added: Converted = NO_CONVERSIONS,
 ) -> ir.Program:
     """The kernels of a derivation: its quantities in the order of equations, derivatives,
-    conversions.
+    then what conversions have `added`.
 
     `reserved` are the words of the target that no name may be. Raises KernelError for an
     expression that kernels cannot hold.
@@ -63,7 +62,6 @@ def lower(
     found = tuple(kernels.of_step(step) for step in steps if step.quantity.inputs)
     found += tuple(kernels.margin())
     found += tuple(map(kernels.of_derivative, derivatives))
-    added = converted(derivation, conversions) if conversions else Converted()
     found += tuple(map(kernels.of_step, added.steps))
     found += tuple(map(kernels.of_function, added.functions))
     used = {argument.name for kernel in found for argument in kernel.arguments}

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeVar
 
 import sympy as sp
 
 from rigidsym.formula.sentence import text_of
 from rigidsym.mechanics.conversions.closed_forms import ClosedForm
-from rigidsym.mechanics.conversions.conversions import UNIT, Conversions, InverseConversion
+from rigidsym.mechanics.conversions.conversions import (
+    UNIT,
+    Conversions,
+    InverseConversion,
+    conversions_of,
+)
 from rigidsym.mechanics.conversions.davenport_angles import DavenportAngles
 from rigidsym.mechanics.conversions.function import (
+    Continuity,
     ConversionFunction,
     ConversionInput,
+    Converted,
     NamedValues,
     Where,
     argument_of,
@@ -47,30 +54,9 @@ _TWO_SETS = (
 _WHOLE_TURNS = "No angle of a turn changes by more than π from one sample to the next."
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Continuity:
-    """How coordinates are made continuous; only turns need functions."""
-
-    kind: str
-    inputs: tuple[str, ...]  # names of arguments
-    remarks: tuple[str, ...]
-    # From the coordinates to the angles and what relates two sets of them, and back.
-    turns: ConversionFunction | None = None
-    coordinates: ConversionFunction | None = None
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Converted:
-    """What a module offers of conversions."""
-
-    steps: tuple[Step, ...] = ()  # in closed form, like other quantities
-    functions: tuple[ConversionFunction, ...] = ()
-    continuity: Continuity | None = None
-    remarks: tuple[str, ...] = ()  # for the head of the module
-
-
-def converted(derivation: Derivation, conversions: Conversions) -> Converted:
+def converted(derivation: Derivation) -> Converted:
     """The functions of the conversions; where there is no inverse, a remark says why."""
+    conversions = conversions_of(derivation.model)
     inverse = conversions.inverse
     steps, functions = _quaternion(derivation, conversions)
     if inverse is not None:

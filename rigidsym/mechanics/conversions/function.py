@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from rigidsym.formula.tree import Symbol
-from rigidsym.mechanics.derivation import Argument
+from rigidsym.mechanics.derivation import Argument, Step
 
 Vector = tuple[sp.Expr, ...]
 Line = tuple[sp.Symbol, sp.Expr]
@@ -43,6 +43,28 @@ class ConversionFunction:
     about: str
     remarks: tuple[str, ...] = ()  # paragraphs
     unit: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Continuity:
+    """How coordinates are made continuous; only turns need functions."""
+
+    kind: str
+    inputs: tuple[str, ...]  # names of arguments
+    remarks: tuple[str, ...]
+    # From the coordinates to the angles and what relates two sets of them, and back.
+    turns: ConversionFunction | None = None
+    coordinates: ConversionFunction | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Converted:
+    """What a module offers of conversions."""
+
+    steps: tuple[Step, ...] = ()  # in closed form, like other quantities
+    functions: tuple[ConversionFunction, ...] = ()
+    continuity: Continuity | None = None
+    remarks: tuple[str, ...] = ()  # for the head of the module
 
 
 def argument_of(name: str, components: Sequence[sp.Symbol], about: str) -> Argument:
