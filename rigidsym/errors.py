@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 _LONGEST = 40  # letters of a name that a message looks for
 _FEW = 10  # known names that a message lists
@@ -115,8 +114,7 @@ class ExpressionError(RigidsymError):
         self.column = column
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Fault:
+class Fault(NamedTuple):
     """One thing wrong in a derivation file."""
 
     message: str  # what was found and what was expected

@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from rigidsym.errors import BodyError, ModelError, RequestError, SpecError
 from rigidsym.kernels.lowering.derivatives import read_request
@@ -42,8 +42,7 @@ PDF = "pdf"  # typeset from the LaTeX, which is written beside it
 PAGE = "page"  # NAME_page.html: the note with an interactive figure
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Output:
+class Output(NamedTuple):
     """One derivation and the text files that are printed from it."""
 
     spec: DerivationSpec

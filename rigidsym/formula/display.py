@@ -7,9 +7,9 @@ that typesets can write the result.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import sympy as sp
 
@@ -46,8 +46,7 @@ class Equation:
     is_result: bool = False  # what a reader looks up stands in a box
 
 
-@dataclass(frozen=True, slots=True)
-class Rows:
+class Rows(NamedTuple):
     """Lines below one another, between which a page may end where they are many."""
 
     lines: tuple[Aligned, ...]
@@ -73,8 +72,7 @@ class Rows:
         return [pen.continued(line.body, line.indent) for line in self.lines]
 
 
-@dataclass(frozen=True, slots=True)
-class Display:
+class Display(NamedTuple):
     """The inside of a display, how wide it is, and what was done that the reader must know."""
 
     text: str
@@ -108,7 +106,7 @@ def _displayed(
     if not equation.is_result:
         return setter.display(equation, width)
     inside = setter.display(equation, width - BOX)
-    return replace(inside, text=setter.pen.boxed(inside.text), width=inside.width + BOX)
+    return inside._replace(text=setter.pen.boxed(inside.text), width=inside.width + BOX)
 
 
 def spoken(equation: Equation, letters: Letters) -> str:
@@ -187,7 +185,7 @@ class _Setter:
         if equation.matrix.shape[1] > 1:
             for form in self._forms(sides, full, self.pen.but(short=True)):
                 if form.width <= width:
-                    return replace(form, done="abbreviated")
+                    return form._replace(done="abbreviated")
         listed = listed_entries(equation.entries, equation.matrix)
         values = [formula_of(value, self.letters) for _, value in listed]
         lines, needed = self._listing([name for name, _ in listed], values, width)
@@ -222,13 +220,13 @@ class _Setter:
             whole = self.pen.write(equal(name, value))
             if whole.width + 2 * QUAD <= room:
                 body = f"{lines[-1].body} {self.pen.wide_gap}{whole.text}"
-                lines[-1] = replace(
-                    lines[-1], body=body, height=max(lines[-1].height, whole.height)
+                lines[-1] = lines[-1]._replace(
+                    body=body, height=max(lines[-1].height, whole.height)
                 )
                 room -= whole.width + 2 * QUAD
                 continue
             cut, own = self._listing([name], [value], width)
-            first = replace(cut[0], head="", sign="", body=self._headed(name, cut[0].body))
+            first = cut[0]._replace(head="", sign="", body=self._headed(name, cut[0].body))
             lines += [first, *cut[1:]]
             room = width - own if len(cut) == 1 else 0.0
             needed = max(needed, own)
@@ -249,7 +247,7 @@ class _Setter:
         lines: list[Aligned] = []
         for name, entry in zip(heads, entries, strict=True):
             (first, *others), own = self._hanging([entry], width - head)
-            lines += [replace(first, head=name.text), *others]
+            lines += [first._replace(head=name.text), *others]
             needed = max(needed, own)
         return lines, head + needed
 
@@ -262,7 +260,7 @@ class _Setter:
         head = self.pen.write(first)
         room = head.width + EQUAL
         lines, needed = self._hanging(others, width - room)
-        lines[0] = replace(lines[0], head=head.text)
+        lines[0] = lines[0]._replace(head=head.text)
         return self._below(Rows(tuple(lines), is_high=True), room + needed)
 
     def _hanging(self, formulas: Sequence[Formula], room: float) -> tuple[list[Aligned], float]:

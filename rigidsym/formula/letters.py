@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import lru_cache
+from typing import NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -21,8 +22,7 @@ TIME = sp.Symbol("t")
 _CONSTANTS: Mapping[sp.Expr, Formula] = {sp.pi: Symbol("π")}
 
 
-@dataclass(frozen=True, slots=True)
-class VectorLength:
+class VectorLength(NamedTuple):
     """The length n of a vector, as a symbol in place of its components: n for √(v·v).
 
     Formulas are derived in components; where those of one vector come up as its square, its length

@@ -7,11 +7,11 @@ sign between two terms, in how many brackets. Nobody has to read it again to fin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import IntEnum
 from functools import lru_cache
 from itertools import pairwise
-from typing import ClassVar, Self
+from typing import ClassVar, NamedTuple, Self
 
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.tree import (
@@ -58,8 +58,7 @@ class Height(IntEnum):
     ROOTED = 3  # with a root, which is deeper
 
 
-@dataclass(frozen=True, slots=True)
-class Segment:
+class Segment(NamedTuple):
     """Part of a line that is never broken; a line may end before it."""
 
     text: str
@@ -70,8 +69,7 @@ class Segment:
 _EMPTY = Segment("", 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Piece:
+class Piece(NamedTuple):
     """Part of a formula that has been written."""
 
     chunks: tuple[Segment, ...]
@@ -85,13 +83,13 @@ class Piece:
 
     def solid(self) -> Piece:
         """The same, which nothing can break."""
-        return replace(self, chunks=(Segment(self.text, self.width),))
+        return self._replace(chunks=(Segment(self.text, self.width),))
 
     def deeper(self, level: int) -> Piece:
         """The same, so many brackets deeper."""
         first, *others = self.chunks
-        chunks = (first, *(replace(chunk, level=chunk.level + level) for chunk in others))
-        return replace(self, chunks=chunks)
+        chunks = (first, *(chunk._replace(level=chunk.level + level) for chunk in others))
+        return self._replace(chunks=chunks)
 
 
 def atom(
@@ -142,7 +140,7 @@ class Pen:
                 is_binary = before is not None and not isinstance(before, Sign)
                 sign = self.sign(part, is_binary=is_binary and not is_tight)
                 if is_binary and part.character in _BREAKS:
-                    sign = replace(sign, chunks=(_EMPTY, *sign.chunks))
+                    sign = sign._replace(chunks=(_EMPTY, *sign.chunks))
                 pieces.append(sign)
             else:
                 if before is not None and not isinstance(before, Sign | Gap) and not is_tight:
@@ -224,8 +222,7 @@ def _binding(parts: Sequence[Formula]) -> Binding:
     return Binding.QUOTIENT if signs else Binding.PRODUCT
 
 
-@dataclass(frozen=True, slots=True)
-class Line:
+class Line(NamedTuple):
     """One line of a broken formula, and in how many open brackets it starts."""
 
     text: str

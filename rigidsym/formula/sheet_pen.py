@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from rigidsym.formula import widths
@@ -32,8 +31,7 @@ from rigidsym.formula.tree import (
 Size = Literal["flat", "large", "stretched"]
 
 
-@dataclass(frozen=True, slots=True)
-class Aligned:
+class Aligned(NamedTuple):
     """A line of a display: what stands before its first sign, and what behind; or all in one."""
 
     head: str

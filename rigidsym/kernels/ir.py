@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import isnan, prod
+from typing import NamedTuple
 
 from rigidsym.errors import KernelError
 
@@ -160,8 +161,7 @@ def names_in(expression: Expression) -> Iterator[str]:
     return (node.text for node in walk(expression) if isinstance(node, Name))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class KernelArgument:
+class KernelArgument(NamedTuple):
     """An array of inputs and the names of its components, row by row."""
 
     name: str
@@ -179,8 +179,7 @@ class KernelArgument:
         return (3, 3) if self.is_matrix else (len(self.components),)
 
 
-@dataclass(frozen=True, slots=True)
-class Assignment:
+class Assignment(NamedTuple):
     """One name and its value."""
 
     name: str
@@ -328,8 +327,7 @@ def _factors_in(expression: Expression) -> Iterator[str]:
         yield expression.text
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Unwrapping:
+class Unwrapping(NamedTuple):
     """How coordinates are made continuous along a trajectory."""
 
     kind: str  # "turns", "quaternion", "axis_angle", "rotation_vector" or "modified_rodrigues"
@@ -341,8 +339,7 @@ class Unwrapping:
     coordinates: Kernel | None = None
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Program:
+class Program(NamedTuple):
     """The kernels of one derivation, and what a reader of the generated file must know."""
 
     name: str  # of the file, without its suffix

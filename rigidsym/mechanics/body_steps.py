@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import replace
 
 import sympy as sp
 
@@ -75,7 +74,7 @@ def steps_of_body(
 def _about_fixed_point() -> dict[str, Quantity]:
     """The quantities that are otherwise about the centre of mass."""
     return {
-        name: replace(q, about=q.about.replace("the centre of mass", "the fixed point"))
+        name: q._replace(about=q.about.replace("the centre of mass", "the fixed point"))
         for name, q in {**INERTIA_QUANTITIES, **ENERGY_QUANTITIES}.items()
         if "about the centre of mass" in q.about
     }

@@ -53,8 +53,7 @@ class Proof:
 Shape = Literal["scalar", "vector", "matrix"]  # (), (n,) and (m, n) in kernels and JSON
 
 
-@dataclass(frozen=True, slots=True)
-class Quantity:
+class Quantity(NamedTuple):
     """A quantity that a step defines."""
 
     name: str  # in Python, in kernels, in JSON
@@ -75,8 +74,7 @@ class Quantity:
         return self.shape == "scalar"
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Argument:
+class Argument(NamedTuple):
     """A vector of inputs, (n,): the coordinates, their rates, an angular velocity."""
 
     name: str  # "q"
@@ -113,8 +111,7 @@ class FirstIntegral(NamedTuple):
     proof: Proof
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Consequence:
+class Consequence(NamedTuple):
     """An equation that follows from the equations of motion, with the words that lead to it."""
 
     title: str  # of the paragraph; "" if it goes on with the one before
@@ -207,8 +204,7 @@ class Step:
         return (rows,) if self.quantity.is_vector else (rows, columns)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Statement:
+class Statement(NamedTuple):
     """One equation of the theory, for every body and every rotation."""
 
     name: str
@@ -269,8 +265,7 @@ _FORMER_NAMES = {
 Measure = Literal["det W", "det [W, J]", "det W Wᵀ", "det Wᵀ W", "minors"]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Singularities:
+class Singularities(NamedTuple):
     """Orientations at which the rate matrix has less than its generic rank.
 
     That is where the determinant vanishes: of W, where it is square; of W Wᵀ or Wᵀ W, where it is

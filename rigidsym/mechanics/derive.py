@@ -167,7 +167,7 @@ def _numbered(found: Mapping[str, Found], table: Mapping[str, Quantity]) -> Iter
     for number, (name, step) in enumerate(found.items(), start=1):
         quantity = table[name]
         if step.definition is not None:
-            quantity = replace(quantity, definition=step.definition)
+            quantity = quantity._replace(definition=step.definition)
         yield Step(
             number=number,
             quantity=quantity,
@@ -192,4 +192,4 @@ class _Inputs(NamedTuple):
             inputs += ("t",)
         if not step.expression.free_symbols.isdisjoint(self.constants):
             inputs += ("parameters",)
-        return replace(step, quantity=replace(step.quantity, inputs=inputs))
+        return replace(step, quantity=step.quantity._replace(inputs=inputs))

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from operator import index
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -169,8 +169,7 @@ def outline_from(data: Mapping[str, Any]) -> Outline:
         raise BodyError(message) from None
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Known:
+class Known(NamedTuple):
     """A part of which only mass, centre and inertia tensor about the centre are given."""
 
     mass: sp.Expr

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -24,8 +24,7 @@ _LONG, _ALIKE = 4, 0.85  # letters of a name, and the share that two names have 
 _NONE: Mapping[Any, sp.Expr] = MappingProxyType({})
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class MovingPart:
+class MovingPart(NamedTuple):
     """What moves with the body: another body that turns about the fixed point, or a particle.
 
     Of a body, its rotation, in some of the same coordinates, and its principal moments; of a

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from rigidsym.models.parametrisations import (
     AxisAngle,
@@ -20,8 +20,7 @@ from rigidsym.models.parametrisations import (
 from rigidsym.models.rotation import Citation, RotationModel, lecture
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Entry:
+class Entry(NamedTuple):
     """One parametrisation: how it is built, and R written out."""
 
     build: Callable[..., RotationModel]  # names of the coordinates, passive

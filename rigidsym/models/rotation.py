@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache, reduce
-from typing import Any
+from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -21,8 +21,7 @@ _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _NUMBERS = (sp.NumberSymbol, type(sp.I))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Citation:
+class Citation(NamedTuple):
     """Where a formula comes from."""
 
     text: str  # author, title
@@ -95,8 +94,7 @@ def _times(first: sp.ImmutableMatrix, second: sp.ImmutableMatrix) -> sp.Immutabl
     return first * second
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Pullback:
+class Pullback(NamedTuple):
     """Bound coordinates as functions of others that reach every allowed value of them.
 
     What vanishes after the substitution vanishes wherever the coordinates are allowed to be, and

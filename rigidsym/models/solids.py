@@ -6,9 +6,9 @@ No moment of inertia stands here; all are integrated.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import inf
 from types import MappingProxyType
+from typing import NamedTuple
 
 import sympy as sp
 
@@ -18,8 +18,7 @@ from rigidsym.models.so3 import symbolic
 from rigidsym.text.expression import parse_expression
 
 
-@dataclass(frozen=True, slots=True)
-class Length:
+class Length(NamedTuple):
     """A length that a solid asks for, or several of a kind."""
 
     key: str  # in a file: radius
@@ -27,8 +26,7 @@ class Length:
     about: str
 
 
-@dataclass(frozen=True, slots=True)
-class Shape:
+class Shape(NamedTuple):
     """One kind of solid: its lengths, and its geometry in terms of them and of u, v, w."""
 
     title: str

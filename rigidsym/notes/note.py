@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rigidsym.errors import ModelError
 from rigidsym.formula.notation import DEFAULT, FRAMES, Notation
@@ -20,8 +19,7 @@ if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
+class Note(NamedTuple):
     """A document, and its printers."""
 
     document: Document

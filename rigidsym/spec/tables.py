@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from rigidsym.errors import ExpressionError, Fault, MissingExtra, RigidsymError, SpecError, offer
 from rigidsym.spec.faults import Faults, Source, described, dotted, shortened
@@ -133,8 +133,7 @@ class Table:
         return tuple(texts.values())
 
 
-@dataclass(frozen=True, slots=True)
-class _Noting:
+class _Noting(NamedTuple):
     """A block whose errors become faults, and which is then left."""
 
     table: Table

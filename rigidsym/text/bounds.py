@@ -10,8 +10,8 @@ from __future__ import annotations
 import ast
 import operator
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from math import ceil, comb
+from typing import NamedTuple
 
 import sympy as sp
 
@@ -51,8 +51,7 @@ FUNCTIONS: dict[str, Callable[..., sp.Expr]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Sized:
+class Sized(NamedTuple):
     """An expression, and bounds on its size when expanded."""
 
     expression: sp.Expr

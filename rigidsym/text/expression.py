@@ -12,7 +12,6 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -224,7 +223,7 @@ class _Walk:
         if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd | ast.USub):
             operand = self.value(node.operand)
             is_minus = isinstance(node.op, ast.USub)
-            return replace(operand, expression=-operand.expression) if is_minus else operand
+            return operand._replace(expression=-operand.expression) if is_minus else operand
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
             return self._call(node)
         if isinstance(node, ast.Constant):

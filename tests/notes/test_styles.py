@@ -71,7 +71,7 @@ def test_what_is_unproved_is_said_in_every_style():
         replace(b, proved=(), unproved=b.proved) if isinstance(b, Equation) and b.number else b
         for b in first.blocks
     )
-    changed = replace(AUDIT, sections=(AUDIT.sections[0], replace(first, blocks=blocks), *others))
+    changed = replace(AUDIT, sections=(AUDIT.sections[0], first._replace(blocks=blocks), *others))
     for style in ("lecture", "paper"):
         found = in_style(changed, style)
         assert any(e.unproved for e in found.equations)

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from itertools import product
+from typing import NamedTuple
 
 import sympy as sp
 
@@ -36,8 +37,7 @@ _EXPECTED = (
 Asked = str | Iterable[str] | Mapping[str, str | Iterable[str]]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class DerivativeRequest:
+class DerivativeRequest(NamedTuple):
     """The derivative of one quantity by one vector of its inputs."""
 
     quantity: str
@@ -78,8 +78,7 @@ def read_requests(asked: Asked) -> tuple[DerivativeRequest, ...]:
     return tuple(dict.fromkeys(map(read_request, asked)))
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Derivative:
+class Derivative(NamedTuple):
     """One derivative, ready to be lowered."""
 
     request: DerivativeRequest
@@ -174,7 +173,7 @@ def _tangent(by: Argument) -> Argument:
     names = tuple(f"{name}_tangent" for name in by.names)
     about = f"a direction in the space of {by.name}"
     name = f"{by.name}_tangent"
-    return replace(by, name=name, symbols=_symbols(by.names), names=names, about=about)
+    return by._replace(name=name, symbols=_symbols(by.names), names=names, about=about)
 
 
 def _cotangent(step: Step) -> Argument:

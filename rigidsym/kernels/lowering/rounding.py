@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from math import ceil, factorial, frexp
+from typing import NamedTuple
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of
 from rigidsym.kernels.ir import (
@@ -58,8 +59,7 @@ class NoBoundError(Exception):
     """The error of a value is not bounded, or not by this analysis."""
 
 
-@dataclass(frozen=True, slots=True)
-class Rounding:
+class Rounding(NamedTuple):
     """A bound on the error of every entry of a kernel."""
 
     error: float  # in eps of the type, rounded up to a tenth

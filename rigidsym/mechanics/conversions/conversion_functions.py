@@ -105,8 +105,7 @@ def _kept(derivation: Derivation, places: Sequence[int]) -> Argument:
     def chosen(of_all: Sequence[Each]) -> tuple[Each, ...]:
         return tuple(of_all[place] for place in places)
 
-    return replace(
-        q,
+    return q._replace(
         name="kept",
         symbols=chosen(q.symbols),
         names=chosen(q.names),

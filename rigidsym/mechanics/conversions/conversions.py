@@ -182,8 +182,7 @@ def _unit_variants(model: RotationModel, form: ClosedForm | None) -> tuple[Step,
 
 
 def _of_unit_length(quantity: Quantity) -> Quantity:
-    return replace(
-        quantity,
+    return quantity._replace(
         name=quantity.name + UNIT,
         about=f"{quantity.about}, for a quaternion of length one",
     )
@@ -206,7 +205,7 @@ def _forward(model: RotationModel, form: ClosedForm | None) -> Step | None:
 
 def _scalar_last(step: Step) -> Step:
     """The quaternion in the order of the coordinates, (x, y, z, w)."""
-    quantity = replace(step.quantity, about="unit quaternion of the rotation, scalar last")
+    quantity = step.quantity._replace(about="unit quaternion of the rotation, scalar last")
     return replace(
         step, quantity=quantity, expression=sp.ImmutableMatrix(scalar_last(tuple(step.expression)))
     )
@@ -245,7 +244,7 @@ def _proved_step(
     is_fixed = shown.free_symbols.isdisjoint(model.constants)
     return Step(
         number=0,
-        quantity=QUATERNION if is_fixed else replace(QUATERNION, inputs=("q", "parameters")),
+        quantity=QUATERNION if is_fixed else QUATERNION._replace(inputs=("q", "parameters")),
         expression=shown,
         because=text_of(because),
         proofs=(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import sympy as sp
 
@@ -21,8 +22,7 @@ _DIGITS = 30
 _ZERO = sp.Float("1e-25")  # a number known to 30 digits is larger or zero
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class ConversionInput:
+class ConversionInput(NamedTuple):
     """An argument of a conversion."""
 
     argument: Argument
@@ -45,8 +45,7 @@ class ConversionFunction:
     unit: str = ""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Continuity:
+class Continuity(NamedTuple):
     """How coordinates are made continuous; only turns need functions."""
 
     kind: str
@@ -57,8 +56,7 @@ class Continuity:
     coordinates: ConversionFunction | None = None
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Converted:
+class Converted(NamedTuple):
     """What a module offers of conversions."""
 
     steps: tuple[Step, ...] = ()  # in closed form, like other quantities

@@ -42,7 +42,7 @@ def theory() -> tuple[Statement, ...]:
     """The equations in order, each with what was proved of it."""
     work = _Theory()
     return tuple(
-        replace(statement, proofs=work.proofs(statement), summands=work.summands(statement))
+        statement._replace(proofs=work.proofs(statement), summands=work.summands(statement))
         for statement in STATEMENTS
     )
 

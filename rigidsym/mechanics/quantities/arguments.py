@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
@@ -76,7 +75,7 @@ def arguments_of_motion(model: RotationModel) -> tuple[Argument, ...]:
 
 def arguments_of_flow(state: Sequence[Argument]) -> tuple[Argument, ...]:
     """The time, and the state y of which `state` are the parts."""
-    time = replace(_vector("t", (TIME,), "s", "the time", [formula("t")]), is_scalar=True)
+    time = _vector("t", (TIME,), "s", "the time", [formula("t")])._replace(is_scalar=True)
     whole = Argument(
         name="y",
         symbols=tuple(s for part in state for s in part.symbols),
@@ -108,7 +107,7 @@ def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument,
     notation = [named(s.name.replace("_", "'_") if s in primed else s.name) for s in symbols]
     found = _vector("parameters", symbols, "", f"constants: {'; '.join(about)}", notation)
     units = ("",) * len(model.constants) + tuple(p.unit for p in of_body)
-    return (replace(found, units=units),)
+    return (found._replace(units=units),)
 
 
 def _vector(
@@ -157,4 +156,4 @@ def _angular_velocity(frame: str, symbols: tuple[sp.Symbol, ...], typed: str) ->
     found = _vector(
         f"omega_{frame}", symbols, "rad/s", about, [formula(typed.format(k)) for k in (1, 2, 3)]
     )
-    return replace(found, names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3)))
+    return found._replace(names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3)))

@@ -7,7 +7,6 @@ follow for the passive one (A = Rᵀ, the direction cosine matrix).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import cache
 from types import MappingProxyType
 from typing import NamedTuple
@@ -171,13 +170,12 @@ def quantities(
             f"{name}_{frame.name}"
             for name in ("inverse_rate_matrix", "rates_from_angular_velocity")
         )
-        table[rates] = replace(table[rates], unit=rate_unit)
+        table[rates] = table[rates]._replace(unit=rate_unit)
         if coordinates != 3:
-            table[inverse] = replace(
-                table[inverse],
+            table[inverse] = table[inverse]._replace(
                 symbol=frame.right_inverse,
                 about=f"right inverse of the rate matrix from {frame.name} components",
             )
             definition = _product(frame.right_inverse, frame.omega)
-            table[rates] = replace(table[rates], definition=definition)
+            table[rates] = table[rates]._replace(definition=definition)
     return MappingProxyType(table)

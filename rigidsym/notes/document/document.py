@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, groupby, zip_longest
+from typing import NamedTuple
 
 from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
@@ -19,29 +20,25 @@ from rigidsym.notes.document.catalogue import ENGLISH, Catalogue
 from rigidsym.notes.figure.drawing import Drawing
 
 
-@dataclass(frozen=True, slots=True)
-class Code:
+class Code(NamedTuple):
     """A name in a program, or a call."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Strong:
+class Strong(NamedTuple):
     """Words that must not be overlooked."""
 
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class EquationReference:
+class EquationReference(NamedTuple):
     """The number of a numbered equation of this document."""
 
     label: str
 
 
-@dataclass(frozen=True, slots=True)
-class Cited:
+class Cited(NamedTuple):
     """A place in a source."""
 
     citation: Citation
@@ -86,8 +83,7 @@ def _plain(span: Span) -> str:
             return span.label
 
 
-@dataclass(frozen=True, slots=True)
-class Paragraph:
+class Paragraph(NamedTuple):
     text: Text
 
 
@@ -96,30 +92,26 @@ def said(typed: str, *spans: Span) -> Paragraph:
     return Paragraph(words(typed, *spans))
 
 
-@dataclass(frozen=True, slots=True)
-class EquationRow:
+class EquationRow(NamedTuple):
     """Short unnumbered equations that may share a line."""
 
     equations: tuple[Equation, ...]
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class NoteTable:
+class NoteTable(NamedTuple):
     caption: str
     head: tuple[Text, ...]
     rows: tuple[tuple[Text, ...], ...]
     of_words: int | None = None  # the column whose cells may take several lines
 
 
-@dataclass(frozen=True, slots=True)
-class CodeBlock:
+class CodeBlock(NamedTuple):
     """A few lines of Python that can be run as they stand, beside the kernel module."""
 
     code: str  # ASCII, lines of at most 80 columns
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Figure:
+class Figure(NamedTuple):
     drawing: Drawing
     caption: Text  # which line is what
     description: Text  # what the figure says, in words that do without it
@@ -128,8 +120,7 @@ class Figure:
 NoteBlock = Paragraph | Equation | EquationRow | NoteTable | CodeBlock | Figure
 
 
-@dataclass(frozen=True, slots=True)
-class Section:
+class Section(NamedTuple):
     title: str
     blocks: tuple[NoteBlock, ...]
     on_own_page: bool = False  # at the end, on a sheet that can be handed out alone
@@ -195,7 +186,7 @@ class Document:
     def changed(self, change: Callable[[Text], Text]) -> Document:
         """The document with each of its texts changed."""
         sections = (
-            replace(section, blocks=tuple(_changed(block, change) for block in section.blocks))
+            section._replace(blocks=tuple(_changed(block, change) for block in section.blocks))
             for section in self.sections
         )
         return replace(self, sections=tuple(sections))
@@ -210,7 +201,7 @@ class Document:
             changed,
             title=language.words(self.title),
             subtitle=language.words(self.subtitle),
-            sections=tuple(replace(s, title=language.words(s.title)) for s in sections),
+            sections=tuple(s._replace(title=language.words(s.title)) for s in sections),
             language=language,
         )
 
@@ -239,7 +230,7 @@ def _with_claims(section: Section, language: Catalogue) -> Section:
         )
         return replace(block, proved=proved, unproved=unproved)
 
-    return replace(section, blocks=tuple(map(translated, section.blocks)))
+    return section._replace(blocks=tuple(map(translated, section.blocks)))
 
 
 def _spelt(formula: Formula, language: Catalogue) -> Formula:
@@ -268,9 +259,9 @@ def _changed(block: NoteBlock, change: Callable[[Text], Text]) -> NoteBlock:
             return Paragraph(change(text))
         case Figure():
             caption, description = change(block.caption), change(block.description)
-            return replace(block, caption=caption, description=description)
+            return block._replace(caption=caption, description=description)
         case NoteTable():
             rows = tuple(tuple(map(change, row)) for row in block.rows)
             head, called = tuple(map(change, block.head)), plain(change((block.caption,)))
-            return replace(block, caption=called, head=head, rows=rows)
+            return block._replace(caption=called, head=head, rows=rows)
     return block

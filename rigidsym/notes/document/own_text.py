@@ -64,7 +64,7 @@ class OwnText:
             if not any(map(_Named(name), known)):
                 raise ModelError(f"[text]: the note has no {name!r}; {offer(name, known)}")
         kept = [s for s in document.sections if not any(_Named(o)(s.title) for o in self.omit)]
-        sections = (replace(s, blocks=tuple(self._blocks(s))) for s in kept)
+        sections = (s._replace(blocks=tuple(self._blocks(s))) for s in kept)
         changed = replace(
             document,
             sections=_numbered(tuple(s for s in sections if s.blocks), document),
@@ -119,7 +119,7 @@ class OwnText:
         if isinstance(span, EquationReference) and span.label not in labels:
             return f"the {span.label.replace('_', ' ')}"
         if isinstance(span, Cited) and span.citation.text == LECTURE:
-            return Cited(replace(span.citation, text=self.sources.get(_OF_LECTURE, LECTURE)))
+            return Cited(span.citation._replace(text=self.sources.get(_OF_LECTURE, LECTURE)))
         return span
 
 
@@ -147,8 +147,7 @@ def _numbered(sections: tuple[Section, ...], document: Document) -> tuple[Sectio
     gone = sorted(e.number or 0 for e in document.equations if e.label not in left)
     number = {old: old - sum(g < old for g in gone) for old in kept}
     return tuple(
-        replace(
-            section,
+        section._replace(
             blocks=tuple(
                 replace(b, number=number[b.number]) if isinstance(b, Equation) and b.number else b
                 for b in section.blocks
@@ -165,9 +164,9 @@ def _without_rows(document: Document, labels: set[str]) -> Document:
         if not isinstance(block, NoteTable):
             return block
         rows = (row for row in block.rows if not _refers_elsewhere(row, labels))
-        return replace(block, rows=tuple(rows))
+        return block._replace(rows=tuple(rows))
 
-    sections = (replace(s, blocks=tuple(map(cut, s.blocks))) for s in document.sections)
+    sections = (s._replace(blocks=tuple(map(cut, s.blocks))) for s in document.sections)
     return replace(document, sections=tuple(sections))
 
 

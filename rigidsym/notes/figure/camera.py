@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from math import cos, hypot, radians, sin
+from typing import NamedTuple
 
 Vector = tuple[float, float, float]
 Point = tuple[float, float]
@@ -57,8 +57,7 @@ def is_same(a: Vector, b: Vector) -> bool:
     return max(abs(a[0] - b[0]), abs(a[1] - b[1]), abs(a[2] - b[2])) < 1e-6
 
 
-@dataclass(frozen=True, slots=True)
-class Camera:
+class Camera(NamedTuple):
     """Parallel projection; the third axis of space is vertical in the picture."""
 
     right: Vector

@@ -6,10 +6,10 @@ The unit is the length of the unit vectors of space; labels are set in letters o
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from math import atan2, ceil, cos, hypot, pi, radians, sin, tau
+from typing import NamedTuple
 
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.tree import Formula
@@ -32,8 +32,7 @@ _BESIDE = (0, 180, 40, -40, 140, -140, 75, -75, 105, -105)  # outside an arc or 
 _ALONG = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)  # fraction of the way along an arc
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Ellipse:
+class Ellipse(NamedTuple):
     """The arc centre + cos t·u + sin t·v of an ellipse, for t from `start` to `end` in radians."""
 
     centre: Point
@@ -55,8 +54,7 @@ class Ellipse:
         return (x, y)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Stroke:
+class Stroke(NamedTuple):
     """A line through points, which are on `arc` if it is one."""
 
     kind: Kind
@@ -72,8 +70,7 @@ class Stroke:
         return pairwise(self.points)
 
 
-@dataclass(frozen=True, slots=True)
-class Box:
+class Box(NamedTuple):
     """A rectangle, by its centre and half its width and height."""
 
     centre: Point
@@ -106,8 +103,7 @@ class Box:
         return start <= end
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Label:
+class Label(NamedTuple):
     """A symbol, centred on a point."""
 
     kind: Kind
@@ -127,16 +123,14 @@ def _half_width(symbol: Formula) -> float:
     )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Facet:
+class Facet(NamedTuple):
     """A face of a body as it is seen."""
 
     points: tuple[Point, ...]
     color: tuple[int, int, int]  # red, green, blue, of 255
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Drawing:
+class Drawing(NamedTuple):
     """What the pens draw: a body, the sectors of turns, then strokes, then labels."""
 
     strokes: tuple[Stroke, ...]

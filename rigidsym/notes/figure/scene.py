@@ -9,11 +9,11 @@ sliders.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
 from math import hypot, radians, sin
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import sympy as sp
 
@@ -59,8 +59,7 @@ _VIEWS = (  # angles of the turns, azimuth and elevation in degrees; the cleares
 )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Ray:
+class Ray(NamedTuple):
     """A named direction, fixed in the frame after `frame` turns."""
 
     kind: Kind
@@ -69,8 +68,7 @@ class Ray:
     direction: Vector
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Rotary:
+class Rotary(NamedTuple):
     """A turn: its axis and a line that it carries along, in components before the turn."""
 
     axis: Vector
@@ -80,8 +78,7 @@ class Rotary:
     start_name: Formula | str  # of the line that is carried along
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Arc:
+class Arc(NamedTuple):
     """A turn in space: the point centre + cos t·start + sin t·side, for t from 0 to the angle."""
 
     turn: Rotary
@@ -104,8 +101,7 @@ class Arc:
         return cross(self.axis, self.before)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class View:
+class View(NamedTuple):
     """Angles of the turns in radians, and the direction of the viewer in degrees."""
 
     angles: tuple[float, ...]
@@ -117,8 +113,7 @@ class View:
         return camera(self.azimuth, self.elevation)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Posed:
+class Posed(NamedTuple):
     """A scene at given angles: all directions have space components."""
 
     rays: tuple[Ray, ...]
@@ -139,7 +134,7 @@ class Scene:
     def posed(self, angles: Sequence[float]) -> Posed:
         """The scene at these angles, in radians."""
         bases = list(frames([turn.axis for turn in self.turns], angles))
-        rays = (replace(r, direction=combined(r.direction, bases[r.frame])) for r in self.rays)
+        rays = (r._replace(direction=combined(r.direction, bases[r.frame])) for r in self.rays)
         arcs = (
             Arc(
                 turn=turn,
@@ -197,7 +192,7 @@ def _merged(rays: Iterator[Ray]) -> Iterator[Ray]:
             found.append(ray)
         elif ray.kind == "body":
             both = formula("#1 = #2", found[place].name, ray.name)
-            found[place] = replace(found[place], name=both)
+            found[place] = found[place]._replace(name=both)
     yield from found
 
 

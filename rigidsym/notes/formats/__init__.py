@@ -7,12 +7,11 @@ text. The files here are those of the package; `register` adds one from anywhere
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING, NamedTuple, Protocol, cast
 
 from rigidsym.errors import ModelError
 
@@ -36,8 +35,7 @@ class _Module(Protocol):
     def render(self, document: Document) -> str: ...
 
 
-@dataclass(frozen=True, slots=True)
-class Format:
+class Format(NamedTuple):
     """One format of a note; its file is imported when something is printed."""
 
     ending: str

@@ -11,8 +11,8 @@ import shutil
 import signal
 import subprocess
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from rigidsym.errors import MissingTool, ToolFailed
 
@@ -36,8 +36,7 @@ _WARNING = re.compile(r"^(?:Over|Under)full .*|^.*\bWarning: .*|^No file .*", re
 _LOG_LINES = 25
 
 
-@dataclass(frozen=True, slots=True)
-class Typeset:
+class Typeset(NamedTuple):
     """A PDF, and what TeX complained of: overfull boxes, undefined references, any warning."""
 
     pdf: bytes

@@ -12,7 +12,8 @@ What would take most of a page so is said in short, by what it is made of.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import sympy as sp
 
@@ -42,8 +43,7 @@ _MOST_NAMES = 3  # that a reader is reminded of one by one
 _ROOM_OF_A_NAME = 6.0  # ems
 
 
-@dataclass(frozen=True, slots=True)
-class _Form:
+class _Form(NamedTuple):
     """An equation, and the parts that it has names for."""
 
     equation: Equation

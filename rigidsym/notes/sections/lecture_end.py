@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import groupby
 
 from rigidsym.formula.letters import Letters
@@ -69,7 +68,7 @@ def symbols_of_the_lecture(
     held = {str(span) for row in others for span in row[0]}
     theory += [row for row in _rows(_OF_A_BODY) if str(row[0][0]) not in held]
     rows = (tuple(tuple(map(placed, cell)) for cell in row) for row in others)
-    return replace(table, rows=(*theory, *rows))
+    return table._replace(rows=(*theory, *rows))
 
 
 def _rows(table: str) -> Iterator[tuple[Text, ...]]:
@@ -88,7 +87,7 @@ def summary_of_the_lecture(
     theory = (
         block for lead, row in groups.items() for block in (Paragraph(lead), EquationRow(row))
     )
-    return replace(rest, blocks=(*theory, *rest.blocks))
+    return rest._replace(blocks=(*theory, *rest.blocks))
 
 
 def _results(derivation: Derivation) -> Iterator[tuple[Text, tuple[Equation, ...]]]:

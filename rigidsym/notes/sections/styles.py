@@ -49,23 +49,23 @@ def in_style(document: Document, style: str, *, is_short: bool = False) -> Docum
     letters = document.letters
     left_out = _LEFT_OUT["paper" if is_short else style]
     kept = [
-        replace(section, blocks=tuple(_by_the_chain_rule(b, letters) for b in section.blocks))
+        section._replace(blocks=tuple(_by_the_chain_rule(b, letters) for b in section.blocks))
         for section in document.sections
         if section.title not in left_out
     ]
     identities = [
-        replace(s, title=APPENDIX, is_appendix=True) for s in kept if s.title == IDENTITIES
+        s._replace(title=APPENDIX, is_appendix=True) for s in kept if s.title == IDENTITIES
     ]
     others = [section for section in kept if section.title != IDENTITIES]
     if all(not equation.unproved for equation in document.equations):
         first, *rest = others
         said = Paragraph((_VERIFIED["paper" if is_short else style],))
-        others = [replace(first, blocks=(*first.blocks, said)), *rest]
+        others = [first._replace(blocks=(*first.blocks, said)), *rest]
     return replace(document, sections=tuple(map(_plain, (*others, *identities))))
 
 
 def _plain(section: Section) -> Section:
-    return replace(section, blocks=tuple(map(_without_proofs, section.blocks)))
+    return section._replace(blocks=tuple(map(_without_proofs, section.blocks)))
 
 
 def _without_proofs(block: NoteBlock) -> NoteBlock:
@@ -76,7 +76,7 @@ def _without_proofs(block: NoteBlock) -> NoteBlock:
         return Paragraph((HOW_VERIFIED,))
     if isinstance(block, NoteTable) and block.rows and all(r[-1] == EXACT for r in block.rows):
         rows = tuple(row[:-1] for row in block.rows)
-        return replace(block, head=block.head[:-1], rows=rows)
+        return block._replace(head=block.head[:-1], rows=rows)
     return block
 
 

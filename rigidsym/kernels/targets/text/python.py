@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from rigidsym.algebra.series import FIRST_SERIES, series_of, taylor
 from rigidsym.kernels.ir import (
@@ -36,8 +36,7 @@ RESERVED = frozenset({*FUNCTIONS, *_UNWELCOME, "nan", "max", "min"})
 ARGUMENTS = "Arguments, with the components on the last axis, in radians and SI units:"
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Statements:
+class Statements(NamedTuple):
     """How a library writes the assignments of a function."""
 
     indent: int
