@@ -16,10 +16,11 @@ from rigidsym.motion import Motion
 from rigidsym.tools.compare.language import read_formula, spelled_out
 from rigidsym.tools.compare.plain import plain
 from rigidsym.tools.compare.repair import (
-    OF_NAMES,
     Meaning,
     Repair,
     entry_repairs,
+    renamings,
+    twofold_repairs,
     whole_repairs,
 )
 from rigidsym.tools.compare.targets import KnownQuantity, Names, catalogue, readings, target
@@ -144,34 +145,31 @@ def _goal(rotation: str | Motion | None, quantity: str | None) -> KnownQuantity:
 def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
     """Compare with one quantity."""
     meant = [Meaning.of(formula, goal, names) for names in readings(formula, goal)]
-    for reading in meant:
-        if reading.agrees(formula, goal):
-            return _made(reading, goal, (), goal)
-    nearest = max(meant, key=_count_right, default=None)
-    repairs = entry_repairs(nearest) if nearest else ()
-    is_small = len(repairs) == 1 and repairs[0].kind != "entry"
-    for reading in meant:
-        repair = next(whole_repairs(reading), None)
-        if repair and not (is_small and repair.kind in OF_NAMES):
-            return _made(reading, repair.goal, (repair,), goal)
-    if nearest and repairs:
-        return _made(nearest, goal, repairs, goal)
+    if found := next(_likely(meant, goal), None):
+        return _made(*found, goal)
     other = identified(formula, only_equal=True)
     if other.found:
         words = f"this is {other.found}"
         repair = Repair(kind="convention", words=words, formula=formula, goal=other.found)
-        return Comparison(
-            formula=formula,
-            asked=goal,
-            found=other.found,
-            names=other.names,
-            repairs=(repair, *other.repairs),
-            is_proved=other.is_proved,
-        )
-    for reading in meant:
-        if repair := next(whole_repairs(reading, twofold=True), None):
-            return _made(reading, repair.goal, (repair,), goal)
+        return replace(other, asked=goal, repairs=(repair, *other.repairs))
+    if found := next(((m, (r,)) for m in meant for r in twofold_repairs(m)), None):
+        return _made(*found, goal)
     return Comparison(formula=formula, asked=goal)
+
+
+def _likely(
+    meant: Sequence[Meaning], goal: KnownQuantity
+) -> Iterator[tuple[Meaning, tuple[Repair, ...]]]:
+    """Readings with the repairs that make them right, the smallest first."""
+    yield from ((m, ()) for m in meant if m.agrees(m.formula, goal))
+    yield from ((m, (r,)) for m in meant for r in whole_repairs(m))
+    nearest = max(meant, key=_count_right, default=None)
+    entries = entry_repairs(nearest) if nearest else ()
+    if nearest and len(entries) == 1 and entries[0].kind != "entry":
+        yield nearest, entries
+    yield from ((m, (r,)) for m in meant for r in renamings(m))
+    if nearest and entries:
+        yield nearest, entries
 
 
 def identified(
@@ -185,13 +183,13 @@ def identified(
                 reading = Meaning.of(arranged, goal, names)
                 right = reading.right
                 if right.all():
-                    return replace(_made(reading, goal, (), None), arrangement=arrangement)
+                    return replace(_made(reading, (), None), arrangement=arrangement)
                 near.append((float(right.mean()), arrangement, reading))
     near.sort(key=lambda each: -each[0])
     for share, arrangement, reading in near[:8] if not only_equal else ():
         repairs = entry_repairs(reading) if share >= _NEAR else ()
         if 0 < len(repairs) <= _MOST_REPAIRS and all(r.kind != "entry" for r in repairs):
-            found = _made(reading, reading.goal, repairs, None)
+            found = _made(reading, repairs, None)
             return replace(found, arrangement=arrangement)
     return Comparison(formula=formula, asked=None)
 
@@ -233,7 +231,7 @@ def _in_text(unknown: Comparison, text: str) -> Comparison:
                 change = Repair(
                     kind=kind.get(match[0][0], "sign"), words=words, formula=formula, goal=goal
                 )
-                return replace(_made(reading, goal, (change,), goal), formula=unknown.formula)
+                return replace(_made(reading, (change,), goal), formula=unknown.formula)
     return unknown
 
 
@@ -242,23 +240,18 @@ def _count_right(reading: Meaning) -> int:
     return int(reading.right.sum()) if same else 0
 
 
-def _made(
-    reading: Meaning,
-    found: KnownQuantity,
-    repairs: Sequence[Repair],
-    asked: KnownQuantity | None,
-) -> Comparison:
+def _made(reading: Meaning, repairs: Sequence[Repair], asked: KnownQuantity | None) -> Comparison:
     """The comparison, with the proof that the repaired formula is what was found."""
+    found = repairs[0].goal if repairs else reading.goal
     changed = _together(reading.formula, repairs)
     ours, theirs = map(found.applied, (found.matrix, changed.xreplace(dict(reading.names))))
-    proof = found.motion.equality(theirs, ours)
     return Comparison(
         formula=reading.formula,
         asked=asked,
         found=found,
         names=reading.names,
         repairs=tuple(repairs),
-        is_proved=proof.is_exact,
+        is_proved=found.motion.equality(theirs, ours).is_exact,
     )
 
 
@@ -294,7 +287,7 @@ def _of_function(function: Callable[..., Any], goal: KnownQuantity) -> Compariso
 def _by_numbers(
     function: Callable[..., Any], goal: KnownQuantity, symbols: Sequence[np.ndarray[Any, Any]]
 ) -> Comparison:
-    """Its values in the place of its entries: what can be changed is the whole."""
+    """Its values in the place of its entries, which have no parts that could be changed."""
     count = len(next(iter(goal.points.values())))
     rows = []
     for point in range(count):
@@ -308,15 +301,11 @@ def _by_numbers(
     formula = sp.ImmutableMatrix(entries)
     values = {s: table[:, i, j] for i, row in enumerate(entries) for j, s in enumerate(row)}
     reading = Meaning(formula=formula, goal=goal, names={}, values=values)
-    if reading.agrees(formula, goal):
-        return Comparison(formula=formula, asked=goal, found=goal)
-    repair = next(whole_repairs(reading), None)
-    return Comparison(
-        formula=formula,
-        asked=goal,
-        found=repair.goal if repair else None,
-        repairs=(repair,) if repair else (),
-    )
+    _, repairs = next(_likely([reading], goal), (reading, None))
+    if repairs is None:
+        return Comparison(formula=formula, asked=goal)
+    found = repairs[0].goal if repairs else goal
+    return Comparison(formula=formula, asked=goal, found=found, repairs=repairs)
 
 
 def _spread(function: Callable[..., Any], vectors: Sequence[Any]) -> list[Any]:

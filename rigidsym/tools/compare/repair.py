@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import permutations, product
+from itertools import islice, permutations, product
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -22,7 +23,6 @@ from rigidsym.tools.compare.targets import (
 )
 
 _MOST_ENTRIES = 3  # that may be wrong, each by one change
-OF_NAMES = ("angle", "index", "columns", "rows")  # kinds: less likely than one wrong entry
 _HALF, _TWO = sp.Rational(1, 2), sp.Integer(2)
 
 
@@ -50,7 +50,8 @@ class Meaning:
 
     @classmethod
     def of(cls, formula: sp.ImmutableMatrix, goal: KnownQuantity, names: Names) -> Meaning:
-        return cls(formula=formula, goal=goal, names=names, values=valued(goal, names))
+        values = {symbol: goal.points[meant] for symbol, meant in names.items()}
+        return cls(formula=formula, goal=goal, names=names, values=values)
 
     def numbers(self, matrix: sp.MatrixBase) -> Array:
         found = evaluated(matrix, self.values)
@@ -71,32 +72,35 @@ class Meaning:
         return agreement(self.numbers(self.formula), self.goal.values)
 
 
-def valued(goal: KnownQuantity, names: Names) -> Values:
-    return {symbol: goal.points[meant] for symbol, meant in names.items()}
+Change = tuple[str, str, sp.ImmutableMatrix]  # kind, words, the formula after it
 
 
-def whole_repairs(reading: Meaning, *, twofold: bool = False) -> Iterator[Repair]:
-    """One change of all entries together, or another quantity of the rotation, which fits.
+def whole_repairs(reading: Meaning) -> Iterator[Repair]:
+    """A change of all entries together, or another quantity of the rotation, that fits."""
+    yield from _fitting(reading, _changes(reading), [("", reading.goal)])
+    yield from _fitting(reading, [("", "", reading.formula)], _relatives(reading.goal))
 
-    `twofold` gives those that take both: a change, and then another quantity.
-    """
-    goal = reading.goal
-    changes = list(_changes(reading))
-    itself, related = [("", goal)], list(_relatives(goal))
-    likely = [change for change in changes if change[0] not in OF_NAMES]
-    of_names = [change for change in changes if change[0] in OF_NAMES]
-    none = [("", "", reading.formula)]
-    rounds = [(likely, itself), (none, related), (of_names, itself)]
-    for some, targets in [(changes, related)] if twofold else rounds:
-        for (kind, words, changed), (change, other) in product(some, targets):
-            if reading.agrees(changed, other):
-                this = f"this is {other}" + (f", but {words}" if words else "")
-                yield Repair(
-                    kind=", ".join(filter(None, (kind, change))),
-                    words=this if change else words,
-                    formula=changed,
-                    goal=other,
-                )
+
+def renamings(reading: Meaning) -> Iterator[Repair]:
+    """Another order or sign of the coordinates, or of rows and columns, that fits."""
+    yield from _fitting(reading, _other_orders(reading), [("", reading.goal)])
+
+
+def twofold_repairs(reading: Meaning) -> Iterator[Repair]:
+    """Another quantity of the rotation that fits after a change."""
+    changes = [*_changes(reading), *_other_orders(reading)]
+    yield from _fitting(reading, changes, list(_relatives(reading.goal)))
+
+
+def _fitting(
+    reading: Meaning, changes: Iterable[Change], goals: Iterable[tuple[str, KnownQuantity]]
+) -> Iterator[Repair]:
+    for (kind, words, changed), (relation, goal) in product(changes, goals):
+        if reading.agrees(changed, goal):
+            if relation:
+                words = f"this is {goal}" + (f", but {words}" if words else "")
+            kind = ", ".join(filter(None, (kind, relation)))
+            yield Repair(kind=kind, words=words, formula=changed, goal=goal)
 
 
 def _relatives(goal: KnownQuantity) -> Iterator[tuple[str, KnownQuantity]]:
@@ -116,33 +120,37 @@ def _relatives(goal: KnownQuantity) -> Iterator[tuple[str, KnownQuantity]]:
         yield "order of the turns", target(goal.rotation.swapcase(), name)
 
 
-def _changes(reading: Meaning) -> Iterator[tuple[str, str, sp.ImmutableMatrix]]:
-    """(kind, words, changed formula) for each change of a whole matrix."""
-    formula, goal = reading.formula, reading.goal
+def _changes(reading: Meaning) -> Iterator[Change]:
+    formula = reading.formula
     yield "transpose", "the formula is the transpose", formula.T
     yield "sign", "all signs are the other way round", -formula
     for factor in (_TWO, _HALF):
         yield "factor", f"a factor {factor} is missing", factor * formula
-    inside = [
-        s
-        for s, meant in reading.names.items()
-        if meant in goal.motion.argument("q").symbols and formula.has(s)
-    ]
-    for s in inside:
+
+
+def _other_orders(reading: Meaning) -> Iterator[Change]:
+    formula = reading.formula
+    coordinates = reading.goal.motion.argument("q").symbols
+    names = [s for s, meant in reading.names.items() if meant in coordinates and formula.has(s)]
+    for s in names:
         yield "angle", f"{s} has the other sign", formula.xreplace({s: -s})
-    for order in permutations(inside):
-        if list(order) != inside:
-            moved = [(a, b) for a, b in zip(inside, order, strict=True) if a != b]
-            words = ", ".join(f"{a} should be {b}" for a, b in moved)
-            yield "index", words, formula.xreplace(dict(moved))
-    size = range(min(4, formula.cols))
-    for columns in list(permutations(size))[1:] if formula.cols > 1 else ():
-        words = f"the columns belong in the order {', '.join(str(c + 1) for c in columns)}"
-        yield "columns", words, formula[:, list(columns)]
-    size = range(min(4, formula.rows))
-    for rows in list(permutations(size))[1:]:
-        words = f"the rows belong in the order {', '.join(str(r + 1) for r in rows)}"
-        yield "rows", words, formula[list(rows), :]
+    for order in _orders(names):
+        moved = {a: b for a, b in zip(names, order, strict=True) if a != b}
+        words = ", ".join(f"{a} should be {b}" for a, b in moved.items())
+        yield "index", words, formula.xreplace(moved)
+    for columns in _orders(range(formula.cols)):
+        yield "columns", _in_order("columns", columns), formula[:, list(columns)]
+    for rows in _orders(range(formula.rows)):
+        yield "rows", _in_order("rows", rows), formula[list(rows), :]
+
+
+def _orders(parts: Sequence[Any]) -> Iterator[tuple[Any, ...]]:
+    """All orders but the given one, of at most four parts."""
+    yield from islice(permutations(parts), 1, None) if len(parts) <= 4 else ()
+
+
+def _in_order(what: str, places: Sequence[int]) -> str:
+    return f"the {what} belong in the order {', '.join(str(place + 1) for place in places)}"
 
 
 # Single entries

@@ -57,6 +57,7 @@ class KnownQuantity:
     motion: Motion
     rotation: str  # as it was asked for: "ZYX"
     quantity: str
+    is_named: bool = False  # whether `rotation` says all about it
 
     @cached_property
     def matrix(self) -> sp.ImmutableMatrix:
@@ -116,6 +117,8 @@ class KnownQuantity:
 
     def sibling(self, quantity: str) -> KnownQuantity:
         """Another quantity of the same rotation."""
+        if self.is_named:
+            return target(self.rotation, quantity)
         motion = derive(self.motion.model, quantity, body=self.motion.body)
         return KnownQuantity(motion=motion, rotation=self.rotation, quantity=quantity)
 
@@ -129,7 +132,7 @@ def target(rotation: str, quantity: str) -> KnownQuantity:
     of_rates = rotation in _THREE and quantity in _OF_RATES
     derived = quantity.replace(OPERATOR, "rates_from_angular_velocity")
     motion = _kinematics(rotation, _OF_RATES if of_rates else (derived,))
-    return KnownQuantity(motion=motion, rotation=rotation, quantity=quantity)
+    return KnownQuantity(motion=motion, rotation=rotation, quantity=quantity, is_named=True)
 
 
 @lru_cache(maxsize=256)
