@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import tomllib
 
 import numpy as np
 import pytest
@@ -191,6 +192,14 @@ def test_the_wrong_sign_in_the_inverse_right_jacobian_of_a_paper_is_found():
     found = rs.compare(printed, "rotation_vector", "inverse_rate_matrix_body")
     (repair,) = found.repairs
     assert (repair.kind, found.is_proved) == ("sign", True)
+
+
+def test_two_wrong_entries_of_a_printed_rotation_matrix_are_found():
+    (claim,) = tomllib.loads((ROOT / "docs/literature/docs_quad.toml").read_text())["formula"]
+    found = rs.compare(claim["printed"], claim["rotation"], claim["ours"])
+    repairs = [(repair.kind, repair.place) for repair in found.repairs]
+    assert repairs == [("sine and cosine", (2, 2)), ("sign", (2, 3))]
+    assert found.is_proved
 
 
 def rate_matrix(q):

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import ast
 import re
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -46,7 +47,10 @@ def read_formula(
         )
     reader = _FormulaWalk(names or {}, functions or {}, free=free or names is None)
     try:
-        return _matrix(reader.value(ast.parse(text.strip(), mode="eval").body))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", SyntaxWarning)  # 1or is no formula
+            tree = ast.parse(text.strip(), mode="eval")
+        return _matrix(reader.value(tree.body))
     except SyntaxError as error:
         raise ExpressionError(f"not a formula: {error.msg}", column=error.offset or 1) from None
     except (ValueError, TypeError, IndexError, AttributeError) as error:  # sizes do not fit

@@ -82,6 +82,7 @@ def _index(found: list[str], index: str) -> None:
 def name_of(name: str) -> str:
     """One name for what has dots and arrows: np.sin is sin, state.phi is phi, q.w() is q_w."""
     parts = [part for part in re.split(r"::|->|\.|\(\)", name) if part]
+    parts = parts[parts[0] in ("self", "this") and len(parts) > 1 :]
     last = _NAMES.get(parts[-1], parts[-1])
     if last in _CALLS or last in _KINDS or len(parts) == 1:
         return last
