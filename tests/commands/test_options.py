@@ -36,10 +36,13 @@ def test_the_summaries_are_not_cut_off():
 @pytest.mark.parametrize(
     ("name", "options"),
     [
-        ("derive", "--only --quantity --angles --conversions --quiet --full --format --timeout"),
+        (
+            "derive",
+            "--lean --derivative --only --quantity --angles --conversions --full --format --timeout",
+        ),
         ("run", "--only --conversions --quiet --full --timeout --memory"),
         ("page", "--only --angles --conversions --timeout --memory"),
-        ("build", "--only --quantity --angles --conversions --timeout --memory"),
+        ("build", "--only --quantity --angles --conversions --derivative --timeout --memory"),
         ("eval", "--quantity --angles --timeout --memory"),
         ("check", "--timeout --memory"),
     ],

@@ -1,11 +1,16 @@
-"""The `rigidsym` command as a user runs it: a process of its own."""
+"""The `rigidsym` command: its program for a process of its own, and a call in this one."""
 
 from __future__ import annotations
 
-import os
-import subprocess
 import sys
+from contextlib import chdir, redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from rigidsym.commands.cli import main
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -18,14 +23,15 @@ _PROGRAM = (
 RIGIDSYM = (sys.executable, "-c", _PROGRAM)
 
 
-def call(*arguments: str, cwd: Path, status: int = 0, **environment: str):
-    done = subprocess.run(
-        [*RIGIDSYM, *arguments],
-        cwd=cwd,
-        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+def call(*arguments: str, cwd: Path, status: int = 0, **environment: str) -> CompletedProcess[str]:
+    """What a command prints and its exit code; an error that is no message is raised."""
+    out, errors = StringIO(), StringIO()
+    with pytest.MonkeyPatch.context() as patch, chdir(cwd):
+        patch.setattr(sys, "argv", ["rigidsym", *arguments])
+        for name, value in environment.items():
+            patch.setenv(name, value)
+        with redirect_stdout(out), redirect_stderr(errors), pytest.raises(SystemExit) as ended:
+            main()
+    done = CompletedProcess(arguments, ended.value.code, out.getvalue(), errors.getvalue())
     assert done.returncode == status, done.stdout + done.stderr
     return done

@@ -10,6 +10,7 @@ from functools import cache
 import jax
 import numpy as np
 import pytest
+import sympy as sp
 from numpy.testing import assert_allclose, assert_array_equal
 
 import rigidsym as rs
@@ -139,6 +140,15 @@ def test_ruff_would_leave_the_modules_as_they_are(tmp_path):
             check=False,
         )
         assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_conversions_stand_beside_quantities_that_are_no_functions():
+    radius, height = sp.symbols("r h")
+    body = rs.solid("cylinder", radius=radius, height=height, mass=1)
+    motion = rs.derive("axis_angle", only="principal_axes", body=body)
+    source = motion.kernels("jax", conversions=True).source
+    assert "def from_quaternion(" in source
+    assert "def principal_axes(" not in source
 
 
 def test_a_missing_jax_is_named(monkeypatch):

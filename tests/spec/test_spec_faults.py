@@ -349,6 +349,7 @@ def test_a_point_of_constraints_is_read_and_kept():
     assert again.models == spec.models
 
 
+AN_ENTRY = "expected an expression in quotes or a finite number"
 NUMBERS = """\
 [rotation]
 matrix = [["cos(phi)", "-sin(phi)", 0], ["sin(phi)", "cos(phi)", 0], [0, 0.0, ONE]]
@@ -365,18 +366,9 @@ def test_entries_of_a_matrix_may_be_numbers():
 @pytest.mark.parametrize(
     ("entry", "fault"),
     [
-        (
-            "true",
-            "rotation.matrix[2][2]: expected an expression in quotes or a finite number, got true",
-        ),
-        (
-            "[1]",
-            "rotation.matrix[2][2]: expected an expression in quotes or a finite number, got a list",
-        ),
-        (
-            "nan",
-            "rotation.matrix[2][2]: expected an expression in quotes or a finite number, got a n",
-        ),
+        ("true", f"rotation.matrix[2][2]: {AN_ENTRY}, got true"),
+        ("[1]", f"rotation.matrix[2][2]: {AN_ENTRY}, got a list"),
+        ("nan", f"rotation.matrix[2][2]: {AN_ENTRY}, got a number"),
         ('"cos(psi"', "rotation.matrix[2][2]: "),
         ("1, 0", "rotation.matrix: expected three rows of three expressions, got a list"),
     ],
