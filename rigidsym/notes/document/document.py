@@ -236,7 +236,7 @@ def _with_claims(section: Section, language: Catalogue) -> Section:
 def _spelt(formula: Formula, language: Catalogue) -> Formula:
     """The formula with the words in its row, such as: f for every integral."""
     if isinstance(formula, Words):
-        return Words(language.words(formula.text))
+        return Words(language.words(formula.words))
     if isinstance(formula, Row):
         return Row(tuple(_spelt(part, language) for part in formula.parts))
     return formula
