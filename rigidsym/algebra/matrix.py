@@ -114,6 +114,12 @@ class RingMatrix:
         """The time derivative, entry by entry."""
         return RingMatrix(self.ring, tuple(tuple(map(self.ring.dt, row)) for row in self.rows))
 
+    def jacobian(self, places: Sequence[int]) -> RingMatrix:
+        """The derivatives of the entries by generators, at their places: an entry a row."""
+        partial = self.ring.partial
+        rows = (tuple(partial(entry, place) for place in places) for entry in self.entries)
+        return RingMatrix(self.ring, tuple(rows))
+
     def is_zero(self) -> bool:
         return not any(self.entries)
 

@@ -21,7 +21,16 @@ _SIGNS = {
     "⇔": r"\Leftrightarrow ",
 }
 _LETTERS = {"⊥": r"\perp", "∥": r"\parallel", "∗": "*", "…": r"\ldots", "+": "+"}
-_GREEK = frozenset("αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ")
+
+
+def _macro(letter: str) -> str:
+    kind, _, name = unicodedata.name(letter).partition(" LETTER ")
+    macro = name.lower().replace("lamda", "lambda")
+    return f"\\{macro.title() if kind == 'GREEK CAPITAL' else macro}"
+
+
+# without omicron and the capitals that look like Latin letters, which have no macro
+GREEK = {letter: _macro(letter) for letter in "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ"}
 _DOTS = ("", r"\dot", r"\ddot")
 _MACROS = ("sin", "cos", "tan", "cot", "det", "exp", "arctan")
 _LEFT = {"flat": ("", ""), "large": (r"\Bigl", r"\Bigr"), "stretched": (r"\left", r"\right")}
@@ -141,16 +150,7 @@ def _braced(script: str) -> str:
 
 
 def _letters(letters: str) -> str:
-    return _LETTERS.get(letters) or greek_macro(letters) or letters
-
-
-def greek_macro(letter: str) -> str:
-    """LaTeX of a Greek letter; "" for what is none, or has no macro."""
-    if letter not in _GREEK:
-        return ""
-    kind, _, name = unicodedata.name(letter).partition(" LETTER ")
-    macro = name.lower().replace("lamda", "lambda")
-    return f"\\{macro.title() if kind == 'GREEK CAPITAL' else macro}"
+    return _LETTERS.get(letters) or GREEK.get(letters) or letters
 
 
 def _tall(entry: Piece) -> str:

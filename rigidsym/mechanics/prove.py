@@ -136,7 +136,7 @@ class Prover:
             ) from error
 
     def _reduces_to_zero(self, residual: RingMatrix) -> bool:
-        return all(self.codec.ring.is_zero(entry) for entry in residual.entries)
+        return self.codec.ring.are_zero(residual.entries)
 
     def _compare(self, residual: RingMatrix, claim: Formula) -> None:
         """Evaluate a residual that reduced to zero at a real point, from its factors, to 50 digits.

@@ -148,11 +148,7 @@ class Values:
 
     def _jacobian(self, omega: RingMatrix) -> RingMatrix:
         """∂Ω/∂q̇, by the generators of the rates themselves: a constraint may relate them."""
-        ring = self.ring
-        places = [ring.index[rate] for rate in self.arguments["q_dot"].symbols]
-        return RingMatrix(
-            ring, tuple(tuple(ring.partial(o, place) for place in places) for o in omega.entries)
-        )
+        return omega.jacobian([self.ring.index[q] for q in self.arguments["q_dot"].symbols])
 
     def argument(self, name: str) -> RingMatrix:
         """The components of an argument as a column."""

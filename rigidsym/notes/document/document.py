@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import chain, groupby, zip_longest
 from typing import NamedTuple
 
@@ -127,7 +128,7 @@ class Section(NamedTuple):
     is_appendix: bool = False  # at the end, behind the sources of a paper
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True)
 class Document:
     """A note. Equation labels are unique in it; sources are numbered in order of appearance."""
 
@@ -148,13 +149,13 @@ class Document:
         blocks = (block for section in self.sections for block in section.blocks)
         return (block for block in blocks if isinstance(block, Equation) and block.number)
 
-    @property
+    @cached_property
     def figures(self) -> tuple[Figure, ...]:
         """The figures, in order; their numbers are their places."""
         blocks = (block for section in self.sections for block in section.blocks)
         return tuple(block for block in blocks if isinstance(block, Figure))
 
-    @property
+    @cached_property
     def sources(self) -> tuple[str, ...]:
         """The sources that the text cites, each once, in order of appearance; then more."""
         spans = (span for text in self._texts() for span in text)
@@ -172,7 +173,7 @@ class Document:
                 return equation.number
         raise LookupError(f"no section of the note shows {label}: notes/sections/compose.py")
 
-    @property
+    @cached_property
     def formulas(self) -> tuple[Formula, ...]:
         """The formulas that stand among words, and the claims, in order, each once."""
         spans = (span for text in self._texts() for span in text)

@@ -7,7 +7,7 @@ import unicodedata
 from functools import cache
 from string import ascii_letters, digits
 
-from rigidsym.formula.latex_pen import greek_macro
+from rigidsym.formula.latex_pen import GREEK
 
 _SPECIAL = {
     "\\": r"\textbackslash{}",
@@ -65,8 +65,8 @@ def _cluster(base: str, marks: str) -> str:
     if not marks:
         return _character(base)
     if len(marks) == 1 and marks in _MATH_ACCENTS:
-        if greek_macro(base):
-            return rf"\ensuremath{{{_MATH_ACCENTS[marks]}{{{greek_macro(base)}}}}}"
+        if base in GREEK:
+            return rf"\ensuremath{{{_MATH_ACCENTS[marks]}{{{GREEK[base]}}}}}"
         return f"{_TEXT_ACCENTS[marks]}{{{_character(base)}}}"
     return _character(base) + "".join(map(_code, marks))
 
@@ -95,7 +95,7 @@ def _formula(character: str) -> str:
         base = chr(int(codes[0], 16))
         written = base if base in _PLAIN else _formula(base)
         return f"{_SCRIPTS[place]}{{{written}}}" if written else ""
-    return greek_macro(character)
+    return GREEK.get(character, "")
 
 
 def _is_in_font(character: str) -> bool:

@@ -15,7 +15,7 @@ import sympy as sp
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import equal, indexed, row
-from rigidsym.mechanics.derivation import Argument, Derivation, Step
+from rigidsym.mechanics.derivation import Argument, Derivation, Step, claims_of
 from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, EULER_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
@@ -334,6 +334,7 @@ def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
     """The numbered equation of a step."""
     quantity = step.quantity
     definition = () if not quantity.definition.text else (quantity.definition,)
+    proved, unproved = claims_of(step.proofs)
     is_matrix = not (quantity.is_scalar or step.recursion)
     return Equation(
         sides=(quantity.symbol, step.recursion)
@@ -344,8 +345,8 @@ def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
         entries=entry_names(step, arguments),
         number=step.number,
         label=quantity.name,
-        proved=tuple(proof.claim for proof in step.proofs if proof.is_exact),
-        unproved=tuple(proof.claim for proof in step.proofs if not proof.is_exact),
+        proved=proved,
+        unproved=unproved,
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, groupby
 
-from rigidsym.mechanics.derivation import Statement, Step
+from rigidsym.mechanics.derivation import Statement, Step, claims_of
 from rigidsym.notes.document.document import (
     Equation,
     NoteBlock,
@@ -67,12 +67,13 @@ class LectureComposer(BodyComposer):
         matrix = sums(statement, self.letters)
         if matrix is not None:
             sides = (*sides, matrix)
+        proved, unproved = claims_of(statement.proofs)
         yield Equation(
             sides=sides,
             number=statement.number,
             label=statement.name if statement.number else "",
-            proved=tuple(proof.claim for proof in statement.proofs if proof.is_exact),
-            unproved=tuple(proof.claim for proof in statement.proofs if not proof.is_exact),
+            proved=proved,
+            unproved=unproved,
             is_result=statement.name in RESULTS,
         )
 
