@@ -89,7 +89,9 @@ class Forces:
         moments = {moment for part in self.parts for moment in part.inertia}
 
         def described(symbol: sp.Symbol) -> Parameter:
-            about, unit = ("moment of inertia", "kg m^2") if symbol in moments else ("", "")
+            about, unit = (
+                ("principal moment of inertia", "kg m^2") if symbol in moments else ("", "")
+            )
             given = own.get(symbol, Parameter(symbol=symbol, positive=False))
             return replace(given, about=given.about or about, unit=given.unit or unit)
 

@@ -16,10 +16,19 @@ from rigidsym.formula.unicode_pen import columns
 from rigidsym.mechanics.derivation import Derivation, Place, Proof, Singularity
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.models.matrices import given
 from rigidsym.models.rotation import LECTURE, Citation, RotationModel
 from rigidsym.models.so3 import elementary, time_function
 from rigidsym.motion import QUANTITIES
-from rigidsym.notes.document.document import Document, Equation, NoteTable, Paragraph, listed, plain
+from rigidsym.notes.document.document import (
+    Cited,
+    Document,
+    Equation,
+    NoteTable,
+    Paragraph,
+    listed,
+    plain,
+)
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.formula.derivation_letters import entry_names
@@ -400,3 +409,36 @@ def test_the_table_of_symbols_says_what_each_constant_is():
 def test_a_point_is_at_rest_in_space_where_the_matrix_takes_to_the_body():
     assert _symbols(derived("ZYX", passive=True))["x"][0].startswith("position of a point at rest")
     assert _symbols(derived("ZYX"))["x"][0].startswith("position of a point of the body")
+
+
+@pytest.mark.parametrize("name", ["ZYX", "zxz", "davenport", "z(a) x(b)", "quaternion"])
+def test_equation_17_of_the_lecture_is_cited_for_its_own_rotation_only(name):
+    places = [(s.text, s.equation) for s in _cited(rs.derive(name).note().document)]
+    assert (LECTURE, "17") not in places
+    assert (LECTURE, "17") in [(s.text, s.equation) for s in _cited(derived("ZXZ").note().document)]
+
+
+def _cited(document: Document) -> list[Citation]:
+    texts = [
+        block.text
+        for section in document.sections
+        for block in section.blocks
+        if isinstance(block, Paragraph)
+    ]
+    return [span.citation for text in texts for span in text if isinstance(span, Cited)]
+
+
+def test_names_in_claims_are_introduced_in_the_terminal():
+    motion = derived("ZXZ")
+    text = show(motion, width=100, conversions=motion.conversions)
+    told, claimed = text.split("Identities verified")
+    assert "a₃ = κ" in claimed
+    assert "(a₀, a₁, a₂, a₃) = κ" in " ".join(told.split())
+    assert "4p pᵀ = K" in claimed
+    assert "K = " in told
+
+
+def test_a_sum_of_minors_is_introduced_in_the_terminal():
+    a, b = map(time_function, "ab")
+    text = show(derive(given(elementary("z", a + b), name="own")))
+    assert "sum of the squares of its minors" in " ".join(text.partition("Σ₁ =")[0].split())

@@ -14,10 +14,16 @@ from rigidsym.formula.unicode_pen import columns
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import Text, plain
+from rigidsym.notes.document.document import Text, plain, words
 from rigidsym.notes.formula.derivation_letters import RESIDUAL, entry_names, letters_of
 from rigidsym.notes.prose.prose import turn
-from rigidsym.notes.prose.singular_words import failures, geometry, measured, singular_title
+from rigidsym.notes.prose.singular_words import (
+    failures,
+    geometry,
+    meaning,
+    measured,
+    singular_title,
+)
 from rigidsym.notes.prose.vector_words import sum_of_vectors
 from rigidsym.notes.prose.words import convention, unit_in_words, with_symbols
 
@@ -202,6 +208,8 @@ class _Screen(_Steps):
             return
         yield ""
         yield self.style(singular_title(self.derivation), "heading")
+        if found.measure == "minors":
+            yield from self._said(meaning(found))  # else Σ₁ would have no meaning
         if found.determinant is not None:
             yield from self.console.listing([equal(*measured(found))], [found.determinant])
         zeros, *points = failures(self.derivation, found)
@@ -217,6 +225,11 @@ class _Screen(_Steps):
         yield self.style("Conversions", "heading")
         for step in self.steps[len(self.derivation.steps) :]:
             yield from self.step(step)
+        from rigidsym.notes.sections.conversion_section import COLUMNS, columns_of_matrix
+
+        matrix = columns_of_matrix()
+        yield from self._said(words("Each column of {} is a multiple of the quaternion.", COLUMNS))
+        yield from self.console.matrix((COLUMNS,), matrix, indexed(COLUMNS, matrix.shape))
         back = found.inverse
         for sentence in (back.because, back.branch) if back else ((found.without,),):
             yield from self._said(sentence)

@@ -22,6 +22,7 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.prose.words import with_source
 
+COLUMNS = formula(r"\mathbf{K}")
 _FUNCTIONS = ("from_quaternion(quaternion{})", "from_rotation_matrix(matrix{})")
 
 
@@ -44,6 +45,12 @@ def blocks_of_conversions(found: Conversions, *, has_functions: bool) -> Iterato
         yield Paragraph((Strong("Unproved:"), " not all of these claims could be decided."))
 
 
+def columns_of_matrix() -> sp.ImmutableMatrix:
+    """K(R), (4, 4), in the entries of R."""
+    entries = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}"))
+    return sp.ImmutableMatrix(outer_product(entries))
+
+
 def _matrix(found: Conversions) -> Iterator[NoteBlock]:
     """The columns of K(R) = 4 p pᵀ, from which the quaternion of a matrix is read."""
     text = (
@@ -51,8 +58,7 @@ def _matrix(found: Conversions) -> Iterator[NoteBlock]:
         "column of the largest component and divide it by its length\u00a0{}; the sign is free:"
     )
     yield said(text, found.from_matrix.claim, Cited(SHEPPERD))
-    entries = sp.Matrix(3, 3, lambda i, j: sp.Symbol(f"R_{i + 1}{j + 1}"))
-    matrix = sp.ImmutableMatrix(outer_product(entries))
+    matrix = columns_of_matrix()
     sides = (formula(rf"4\,p_{name}\,\mathbf{{p}}") for name in "wxyz")
     columns = (
         Equation(sides=(side,), matrix=matrix[:, k], entries=indexed(side, (4,)))

@@ -36,7 +36,9 @@ def calls(reading: Reading) -> dict[str, str]:
 def _turns(reading: Reading) -> Iterator[str]:
     """The angles and rates of the turns in their order, if they are not the columns."""
     if not reading.is_plain:
-        taken = f"[..., {list(reading.columns)}] * {list(reading.signs)}"
+        is_in_order = [*reading.columns] == sorted(reading.columns)
+        taken = "" if is_in_order else f"[..., {list(reading.columns)}]"
+        taken += f" * {list(reading.signs)}" if reading.flips else ""
         yield f"turns = angles{taken}"
         if reading.velocity:
             yield f"turn_rates = rates{taken}"
