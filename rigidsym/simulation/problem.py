@@ -43,12 +43,19 @@ class Problem:
         self.kernels: ModuleType = generate(derivation, "numpy", conversions=alone).load()
         self.constants = self.given("state_derivative")
         self.start = self.state_of(initial)
-        if (
-            np.abs(self.rotation(self.start) @ self.rotation(self.start).T - np.eye(3)).max()
-            > _UNIT
-        ):
+        rotation = self.rotation(self.start)
+        left = [*(rotation @ rotation.T - np.eye(3)).ravel(), *self._bound(self.start)]
+        if np.abs(left).max() > _UNIT:
             values = ", ".join(f"{n} = {initial[n]}" for n in self.coordinates)
             raise ModelError(f"{derivation.name}: no rotation has the coordinates {values}")
+
+    def _bound(self, y: Array) -> list[float]:
+        """What the conditions on the coordinates leave over."""
+        model = self.derivation.model
+        names = map(sp.Symbol, self.names.get("parameters", ()))
+        values = dict(zip(model.coordinates, y.tolist(), strict=False))
+        values |= dict(zip(names, self.parameters, strict=True))
+        return [float(condition.xreplace(values)) for condition in model.constraints]
 
     def _parameters(self, given: Mapping[str, float]) -> list[float]:
         constants = self.names.get("parameters", ())
@@ -81,6 +88,9 @@ class Problem:
         wanted = (*self.coordinates, *rates)
         known = (*self.coordinates, *self.names["q_dot"], OMEGA)
         check_names("initial values", initial, wanted, wanted if OMEGA in initial else known)
+        for name, value in initial.items():
+            if not np.isfinite(value).all():
+                raise ModelError(f"initial values: {name} is {value}; expected a finite number")
         q = _stacked([initial[name] for name in self.coordinates])
         if OMEGA in initial:
             given = np.asarray(initial[OMEGA], float)

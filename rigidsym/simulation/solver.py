@@ -100,7 +100,6 @@ def _integrated(
     problem: Problem, times: Array, progress: Progress | None, options: Mapping[str, Any]
 ) -> Trajectory:
     """By one of SciPy's integrators, as a quaternion from where a pole comes near."""
-    name = problem.derivation.name
     found: list[Array] = []
     remarks: list[str] = []
     at, state, ended = 0.0, problem.start, ""
@@ -110,7 +109,7 @@ def _integrated(
         if solved.status == 1:
             at, state = float(solved.t_events[0][0]), solved.y_events[0][0]
         else:
-            at, ended = times[-1], _ending(name, solved)
+            at, ended = times[-1], _ending(solved)
     rest = times[len(found[0]) if found else 0 :]
     if not ended and len(rest):
         attitude = Attitude(problem)
@@ -123,7 +122,7 @@ def _integrated(
         found.append(attitude.states(before, solved.y.T))
         if at == 0:
             found[-1][0] = problem.start  # its rates are known, even at the pole
-        ended = _ending(name, solved)
+        ended = _ending(solved)
     states = np.concatenate(found)
     return problem.trajectory(times[: len(states)], states, ended, remarks)
 
@@ -147,16 +146,24 @@ def _solve(
     def pole(_: float, y: Array) -> float:
         return margin(y) - POLE if margin else 1.0
 
+    with np.errstate(over="ignore"):
+        squares = np.square([*start, *slopes(at, start)])
+    if not np.isfinite(squares).all():  # SciPy would look for a first step for ever
+        raise DerivationError(
+            f"the equations of motion give no finite rates at t = {at:.6g} s; expected a state "
+            "away from poles of the coordinates, and rates that double precision can square"
+        )
     pole.terminal = True  # type: ignore[attr-defined]  # how SciPy is told to stop there
-    return solve_ivp(reported, (at, times[-1]), start, t_eval=times, events=pole, **options)
+    solved = solve_ivp(reported, (at, times[-1]), start, t_eval=times, events=pole, **options)
+    if solved.status < 0 and not len(solved.t):
+        raise DerivationError(f"no step could be taken: {solved.message}")
+    return solved
 
 
-def _ending(name: str, solved: Any) -> str:
-    """Why a motion ends before its time; raises DerivationError if it has not begun."""
+def _ending(solved: Any) -> str:
+    """Why a motion ends before its time."""
     if solved.status >= 0:
         return ""
-    if solved.t.size == 0:
-        raise DerivationError(f"{name}: no step could be taken: {solved.message}")
     return f"ended at t = {solved.t[-1]:.6g} s: {solved.message}"
 
 

@@ -10,6 +10,7 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.command import call
+from rigidsym.pipeline import motion_of, read
 
 A, B, C = sp.symbols("A B C")
 TOP = {"A": 1.3, "C": 0.7, "m": 2.0, "g": 9.81, "l": 0.4}
@@ -150,11 +151,21 @@ def test_a_trajectory_through_a_pole_agrees_with_one_in_quaternions():
         ({"phi": 0, "theta": 1, "psi": 0, "angular_velocity_body": 1}, TOP, 1.0, "three compon"),
         (REST | {"theta": 1}, TOP | {"C": 9.0}, 1.0, "principal moments"),
         (REST | {"theta": 1}, TOP, -1.0, "expected a positive number of seconds"),
+        (REST | {"theta": float("nan")}, TOP, 1.0, "theta is nan; expected a finite number"),
+        (REST | {"theta": 1, "theta_dot": 1e200}, TOP, 1.0, "give no finite rates at t = 0 s"),
     ],
 )
 def test_what_a_simulation_cannot_begin_with_is_said(initial, values, t_end, message):
     with pytest.raises(rs.RigidsymError, match=message):
         top().simulate(initial, values, t_end)
+
+
+def test_a_state_in_which_the_equations_of_motion_fail_is_refused_at_once():
+    """A disc that lies flat; its parts do not move with a quaternion"""
+    disc = motion_of(read("rolling_disc"))
+    values = {"A": 1, "C": 1.5, "m": 1, "g": 9.81, "a": 0.5}
+    with pytest.raises(rs.RigidsymError, match="give no finite rates at t = 0 s"):
+        disc.simulate(REST | {"psi_dot": 3.0}, values, 1.0)
 
 
 def test_a_derivation_without_forces_cannot_be_simulated():

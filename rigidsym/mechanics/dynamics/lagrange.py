@@ -155,7 +155,10 @@ class Lagrange:
         """
         below = self.mass_matrix.det()
         if not below:
-            raise ModelError(f"{self.model.name}: the mass matrix has no inverse")
+            raise ModelError(
+                f"{self.model.name}: the mass matrix has no inverse; expected coordinates that "
+                "move the body in different ways"
+            )
         return self.mass_matrix.adjugate() @ (self.column(self.forces) - self.bias), below
 
 
