@@ -170,3 +170,22 @@ def test_a_right_formula_is_proved(case):
     found = rs.compare(str(right(*case).tolist()), *case)
     assert found.is_equal
     assert found.is_proved
+
+
+def test_another_convention_is_named_although_one_sign_would_repair_the_formula():
+    found = rs.compare(right("zxz", "angular_velocity_space"), "ZXZ", "angular_velocity_body")
+    assert [repair.kind for repair in found.repairs] == ["sign"]
+    assert str(found.as_it_stands) == "angular_velocity_space of zxz"
+    assert "as it stands this is angular_velocity_space of zxz" in found.text()
+
+
+def test_constants_of_a_body_are_names_too():
+    motion = rs.derive("ZXZ", "inertia_tensor", body=rs.solid("cone"))
+    tensor = sp.Matrix(motion.inertia_tensor)
+    assert rs.compare(str(tensor.tolist()), motion, "inertia_tensor").is_equal
+    assert rs.compare(tensor / 2, motion, "inertia_tensor").repairs[0].kind == "factor"
+
+
+def test_numbers_that_nearly_agree_are_not_equal():
+    text = "[[1, 0, 0], [0, cos(a), -1.0000000000001*sin(a)], [0, sin(a), cos(a)]]"
+    assert rs.compare(text).found is None

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
-from rigidsym.errors import ExpressionError
+from rigidsym.errors import AlgebraError, DerivationError, ExpressionError, ModelError
 from rigidsym.motion import Motion
 from rigidsym.tools.compare.language import read_formula, spelled_out
 from rigidsym.tools.compare.plain import plain
@@ -39,6 +40,7 @@ class Comparison:
     names: Names | None = None
     repairs: tuple[Repair, ...] = ()
     arrangement: str = ""  # "transposed", "scalar last", "twice": what it is of what was found
+    as_it_stands: KnownQuantity | None = None  # what it is before a repair of its entries
     is_proved: bool = False  # that the repaired formula is what was found
 
     @property
@@ -55,6 +57,7 @@ class Comparison:
             "rotation": found.rotation if found else None,
             "quantity": found.quantity if found else None,
             "arrangement": self.arrangement,
+            "as_it_stands": str(self.as_it_stands) if self.as_it_stands else None,
             "names": self._called(),
             "repairs": [
                 {
@@ -82,6 +85,8 @@ class Comparison:
         changes = "; ".join(repair.words for repair in self.repairs)
         if self.asked is None:
             return f"close to {what}: {changes} (with this, {proof})"
+        if self.as_it_stands:
+            changes += f"; as it stands this is {self.as_it_stands}"
         is_changed = self.asked.quantity == self.found.quantity
         is_changed &= self.asked.rotation == self.found.rotation
         proof = f"with this, {proof}" if is_changed else proof
@@ -90,9 +95,9 @@ class Comparison:
     def _in_names(self) -> str:
         """The coordinates as the user calls them, in the order of the rotation."""
         called = self._called()
-        own = self.found.motion.argument("q").names if self.found else ()
+        own = self.found.coordinates if self.found else {}
         names = [called.get(name, name) for name in own]
-        return f" in ({', '.join(names)})" if tuple(names) != own else ""
+        return f" in ({', '.join(names)})" if names != list(own) else ""
 
     def _called(self) -> dict[str, str]:
         """Names of the user by those of the quantity that was found."""
@@ -126,10 +131,21 @@ def as_matrix(formula: Any) -> sp.ImmutableMatrix:
     """The matrix that a formula stands for."""
     if isinstance(formula, str):
         return read_formula(plain(formula))
-    if isinstance(formula, sp.MatrixBase | sp.Expr):
-        return sp.ImmutableMatrix(formula if isinstance(formula, sp.MatrixBase) else [[formula]])
+    if isinstance(formula, sp.MatrixBase):
+        return _in_symbols(formula)
     rows = [row if isinstance(row, list | tuple) else [row] for row in formula]
     return sp.ImmutableMatrix([[as_matrix(entry)[0] for entry in row] for row in rows])
+
+
+def _in_symbols(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
+    """The matrix with symbols for functions of time and their rates, and exact numbers."""
+    plain: dict[sp.Expr, sp.Expr] = {f: sp.Rational(str(f)) for f in matrix.atoms(sp.Float)}
+    for function in matrix.atoms(sp.Derivative, AppliedUndef):
+        order = function.derivative_count if isinstance(function, sp.Derivative) else 0
+        name = function.expr.func.__name__ if order else function.func.__name__
+        suffix = f"_{'d' * order}ot" if order else ""
+        plain[function] = sp.Symbol(name + suffix, real=True)
+    return sp.ImmutableMatrix(matrix.xreplace(plain))
 
 
 def _goal(rotation: str | Motion | None, quantity: str | None) -> KnownQuantity:
@@ -145,9 +161,12 @@ def _goal(rotation: str | Motion | None, quantity: str | None) -> KnownQuantity:
 def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
     """Compare with one quantity."""
     meant = [Meaning.of(formula, goal, names) for names in readings(formula, goal)]
-    if found := next(_likely(meant, goal), None):
+    found = next(_likely(meant, goal), None)
+    if found and not any(repair.place for repair in found[1]):
         return _made(*found, goal)
     other = identified(formula, only_equal=True)
+    if found:
+        return replace(_made(*found, goal), as_it_stands=other.found)
     if other.found:
         words = f"this is {other.found}"
         repair = Repair(kind="convention", words=words, formula=formula, goal=other.found)
@@ -245,13 +264,19 @@ def _made(reading: Meaning, repairs: Sequence[Repair], asked: KnownQuantity | No
     found = repairs[0].goal if repairs else reading.goal
     changed = _together(reading.formula, repairs)
     ours, theirs = map(found.applied, (found.matrix, changed.xreplace(dict(reading.names))))
+    try:
+        is_proved = found.motion.equality(theirs, ours).is_exact
+    except DerivationError:  # it is false, although the numbers agree
+        return Comparison(formula=reading.formula, asked=asked)
+    except (AlgebraError, ModelError):  # the ring cannot hold it
+        is_proved = False
     return Comparison(
         formula=reading.formula,
         asked=asked,
         found=found,
         names=reading.names,
         repairs=tuple(repairs),
-        is_proved=found.motion.equality(theirs, ours).is_exact,
+        is_proved=is_proved,
     )
 
 
@@ -276,12 +301,10 @@ def _of_function(function: Callable[..., Any], goal: KnownQuantity) -> Compariso
     symbols = [np.array(argument.symbols, object) for argument in arguments]
     inputs = _spread(function, symbols)
     try:
-        result = sp.ImmutableMatrix(_matrix(function(*inputs)))
+        result = sp.Matrix(_matrix(function(*inputs)))
     except (TypeError, AttributeError):  # NumPy's sin takes no symbols
         return _by_numbers(function, goal, symbols)
-    names = {sp.Symbol(name, real=True): meant for name, meant in goal.names.items()}
-    back = {meant: symbol for symbol, meant in names.items()}
-    return against(result.xreplace(back), goal)
+    return against(_in_symbols(result), goal)
 
 
 def _by_numbers(

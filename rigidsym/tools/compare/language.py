@@ -14,6 +14,7 @@ import ast
 import re
 import warnings
 from collections.abc import Callable, Mapping
+from functools import reduce
 from typing import Any
 
 import sympy as sp
@@ -173,7 +174,7 @@ class _FormulaWalk:
             case ast.Div() if isinstance(right, Sized) and other != 0:
                 return _checked(one / other)
             case ast.Pow() if other in range(1, 9):
-                return _checked(one**other)
+                return reduce(lambda a, b: _checked(a * b), [one] * int(other))
         raise ExpressionError("an operation that matrices do not have", column=column)
 
     def _call(self, name: str, values: list[Any], column: int) -> Any:

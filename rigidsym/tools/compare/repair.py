@@ -122,7 +122,8 @@ def _relatives(goal: KnownQuantity) -> Iterator[tuple[str, KnownQuantity]]:
 
 def _changes(reading: Meaning) -> Iterator[Change]:
     formula = reading.formula
-    yield "transpose", "the formula is the transpose", formula.T
+    passive = " (passive)" if reading.goal.quantity == "rotation_matrix" else ""
+    yield "transpose", f"the formula is the transpose{passive}", formula.T
     yield "sign", "all signs are the other way round", -formula
     for factor in (_TWO, _HALF):
         yield "factor", f"a factor {factor} is missing", factor * formula
@@ -130,7 +131,7 @@ def _changes(reading: Meaning) -> Iterator[Change]:
 
 def _other_orders(reading: Meaning) -> Iterator[Change]:
     formula = reading.formula
-    coordinates = reading.goal.motion.argument("q").symbols
+    coordinates = reading.goal.coordinates.values()
     names = [s for s, meant in reading.names.items() if meant in coordinates and formula.has(s)]
     for s in names:
         yield "angle", f"{s} has the other sign", formula.xreplace({s: -s})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -71,23 +72,22 @@ class KnownQuantity:
     def points(self) -> Values:
         """Values of all inputs; coordinates and rates satisfy the conditions of the model."""
         found: Values = {}
-        parameters = 0
-        for argument in self.motion.arguments:
-            row = _ROWS.get(argument.name, 4)
-            for place, symbol in enumerate(argument.symbols):
-                found[symbol] = _TABLE[row, place + (parameters if row == 4 else 0)]
-            parameters += len(argument.symbols) if row == 4 else 0
+        count = Counter[int]()
+        for name, symbols in self.inputs.items():
+            row = _ROWS.get(name, len(_TABLE) - 1)
+            for symbol in symbols:
+                found[symbol] = _TABLE[row, count[row]]
+                count[row] += 1
         for condition in self.motion.model.constraints:
             self._satisfy(condition, found)
         return found
 
     def _satisfy(self, condition: sp.Expr, found: Values) -> None:
         """Scale the coordinates in a condition |v|² = 1, and take the rates along v away."""
-        arguments = {argument.name: argument for argument in self.motion.arguments}
-        q = [s for s in arguments["q"].symbols if condition.has(s)]
+        q = [s for s in self.inputs["q"] if condition.has(s)]
         length = np.sqrt(sum(found[s] ** 2 for s in q))
         found.update({s: found[s] / length for s in q})
-        if "q_dot" in arguments:
+        if "q_dot" in self.inputs:
             rates = [sp.diff(s, *s.args) for s in q]
             along = sum(found[s] * found[r] for s, r in zip(q, rates, strict=True))
             found.update({r: found[r] - along * found[s] for s, r in zip(q, rates, strict=True)})
@@ -95,7 +95,7 @@ class KnownQuantity:
     @cached_property
     def rates(self) -> tuple[sp.Expr, ...]:
         """What the matrix acts on, if only the product is unique: C(q, q̇) q̇."""
-        return self.motion.argument("q_dot").symbols if self.quantity == "coriolis_matrix" else ()
+        return self.inputs["q_dot"] if self.quantity == "coriolis_matrix" else ()
 
     def applied(self, matrix: sp.MatrixBase) -> sp.MatrixBase:
         """What is compared: the matrix, or its product with the rates."""
@@ -107,13 +107,25 @@ class KnownQuantity:
         return evaluated(self.applied(self.matrix), dict(self.points))
 
     @cached_property
+    def inputs(self) -> dict[str, tuple[sp.Expr, ...]]:
+        """The symbols of each argument, and constants such as lengths."""
+        found = {argument.name: argument.symbols for argument in self.motion.arguments}
+        known = {symbol for symbols in found.values() for symbol in symbols}
+        constants = self.matrix.free_symbols - known - {s for q in known for s in q.args}
+        return found | {"constants": tuple(sorted(constants, key=str))}
+
+    @cached_property
     def names(self) -> dict[str, sp.Expr]:
         """The inputs by plain name."""
-        return {
-            name: symbol
-            for argument in self.motion.arguments
-            for name, symbol in zip(argument.names, argument.symbols, strict=True)
-        }
+        arguments = self.motion.arguments
+        names = {name: s for a in arguments for name, s in zip(a.names, a.symbols, strict=True)}
+        return names | {s.name: s for s in self.inputs["constants"]}
+
+    @cached_property
+    def coordinates(self) -> dict[str, sp.Expr]:
+        """The coordinates by plain name."""
+        q = self.inputs.get("q", ())
+        return {name: symbol for name, symbol in self.names.items() if symbol in q}
 
     def sibling(self, quantity: str) -> KnownQuantity:
         """Another quantity of the same rotation."""
@@ -215,8 +227,8 @@ def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
     if all(own.values()):
         yield {s: value for s, value in own.items() if value is not None}
         return
-    arguments = {argument.name: argument.symbols for argument in goal.motion.arguments}
-    q, inputs = arguments["q"], _inputs(goal)
+    arguments, inputs = goal.inputs, _inputs(goal)
+    q = arguments.get("q", ())
     angles = {a for f in matrix.atoms(sp.sin, sp.cos, sp.tan) for a in f.free_symbols}
     omega = [s for s in symbols if _OMEGA.fullmatch(s.name) and s not in angles]
     omega = omega if {"omega_body", "omega_space"} & inputs else []
@@ -224,18 +236,13 @@ def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
     rates = {s: stem for s in left if (stem := stem_of(s.name)) and s not in angles}
     rates = rates if "q_dot" in inputs else {}
     others = [s for s in left if s not in rates and angles and s not in angles]
-    others = others if "parameters" in inputs or goal.motion.body else []
+    others = others if goal.motion.body else []
     stems = sorted({s.name for s in left if s not in rates and s not in others} | {*rates.values()})
     if len(stems) > len(q) or len(omega) > 3:
         return
     velocity = next((arguments[a] for a in ("omega_body", "omega_space") if a in inputs), ())
-    moments = [
-        s
-        for name, found in arguments.items()
-        if name not in _ROWS
-        for s in found
-        if goal.matrix.has(s)
-    ]
+    constants = (s for name, found in arguments.items() if name not in _ROWS for s in found)
+    moments = [symbol for symbol in constants if goal.matrix.has(symbol)]
     if len(others) > len(moments):
         return
     fixed = dict(zip(others, moments, strict=False))
