@@ -35,9 +35,11 @@ _COMPONENTS = (
 _BECAUSE = sentence(
     r"$\mathbf{C}$ is the fixed turn about the second axis that takes the first to the third. In "
     "the frame of the first two axes and their cross product, the quaternion of "
-    r"$\mathbf{R}\,\mathbf{C}$ is $(a_0, a_1, a_2, a_3) = \kappa$ ($\cos\frac{\beta'}{2}\cos\sigma$, "
+    r"$\mathbf{R}\,\mathbf{C}$ is $(a_0, a_1, a_2, a_3) = \kappa$ "
+    r"($\cos\frac{\beta'}{2}\cos\sigma$, "
     r"$\cos\frac{\beta'}{2}\sin\sigma$, $\sin\frac{\beta'}{2}\cos\delta$, "
-    r"$\sin\frac{\beta'}{2}\sin\delta$), of length $\kappa$: $\beta'$ is the middle angle plus the angle of "
+    r"$\sin\frac{\beta'}{2}\sin\delta$), of length $\kappa$: $\beta'$ is the middle angle plus "
+    "the angle of "
     r"$\mathbf{C}$, $\sigma$ half the sum and $\delta$ half the difference of the outer angles. "
     r"So $\sigma = \operatorname{atan2}(a_1, a_0)$, $\delta = \operatorname{atan2}(a_3, a_2)$, and "
     r"$\tan\frac{\beta'}{2}$ is the quotient of the lengths of $(a_2, a_3)$ and $(a_0, a_1)$."
