@@ -353,3 +353,12 @@ def test_a_factor_of_all_terms_goes_before_the_matrix():
     factor, rest = factored(sp.ImmutableMatrix(entries))
     assert factor == a**2 * m
     assert rest == sp.ImmutableMatrix([11 + sp.sqrt(13), 22])
+
+
+def test_wide_identities_go_below_the_two_halves_of_their_table():
+    motion = rs.derive("ZXZ", body=rs.solid("cone"))
+    table = motion.note().latex().split("Identities verified")[1].split(r"\end{ruled}")[0]
+    wide = [line for line in table.splitlines() if r"\multicolumn{3}{l}" in line]
+    assert len(wide) == 1
+    assert r"\int" in wide[0]
+    assert table.count(r"\eqref") == len([*motion.proofs])

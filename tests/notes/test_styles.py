@@ -10,9 +10,9 @@ from helpers.motions import derived
 from helpers.typesetting import pages_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.tree import equal
-from rigidsym.notes.document.document import Equation, NoteTable
+from rigidsym.notes.document.document import Equation, NoteTable, Paragraph, plain
 from rigidsym.notes.sections.styles import APPENDIX, STYLES, in_style
-from rigidsym.pipeline import output_of, read_spec
+from rigidsym.pipeline import motion_of, output_of, read_file, read_spec
 
 AUDIT = derived("ZXZ").note(style="audit").document
 
@@ -90,3 +90,11 @@ def test_a_file_chooses_the_style_and_the_record_knows_it():
 def test_an_unknown_style_is_named():
     with pytest.raises(ModelError, match="lecture, paper or audit, and not 'book'"):
         in_style(AUDIT, "book")
+
+
+def test_the_note_of_the_lecture_begins_with_the_lecture_and_ends_with_how_it_was_proved():
+    (spec,) = read_file("lecture").singles()
+    first, *_, last = motion_of(spec).note().document.sections
+    assert first.title == "The centre of mass and the kinetic energy"
+    words = [plain(block.text) for block in last.blocks if isinstance(block, Paragraph)]
+    assert any("generic summand" in text for text in words)

@@ -161,14 +161,30 @@ class _LatexPrinter(NotePrinter):
         head, *rows = (list(map(self._cell, row)) for row in (table.head, *table.rows))
         # l for a column of one line a cell, T for the one of words
         columns = "".join("T" if k == table.of_words else "l" for k in range(len(table.head)))
-        if len(rows) >= _MANY and 2 * self._width(table) + _GAP <= _LINE / _SMALL:  # in two halves
+        wide = self._wide(table)
+        wider = [row for row, is_wide in zip(rows, wide, strict=True) if is_wide]
+        rows = [row for row, is_wide in zip(rows, wide, strict=True) if not is_wide]
+        if len(rows) >= _MANY and len(wider) <= len(rows) / 4:  # in two halves
             half = -(-len(rows) // 2)
             rows += [[""] * len(head)] * (2 * half - len(rows))
             rows = [[*left, *right] for left, right in zip(rows[:half], rows[half:], strict=True)]
+            rows += [[first, rf"\multicolumn{{3}}{{l}}{{{second}}}"] for first, second in wider]
             head, columns = head * 2, rf"{columns}@{{\hspace{{{_GAP}em}}}}{columns}"
+        else:
+            rows = [list(map(self._cell, row)) for row in table.rows]
         lines = [" & ".join(row) + r" \\" for row in (head, *rows)]
         begin = rf"\begin{{ruled}}{{{columns}}}{{{len(head)}}}{{{escape(table.caption)}}}"
         return "\n".join([begin, f"{{{lines[0]}}}", *lines[1:], r"\end{ruled}"])
+
+    def _wide(self, table: NoteTable) -> list[bool]:
+        """Which rows do not fit into one of two halves; those of two cells may go below them."""
+        room = (_LINE / _SMALL - _GAP) / 2
+        if 2 * self._width(table) + _GAP <= _LINE / _SMALL:
+            return [False] * len(table.rows)
+        is_alike = len(table.head) == 2
+        return [
+            not is_alike or self._width(table._replace(rows=(row,))) > room for row in table.rows
+        ]
 
     def _width(self, table: NoteTable) -> float:
         """About how wide a table is, in ems."""

@@ -35,8 +35,11 @@ _METHOD = (
     r"$\sum_i m_i\,\mathbf{x}_i = \mathbf{0}$ with its derivative are used, so that the statement "
     "holds for a body of any number of particles.",
     r"A general rotation $\mathbf{R}$ is represented by a unit quaternion, without loss of "
-    r"generality. The position of the centre of mass is written $\mathbf{r}_C$, since $\mathbf{R}$ "
-    "is the rotation.",
+    "generality.",
+)
+_CENTRE = (
+    r"The position of the centre of mass is written $\mathbf{r}_C$, since $\mathbf{R}$ is the "
+    "rotation."
 )
 
 
@@ -46,9 +49,10 @@ class LectureComposer(BodyComposer):
     of_the_body = " of the body"
 
     def beginning(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
-        yield "How the equations are proved", self._method()
+        first = [said(_CENTRE)]
         for title, statements in groupby(self.derivation.theory, key=lambda s: s.section):
-            yield title, chain.from_iterable(map(self._statement, statements))
+            yield title, chain(first, chain.from_iterable(map(self._statement, statements)))
+            first = []
         yield self.model.title, self._of_the_rotation()
 
     def summary(self, sections: Sequence[Section]) -> Section:
@@ -56,9 +60,6 @@ class LectureComposer(BodyComposer):
 
     def symbol_table(self) -> NoteTable:
         return symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
-
-    def _method(self) -> Iterator[NoteBlock]:
-        yield from (said(text) for text in _METHOD)
 
     def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
         source = statement.source if statement.number else None
@@ -96,6 +97,7 @@ class LectureComposer(BodyComposer):
             (_WHERE_SHOWN.get(s.name, s.name), p) for s in self.derivation.theory for p in s.proofs
         ]
         claims += [(self._label(step), p) for step in self.derivation.steps for p in step.proofs]
+        yield from (said(text) for text in _METHOD)
         yield from claims_in_a_table(sorted(claims, key=lambda claim: self._number(claim[0])))
 
     def _number(self, label: str) -> int:
