@@ -48,7 +48,7 @@ def test_an_own_template_may_include_others(tmp_path: Path):
         (
             "a\n{{ titel }}",
             2,
-            "'titel' is undefined; names here: byline, language, sections, sources, subtitle, title, words",
+            "'titel' is undefined; names here: byline, language, sections, sources,",
         ),
         ("{% for s in sections %}\n\n{{ s.name }}{% endfor %}", 3, "has no attribute 'name'"),
         ("{% if x %}", 1, "Unexpected end of template"),

@@ -34,7 +34,7 @@ CATALOGUE = (
     *("ZXZ", "XYZ", "zyx", "aerospace", "rpy", "davenport", "z(phi)", "z(a) x(b)"),
     *("quaternion", "unit_quaternion", "axis_angle", "rotation_vector", "gibbs_vector"),
     *("modified_rodrigues", "cayley_klein", "direction_cosines", "lecture", "solid_cone"),
-    *("composite_body", "heavy_symmetric_top", "free_body", "rolling_disc", "gyroscope"),
+    *("composite_body", "heavy_symmetric_top", "free_body", "rolling_disc"),
     *("gravity_gradient_satellite", "dual_spin_satellite"),
 )
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from rigidsym.errors import ModelError, offer
 from rigidsym.formula.reader import formula
 from rigidsym.models.rotation import LECTURE, Citation
+from rigidsym.notes.document.catalogue import Catalogue
 from rigidsym.notes.document.document import (
     Cited,
     Document,
@@ -73,7 +74,8 @@ class OwnText:
             more_sources=tuple(t for key, t in self.sources.items() if key != _OF_LECTURE),
         )
         labels = {equation.label for equation in changed.equations}
-        return _without_rows(changed, labels).changed(lambda text: self._renamed(text, labels))
+        known = _without_rows(changed, labels)
+        return known.changed(lambda text: self._renamed(text, labels, document.language))
 
     def _blocks(self, section: Section) -> Iterator[NoteBlock]:
         yield from self._own(self.before, section.title)
@@ -111,13 +113,13 @@ class OwnText:
             else:
                 yield f"[{part}]" if place % 2 else part
 
-    def _renamed(self, text: Text, labels: set[str]) -> Text:
+    def _renamed(self, text: Text, labels: set[str], language: Catalogue) -> Text:
         """The text with the name of the lecture, and without references to what is left out."""
-        return tuple(self._span(span, labels) for span in text)
+        return tuple(self._span(span, labels, language) for span in text)
 
-    def _span(self, span: Span, labels: set[str]) -> Span:
+    def _span(self, span: Span, labels: set[str], language: Catalogue) -> Span:
         if isinstance(span, EquationReference) and span.label not in labels:
-            return f"the {span.label.replace('_', ' ')}"
+            return language.words(f"the {span.label.replace('_', ' ')}")
         if isinstance(span, Cited) and span.citation.text == LECTURE:
             return Cited(span.citation._replace(text=self.sources.get(_OF_LECTURE, LECTURE)))
         return span
