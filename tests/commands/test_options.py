@@ -36,10 +36,7 @@ def test_the_summaries_are_not_cut_off():
 @pytest.mark.parametrize(
     ("name", "options"),
     [
-        (
-            "derive",
-            "--lean --derivative --only --quantity --angles --conversions --full --format --timeout",
-        ),
+        ("derive", "--lean --derivative --only --quantity --angles --conversions --full --format"),
         ("run", "--only --conversions --quiet --full --timeout --memory"),
         ("page", "--only --angles --conversions --timeout --memory"),
         ("build", "--only --quantity --angles --conversions --derivative --timeout --memory"),
