@@ -50,8 +50,8 @@ class CompareOptions(RotationOptions):
 
 
 @make(
-    "\n  rigidsym compare src/\n"
-    '  rigidsym compare --rotation x --quantity rotation_matrix --formula "[1 0 0; 0 c s; 0 s c]"'
+    "rigidsym compare src/\n"
+    '         rigidsym compare --rotation x --quantity rotation_matrix --formula "[1 0 0; 0 c s; 0 s c]"'
 )
 @click.argument("paths", nargs=-1, type=click.Path(exists=True, path_type=Path))
 @with_options(CompareOptions)

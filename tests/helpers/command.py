@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import chdir, redirect_stderr, redirect_stdout
-from io import StringIO
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -23,15 +23,28 @@ _PROGRAM = (
 RIGIDSYM = (sys.executable, "-c", _PROGRAM)
 
 
-def call(*arguments: str, cwd: Path, status: int = 0, **environment: str) -> CompletedProcess[str]:
-    """What a command prints and its exit code; an error that is no message is raised."""
-    out, errors = StringIO(), StringIO()
-    with pytest.MonkeyPatch.context() as patch, chdir(cwd):
+def run(*arguments: str, given: str = "", **environment: str) -> CompletedProcess[str]:
+    """What a command makes of standard input; an error that is no message is raised."""
+    stdin, out, errors = (TextIOWrapper(BytesIO(), encoding="utf-8") for _ in range(3))
+    stdin.write(given)
+    stdin.seek(0)
+    with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys, "argv", ["rigidsym", *arguments])
+        patch.setattr(sys, "stdin", stdin)
         for name, value in environment.items():
             patch.setenv(name, value)
         with redirect_stdout(out), redirect_stderr(errors), pytest.raises(SystemExit) as ended:
             main()
-    done = CompletedProcess(arguments, ended.value.code, out.getvalue(), errors.getvalue())
+    texts = []
+    for stream in (out, errors):
+        stream.seek(0)
+        texts.append(stream.read())
+    return CompletedProcess(arguments, ended.value.code, *texts)
+
+
+def call(*arguments: str, cwd: Path, status: int = 0, **environment: str) -> CompletedProcess[str]:
+    """A command in a folder that ends with this exit code."""
+    with chdir(cwd):
+        done = run(*arguments, **environment)
     assert done.returncode == status, done.stdout + done.stderr
     return done

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from helpers import command as command_line
 from helpers.command import RIGIDSYM
 from rigidsym.data.readers import reader_of
 
@@ -21,11 +22,13 @@ def logged() -> np.ndarray:
 
 
 def command(*arguments: object) -> list[str]:
+    """The command in a process of its own."""
     return [*RIGIDSYM, "eval", *map(str, arguments)]
 
 
-def run(*arguments: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(command(*arguments), capture_output=True, text=True, check=False)
+def run(*arguments: object, given: str = "") -> subprocess.CompletedProcess[str]:
+    """The command in this process, with this on standard input."""
+    return command_line.run("eval", *map(str, arguments), given=given)
 
 
 def _as_npy(path: Path, table: np.ndarray) -> None:
