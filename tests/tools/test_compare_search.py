@@ -179,7 +179,13 @@ def test_files_are_those_of_known_languages(tmp_path):
     assert found == ["a.c", "b.py", "sub/d.m"]
 
 
-@pytest.mark.parametrize("text", ["R = [" * 3000, "= << = (((", "x = " * 5000, '""" \' " {', "R[0"])
+HOSTILE = (
+    *(part * 20_000 for part in ("x", "a,", "a.", "/*", "R[0]", "a = ", "(a ", "\n", "% '")),
+    *("x = [[0]," * 3000, "R = [" * 3000, "= << = (((", '""" \' {', "R[0"),
+)
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=range(len(HOSTILE)))
 def test_hostile_files_are_passed_over(text):
     for suffix in (".py", ".cpp", ".m"):
         assert list(formulas(text, suffix)) == []

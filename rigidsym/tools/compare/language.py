@@ -23,7 +23,6 @@ from rigidsym.errors import ExpressionError, offer
 from rigidsym.text.bounds import FUNCTIONS, Sized, apply, operate
 from rigidsym.text.names import spelled
 
-MOST_CHARACTERS = 20_000
 _LARGEST = 20  # rows or columns
 _MOST_PARTS = 50_000  # of the entries of a matrix
 _LONGEST_NUMBER = 40  # digits
@@ -42,10 +41,6 @@ def read_formula(
     `names` are the known expressions and matrices. None, or `free`, makes symbols of all others.
     `functions` take and return expressions and matrices of SymPy. Raises ExpressionError.
     """
-    if len(text) > MOST_CHARACTERS:
-        raise ExpressionError(
-            f"a formula of {len(text)} characters; expected at most {MOST_CHARACTERS}"
-        )
     reader = _FormulaWalk(names or {}, functions or {}, free=free or names is None)
     try:
         with warnings.catch_warnings():

@@ -16,11 +16,11 @@ from rigidsym.errors import ExpressionError
 from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.text.names import GREEK_LETTERS, spelled
 
+MOST_CHARACTERS = 20_000
 _TOKEN = re.compile(
     r"(?P<space>(?:\s|\.\.\.[^\n]*\n|\\\n)+)"
     r"|(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)[fFlLuUdm]*(?![A-Za-z_])"
     r"|(?P<name>[^\W\d]\w*(?:(?:::|->|\.(?!T\b))[^\W\d]\w*)*(?:\(\))?)"
-    r"|(?P<index>\[\s*\d+\s*\])"
     r"|(?P<operator>\.T\b|\*\*|\.\*|\./|\.\^|\.'|[-+*/@^()\[\]{},;'=])"
 )
 _SAME = {"^": "**", ".^": "**", ".*": "*", "./": "/", "{": "[", "}": "]", "'": ".T", ".'": ".T"}
@@ -29,16 +29,29 @@ _NAMES |= {"arctan2": "atan2", "arcsin": "asin", "arccos": "acos", "arctan": "at
 _NAMES |= {"fabs": "abs", "Sqrt": "sqrt", "Sin": "sin", "Cos": "cos", "Tan": "tan"}
 _CALLS = {*FUNCTIONS, "pow", "sq", "pi", "M_PI", "one"}
 _OPTION = re.compile(r",\s*\w+\s*=\s*[\w.]+")  # dtype=float
+_COMPONENT = re.compile(r"\b(?P<name>[^\W\d]\w*)(?P<index>(?:\[\s*\d+\s*\])+|\(\s*\d+\s*\))")
 _BLANKS = (" ", "\n")
 _OPEN, _CLOSE = "([", ")]"
 _KINDS = {"array", "Matrix", "matrix", "ImmutableMatrix", "mat", "asarray", "Array"}
 
 
 def plain(text: str) -> str:
-    """The formula for `read_formula`; raises ExpressionError for characters without a meaning."""
+    """The formula for `read_formula`; raises ExpressionError for characters without a meaning
+    and for a text that is too long."""
+    if len(text) > MOST_CHARACTERS:
+        raise ExpressionError(
+            f"a formula of {len(text)} characters; expected at most {MOST_CHARACTERS}"
+        )
     if "\\" in text and re.search(r"\\[A-Za-z]", text):
         return _tex(text)
-    return "".join(_rows(_tokens(_OPTION.sub("", text))))
+    return "".join(_rows(_tokens(_COMPONENT.sub(_component, _OPTION.sub("", text)))))
+
+
+def _component(match: re.Match[str]) -> str:
+    """x[3] or R[0][1], and q(2) of MATLAB and Eigen, as one name."""
+    is_call = match["name"] in _CALLS and match["index"].startswith("(")
+    numbers = re.findall(r"\d+", match["index"])
+    return match[0] if is_call else "_".join([match["name"], *numbers])
 
 
 def _tokens(text: str) -> list[str]:
@@ -52,31 +65,11 @@ def _tokens(text: str) -> list[str]:
         place = match.end()
         if match["name"]:
             found.append(name_of(match["name"]))
-        elif match["index"]:
-            _index(found, match["index"])
         else:
             blank = "\n" if "\n" in text[match.start() : place].replace("...", "") else " "
             token = (match["space"] and blank) or match["number"] or match["operator"]
             found.append(_SAME.get(token, token))
-            _call_of_number(found)
     return found
-
-
-def _call_of_number(found: list[str]) -> None:
-    """q(2) of MATLAB and Eigen is a component, q_2."""
-    match found[-4:]:
-        case [name, "(", number, ")"] if number.isdigit() and name.isidentifier():
-            if name not in _CALLS:
-                found[-4:] = [f"{name}_{number}"]
-
-
-def _index(found: list[str], index: str) -> None:
-    """A constant index becomes part of the name before it; elsewhere it is a list."""
-    number = index.strip("[] \t\n")
-    if found and re.fullmatch(r"[^\W\d]\w*", found[-1]):
-        found[-1] += f"_{number}"
-    else:
-        found += ["[", number, "]"]
 
 
 def name_of(name: str) -> str:

@@ -30,17 +30,18 @@ _MOST_SYMBOLS = 12
 _SHAPES = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 
+_QUOTED = r"\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'"
 _COMMENTS = {
-    ".py": r"(?:\"\"\".*?\"\"\"|'''.*?'''|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'|#[^\n]*)",
-    ".m": r"(?:%[^\n]*|\"[^\"\n]*\"|(?<![\w)\]}.'])'[^'\n]*')",
-    ".c": r"(?:/\*.*?\*/|//[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'|^[ \t]*#[^\n]*)",
+    ".py": rf"\"\"\".*?(?:\"\"\"|\Z)|'''.*?(?:'''|\Z)|{_QUOTED}|#[^\n]*",
+    ".m": r"%[^\n]*|\"[^\"\n]*\"|(?<![\w)\]}.'])'[^'\n]*'",
+    ".c": rf"/\*.*?(?:\*/|\Z)|//[^\n]*|{_QUOTED}|^[ \t]*#[^\n]*",
 }
-_NAME = r"[A-Za-z_]\w*(?:(?:\.|->|::)[A-Za-z_]\w*)*"
+_NAME = r"\b[A-Za-z_]\w*(?:(?:\.|->|::)[A-Za-z_]\w*){0,5}"
 _INDEX = r"[ \t]*\d+[ \t]*(?:,[ \t]*\d+[ \t]*)?"
 _STATEMENT = re.compile(
-    r"(?P<scope>^(?:\s*(?:def|class|function)\b|\}))"
+    r"(?P<scope>^(?:[ \t]*(?:def|class|function)\b|\}))"
     r"|\breturn\b[ \t]*"
-    rf"|(?P<names>{_NAME}(?:[ \t]*,[ \t]*{_NAME})*)[ \t]*"
+    rf"|(?P<names>{_NAME}(?:[ \t]*,[ \t]*{_NAME}){{0,8}})[ \t]*"
     rf"(?P<index>(?:\[{_INDEX}\])+|\({_INDEX}\))?(?:\[\w*\])*"
     r"[ \t]*(?:=(?!=)|(?P<stream><<))[ \t\n]*",
     re.MULTILINE,
@@ -99,10 +100,11 @@ def formulas(text: str, suffix: str) -> Iterator[tuple[int, str, sp.ImmutableMat
     text = comments.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     reader = _FileReader()
     found: list[tuple[int, str, sp.ImmutableMatrix]] = []
-    place = 0
+    place, line, counted = 0, 1, 0
     while match := _STATEMENT.search(text, place):
         place = match.end()
-        line = text.count("\n", 0, match.start()) + 1
+        line += text.count("\n", counted, match.start())
+        counted = match.start()
         if match["scope"] is not None:
             found += reader.finished()
             reader = _FileReader()
