@@ -80,7 +80,7 @@ def drawing(request: pytest.FixtureRequest) -> Drawing:
 def test_labels_touch_no_line_and_no_other_label(drawing):
     for label in drawing.labels:
         for stroke in drawing.strokes:
-            assert not any(map(label.box.is_crossed_by, stroke.segments)), (label, stroke)
+            assert not label.box.crossed_by(stroke.segments), (label, stroke)
     for one, other in combinations(drawing.labels, 2):
         assert not one.box.meets(other.box), (one, other)
 
@@ -269,15 +269,15 @@ def test_a_segment_crosses_a_box_if_one_of_its_points_is_inside(start, end):
     ]
     inside = any(abs(x - 0.1) < 0.699 and abs(y + 0.2) < 0.399 for x, y in samples)
     if inside:
-        assert box.is_crossed_by((start, end))
-    if box.grown(0.02).is_crossed_by((start, end)) is False:
+        assert box.crossed_by([(start, end)])
+    if not box.grown(0.02).crossed_by([(start, end)]):
         assert not inside
 
 
 def test_a_label_that_has_no_free_place_takes_the_least_bad():
     hatch = [Stroke(kind="guide", points=((x / 20, -3.0), (x / 20, 3.0))) for x in range(-60, 61)]
     label = placed("space", Symbol("x"), beyond([(0, 0), (1, 0)]), hatch, [])
-    met = [s for stroke in hatch for s in stroke.segments if label.box.is_crossed_by(s)]
+    met = [s for stroke in hatch for s in label.box.crossed_by(stroke.segments)]
     assert 0 < len(met) <= 3  # it is about as wide as two gaps of the hatch
     assert hypot(*label.place) < 2
 

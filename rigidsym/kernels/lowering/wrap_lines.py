@@ -35,7 +35,10 @@ def narrowed(
     for assignment in kernel.assignments:
         narrower.assign(assignment.name, assignment.value)
     outputs = tuple(narrower.output(value, output) for value in kernel.outputs)
-    return replace(kernel, assignments=tuple(narrower.assignments), outputs=outputs)
+    assignments = tuple(narrower.assignments)
+    if (assignments, outputs) == (kernel.assignments, kernel.outputs):
+        return kernel
+    return replace(kernel, assignments=assignments, outputs=outputs)
 
 
 class _Narrower:
@@ -52,7 +55,7 @@ class _Narrower:
     def output(self, value: Expression, room: int) -> Expression:
         """An output in at most `room` characters, as a name where it must be."""
         short = self.shortened(value, room)
-        if len(self._show(short)) <= room or isinstance(short, Name):
+        if isinstance(short, Name) or len(self._show(short)) <= room:
             return short
         name = self._names.numbered("x")
         self.assign(name, short)

@@ -5,7 +5,7 @@ The unit is the length of the unit vectors of space; labels are set in letters o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from math import atan2, ceil, cos, hypot, pi, radians, sin, tau
@@ -84,23 +84,30 @@ class Box(NamedTuple):
         dx, dy = (abs(a - b) for a, b in zip(self.centre, other.centre, strict=True))
         return dx < self.half_width + other.half_width and dy < self.half_height + other.half_height
 
-    def is_crossed_by(self, segment: Segment) -> bool:
-        """Whether any point of the segment is inside (the test of Liang and Barsky)."""
-        (x0, y0), (x1, y1) = segment
-        (x, y), start, end = self.centre, 0.0, 1.0
-        if min(x0, x1) > x + self.half_width or max(x0, x1) < x - self.half_width:
-            return False
-        if min(y0, y1) > y + self.half_height or max(y0, y1) < y - self.half_height:
-            return False
-        for position, change, half in (
-            (x0 - x, x1 - x0, self.half_width),
-            (y0 - y, y1 - y0, self.half_height),
-        ):
-            if change == 0:
+    def crossed_by(self, segments: Iterable[Segment]) -> list[Segment]:
+        """The segments of which any point is inside (the test of Liang and Barsky)."""
+        (x, y), half_width, half_height = self
+        left, right = x - half_width, x + half_width
+        below, above = y - half_height, y + half_height
+        found = []
+        for segment in segments:
+            (x0, y0), (x1, y1) = segment
+            if (x0 < left and x1 < left) or (x0 > right and x1 > right):
                 continue
-            ends = sorted(((-half - position) / change, (half - position) / change))
-            start, end = max(start, ends[0]), min(end, ends[1])
-        return start <= end
+            if (y0 < below and y1 < below) or (y0 > above and y1 > above):
+                continue
+            start, end = 0.0, 1.0
+            for position, change, half in (
+                (x0 - x, x1 - x0, half_width),
+                (y0 - y, y1 - y0, half_height),
+            ):
+                if change == 0:
+                    continue
+                ends = sorted(((-half - position) / change, (half - position) / change))
+                start, end = max(start, ends[0]), min(end, ends[1])
+            if start <= end:
+                found.append(segment)
+        return found
 
 
 class Label(NamedTuple):
@@ -270,13 +277,13 @@ def placed(
     segments = [segment for stroke in strokes for segment in stroke.segments]
     reach = 2 * hypot(_half_width(symbol), TYPE_SIZE * _HEIGHT / 2) + max(_GAPS) + _MARGIN
     starts = {start for start, _ in places}
-    near = {p: list(filter(Box(p, reach, reach).is_crossed_by, segments)) for p in starts}
+    near = {start: Box(start, reach, reach).crossed_by(segments) for start in starts}
     least, best = len(segments) + len(taken) + 1, None
     for gap in _GAPS:
         for start, direction in places:
             label = Label(kind=kind, symbol=symbol, place=_shifted(symbol, start, direction, gap))
             box = label.box.grown(_MARGIN)
-            met = sum(map(box.is_crossed_by, near[start])) + sum(map(box.meets, taken))
+            met = len(box.crossed_by(near[start])) + sum(map(box.meets, taken))
             if met == 0:
                 return label
             if met < least:

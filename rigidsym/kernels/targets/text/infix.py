@@ -52,7 +52,7 @@ def _text(expression: Expression, functions: Mapping[str, str], number: Literal)
             return text, _ATOM
         case Number(value) if isnan(value):
             return functions.get("nan", "nan"), _ATOM
-        case Number(value) if Fraction(float(value)) == value:
+        case Number(value) if value == float(value):
             return number(float(value)), _ATOM
         case Number(value):
             ratio = (number(float(whole)) for whole in Fraction(value).as_integer_ratio())
