@@ -6,9 +6,7 @@ one C-contiguous (N, 3) and fill an `out`; each peer has the layout that it is f
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, partial
 from types import ModuleType
@@ -27,7 +25,15 @@ from benchmarks.kernel_parts import (
     sizes_of_targets,
     threads,
 )
-from benchmarks.measure import Settings, Spread, interleaved, progress, ratios, timed
+from benchmarks.measure import (
+    Settings,
+    Spread,
+    interleaved,
+    on_one_core,
+    progress,
+    ratios,
+    timed,
+)
 from benchmarks.node import node_side
 from benchmarks.peers import PEERS, Array, Side, Task, jitted
 from benchmarks.report import Cell, Column, Figure, Report, Table, spread_columns
@@ -105,20 +111,6 @@ def modules() -> Mapping[str, ModuleType]:
         progress(f"loading {name}")
         found[name] = motion().kernels(name).load()
     return found
-
-
-@contextmanager
-def on_one_core() -> Iterator[None]:
-    """Let no library spread over more, where the system can say so."""
-    if not hasattr(os, "sched_setaffinity"):
-        yield
-        return
-    before = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {max(before)})
-    try:
-        yield
-    finally:
-        os.sched_setaffinity(0, before)
 
 
 def sides(quantity: str, size: int) -> tuple[dict[str, Side], int]:

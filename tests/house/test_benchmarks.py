@@ -20,6 +20,7 @@ from benchmarks import (
     precision,
     rosetta,
     run,
+    sizes,
     sympy_forms,
 )
 from benchmarks.measure import Spread, interleaved, peak_memory, ratios, run_process
@@ -67,6 +68,15 @@ def test_numbers_stand_right_and_words_left():
         "  a         1.2",
         "  longer  123.0",
     ]
+
+
+@pytest.mark.parametrize("sides", [(sizes.PEER, "c"), (sizes.PEER, sizes.HEYOKA, "c", "numba")])
+def test_the_documented_sizes_have_a_column_for_every_side(sides):
+    turns = {side: [8.41625e-3, 1e-3, 0.5] for side in sides}
+    table = sizes.documented("R", {10: turns, 10_000: turns})
+    head, _, row = table.markdown().splitlines()
+    assert head.count("|") == row.count("|") == len(sides) + 2
+    assert row == "| 10,000 |" + " 8,420 |" * len(sides)
 
 
 def test_the_summary_marks_what_is_not_met():
