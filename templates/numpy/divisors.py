@@ -10,6 +10,10 @@ def _or_nan(value, scale, power=1):
     Without a scale, where it is at most the smallest normal number over eps.
     """
     eps, least = (2.0**-23, 2.0**-103) if value.dtype.char == "f" else (_EPS, _LEAST)
+    if scale is not None and value.ndim == 1:  # one sum tells when none is lost
+        ratio = scale / value
+        if ratio.dot(ratio) * eps ** (2 * power) < 0.5:
+            return value
     limit = least if scale is None else eps**power * np.abs(scale)
     lost = np.abs(value) <= limit
     return (

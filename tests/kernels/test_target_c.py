@@ -202,6 +202,38 @@ def test_rows_stand_where_they_belong(sources, compiler, shuffled):
                     assert (found[:, 9:] == 7).all()
 
 
+@pytest.mark.parametrize("flag", ["-msse2", *(["-mavx2"] if "avx2" in CPU else [])])
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_a_tile_of_any_width_is_taken_and_given_back(sources, compiler, flag):
+    """Rows of 1 to 14 components, shuffled by fours or one by one."""
+    if platform.machine() != "x86_64":
+        pytest.skip("other vectors")
+    text = (sources / f"{NAME}.c").read_text(encoding="utf-8")
+    widths = range(1, 15)
+    for real, suffix in (("double", ""), ("float", "f")):
+        text += (
+            f"\nvoid turn{suffix}(const int n, const {real} *from, {real} *tile, {real} *to)\n{{"
+        )
+        for n in widths:
+            take = f"take{suffix}({n}, TILE, from, {n}, 1, ({real} (*)[TILE])tile);"
+            give = f"give{suffix}({n}, TILE, (const {real} (*)[TILE])tile, to, {n}, 1);"
+            text += f"\n    if (n == {n}) {{\n        {take}\n        {give}\n    }}"
+        text += "\n}\n"
+    name = f"tiles_{compiler}_{flag.strip('-')}"
+    widened = re.sub(r"MOST = \d+", f"MOST = {widths[-1]}", text)
+    (sources / f"{name}.c").write_text(widened, encoding="utf-8")
+    flags = ("-std=c99", "-O1", "-fPIC", "-shared", flag)
+    run(compiler, *flags, f"{name}.c", "-o", f"{name}.so", "-lm", cwd=sources)
+    library = ctypes.CDLL(str(sources / f"{name}.so"))
+    for function, dtype in ((library.turn, np.float64), (library.turnf, np.float32)):
+        for n in widths:
+            rows = np.arange(32 * n, dtype=dtype).reshape(32, n)
+            tile, back = np.zeros((n, 32), dtype), np.zeros_like(rows)
+            function(n, *(ctypes.c_void_p(a.ctypes.data) for a in (rows, tile, back)))
+            assert np.array_equal(tile, rows.T)
+            assert np.array_equal(back, rows)
+
+
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
 @pytest.mark.skipif("avx" not in CPU, reason="a processor without AVX")
 @pytest.mark.parametrize("compiler", COMPILERS)

@@ -25,13 +25,12 @@ from rigidsym.system import resources
 
 _WORDS = (
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf NULL angle_of "
-    "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE SHUFFLED INLINED tile "
-    "found rows count at i j HELPER CLONES CLONED shared expected"
+    "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE MOST SHUFFLED SHUFFLE "
+    "INLINED tile found rows count at i j HELPER CLONES CLONED shared expected"
 )
 RESERVED = numpy.RESERVED | {*_WORDS.split()}  # the Python module's, too
 _WIDTH = 92
 _TILE = 32  # orientations that are evaluated side by side
-_WHOLE = frozenset({1, 2, 3, 4, 8})  # lengths of rows that compilers put together by whole vectors
 
 
 def render(program: Program, **options: Any) -> dict[str, str]:
@@ -64,8 +63,7 @@ def _source(
 ) -> str:
     called, last = functions_of(kernels), last_order(kernels)
     contents = functions[0][0].contents
-    taken = sorted({len(a.components) for kernel in kernels for a in kernel.arguments})
-    given = sorted({len(kernel.outputs) for kernel in kernels})
+    groups = (g for k in kernels for g in (k.outputs, *(a.components for a in k.arguments)))
     return _template("c/source.c.jinja").render(
         title=_safe(program.title),
         name=program.name,
@@ -88,17 +86,8 @@ def _source(
         ],
         two_over_pi=_words(),
         half_pi=repr(pi / 2),
-        takes=[(count, range(count)) for count in taken],
-        gives=[_columns(count) for count in given],
-        has_fours=not _WHOLE.issuperset(given),
+        most=max(map(len, groups)),
     )
-
-
-def _columns(count: int) -> tuple[int, range, range]:
-    """A length of rows, the columns written one by one, and the first of each four others."""
-    if count in _WHOLE:
-        return count, range(count), range(0)
-    return count, range(count - count % 4, count), range(0, count - 3, 4)
 
 
 def _words() -> str:
