@@ -153,7 +153,7 @@ def documented(title: str, found: Mapping[int, Turns]) -> Table:
     """Middle times of every side, for the README."""
     sides = list(next(iter(found.values())))
     heads = [{PEER: "lambdify", HEYOKA: "heyoka"}.get(side, side) for side in sides]
-    rows = [
+    rows: list[tuple[Cell, ...]] = [
         (size, *(f"{float(f'{Spread.of(turns[side]).middle * 1e6:.3g}'):,.9g}" for side in sides))
         for size, turns in found.items()
         if size in DOCUMENTED
@@ -172,15 +172,17 @@ def _sides(
 ) -> dict[str, Call]:
     """A call of each side, a peer or a module, on the same orientations."""
     random, step = np.random.default_rng(1), motion.step(name)
-    arranged = LAYOUTS.get(layout, np.ascontiguousarray)
+    arranged: Any = LAYOUTS.get(layout, np.ascontiguousarray)
     arrays = [arranged(random.uniform(-3, 3, (size, 3))) for _ in step.quantity.inputs]
     by_component = np.array([column for a in arrays for column in a.T])
     shape = (size, *(n for n in step.expression.shape if n > 1))
     sides: dict[str, Call] = {}
     for side, made in makers.items():
-        function = made if side in (PEER, HEYOKA) else getattr(made, name)
+        function: Any = made if side in (PEER, HEYOKA) else getattr(made, name)
         given = [by_component] if side == HEYOKA else arrays
-        room = {"out": np.empty((size, prod(shape[1:])) if side == PEER else shape)}
+        room: dict[str, Array] = {
+            "out": np.empty((size, prod(shape[1:])) if side == PEER else shape)
+        }
         if side == HEYOKA:
             room = {"outputs": np.empty((prod(shape[1:]), size))}
         sides[side] = partial(function, *given, **(room if layout == FILLED else {}))
@@ -214,8 +216,8 @@ def _on_all_cores(sizes: Sequence[int], repeats: int) -> Table:
     command = [sys.executable, "-m", "benchmarks.sizes", str(repeats), *map(str, sizes)]
     rows = tuple(map(tuple, json.loads(run_process(command))))
     heads = [f"{side}, {part}" for side in ("c", f"threads={_CORES}") for part in ("µs", "part")]
-    columns = (Column("quantity"), Column("orientations", ",d"), Column("heyoka, µs", ",.1f"))
-    columns += tuple(Column(head, ",.2f") for head in heads)
+    first = Column("quantity"), Column("orientations", ",d"), Column("heyoka, µs", ",.1f")
+    columns = (*first, *(Column(head, ",.2f") for head in heads))
     return Table(f"Rows, heyoka as it comes, on {_CORES} cores", columns, rows)
 
 
