@@ -1,7 +1,9 @@
 """Text with one row a line, between commas, semicolons, tabs or blanks.
 
 NumPy reads the numbers. A chunk that it refuses, for one with gaps say, is read again by the csv
-module, field by field, so that a fault is named with its line and field.
+module, field by field, so that a fault is named with its line and field. pyarrow's reader of CSV
+is faster and not used: it knows neither comments nor decimal commas among points, and makes no
+difference between a missing number and a wrong one.
 """
 
 from __future__ import annotations

@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 
 import rigidsym as rs
+from helpers.command import call
 from helpers.target_modules import STRICT
-from rigidsym.errors import CheckError, KernelError
+from rigidsym.errors import CheckError, KernelError, SpecError
+from rigidsym.pipeline import read_spec
 
 LEAN = {"precision": "double", "arrays": False, "libm": True}
 SOME = ("rotation_matrix", "angular_velocity_body", "angular_acceleration_space")
@@ -121,3 +123,44 @@ def test_other_options_are_refused_by_name(target, options, named):
 def test_no_python_module_is_made_of_lean_c():
     with pytest.raises(CheckError, match=r"_c\.py: not there.* with arrays"):
         rs.derive("ZXZ", only="rotation_matrix").kernels("c", **LEAN).load()
+
+
+FILE = """\
+[rotation]
+sequence = "ZYX"
+[output]
+quantities = ["rotation_matrix"]
+kernels = ["c"]
+note = []
+[output.c]
+precision = "double"
+arrays = false
+libm = true
+"""
+
+
+def test_a_file_and_the_command_line_ask_for_it(tmp_path):
+    (tmp_path / "euler_zyx_intrinsic.toml").write_text(FILE)
+    call("run", "euler_zyx_intrinsic.toml", "--out", "a", cwd=tmp_path)
+    call("derive", "ZYX", "--only", "rotation_matrix", "--lean", "--out", "b", cwd=tmp_path)
+    name = "euler_zyx_intrinsic/euler_zyx_intrinsic"
+    for ending in (".c", ".h", "_test.c"):
+        texts = {(tmp_path / out / f"{name}{ending}").read_text() for out in "ab"}
+        assert len(texts) == 1
+    assert "changed" not in call("check", "a", cwd=tmp_path).stdout
+    refused = call("build", "euler_zyx_intrinsic.toml", "--out", "a", cwd=tmp_path, status=2)
+    assert "with arrays and both precisions" in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("line", "fault"),
+    [
+        ('precision = "half"', 'line 8: output.c.precision: unknown name "half"; known: both'),
+        ("arrays = 0", "line 8: output.c.arrays: expected true or false, got the number 0"),
+        ("libn = true", "line 8: output.c.libn: unknown key; did you mean libm?"),
+    ],
+)
+def test_a_wrong_option_in_a_file_is_named(line, fault):
+    text = FILE.split("precision")[0] + line
+    with pytest.raises(SpecError, match=re.escape(fault)):
+        read_spec(text, source="file.toml", name="top")
