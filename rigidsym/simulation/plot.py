@@ -13,7 +13,6 @@ from rigidsym.simulation.samples import Array, Samples
 
 PICTURES = (".png", ".svg", ".pdf")
 SPHERE = np.ones(3)  # its semi-axes
-_ONE_ROW = [["q", "axis", "drift"]]
 _ONE_TURN = 360
 _VIEW = (25, -60)  # elevation and azimuth of the eye, degrees
 _SMALLEST = 1e-17  # of a relative change in the picture of the drift
@@ -26,8 +25,11 @@ def save_plot(path: Path, motion: Samples) -> Path:
     invariable plane.
     """
     check_picture(path, PICTURES)
-    rows = [["q", "q", "axis"], ["polhode", "herpolhode", "drift"]] if motion.is_free else _ONE_ROW
-    figure = figure_class()(figsize=(12, 4 * len(rows)), layout="constrained")
+    rows = [["q", "axis", "drift"] if motion.first_integrals else ["q", "axis"]]
+    if motion.is_free:
+        rows = [["q", "q", "axis"], ["polhode", "herpolhode", "drift"]]
+    size = (4 * len(rows[0]), 4 * len(rows))
+    figure = figure_class()(figsize=size, layout="constrained")
     panels = figure.subplot_mosaic(
         rows, per_subplot_kw={("axis", "polhode")[: len(rows)]: {"projection": "3d"}}
     )
@@ -37,7 +39,8 @@ def save_plot(path: Path, motion: Samples) -> Path:
     panels["axis"].set_title("Trace of the third body axis")
     if motion.is_free:
         _draw_poinsot(panels["polhode"], panels["herpolhode"], motion)
-    _draw_drift(panels["drift"], motion.t, motion.changes)
+    if motion.first_integrals:
+        _draw_drift(panels["drift"], motion.t, motion.changes)
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=150)
     return path
@@ -134,5 +137,4 @@ def _draw_drift(axes: Any, t: Array, changes: Mapping[str, Array]) -> None:
         largest = np.maximum.accumulate(np.nan_to_num(values))
         axes.semilogy(t, np.maximum(largest, _SMALLEST), label=name)
     axes.set(xlabel="t in s", ylabel="largest relative change", title="Drift of first integrals")
-    if changes:
-        axes.legend(loc="lower right", fontsize="x-small")
+    axes.legend(loc="lower right", fontsize="x-small")

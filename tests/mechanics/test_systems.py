@@ -75,6 +75,9 @@ def test_the_gyroscope_in_gimbals_has_the_equations_that_sympy_finds():
     assert satisfied(motion, lagrangian - m * g * l * sp.cos(THETA), [PHI, THETA, PSI])
     names = [integral.name for integral in motion.first_integrals]
     assert names == ["energy", "momentum_phi", "momentum_psi"]
+    titles = [each.title for each in motion.consequences]  # upright, its momenta may differ
+    assert "The effective potential" in titles
+    assert "The upright motion" not in titles
 
 
 def test_the_dual_spin_satellite_has_the_equations_that_sympy_finds():
@@ -121,6 +124,17 @@ def test_the_rolling_disc_has_the_accelerations_of_kanes_method():
     left, right = (evaluate(part, known) for part in (method.mass_matrix, method.forcing))
     assert agree(left * evaluate(motion.accelerations, values), right)
     assert [integral.name for integral in motion.first_integrals] == ["energy"]
+
+
+def test_the_quadcopter_has_the_equations_that_sympy_finds():
+    space, _, _, body = frame(("z", PSI), ("y", THETA), ("x", PHI))
+    thrusts, k = sp.symbols("F_1:5"), sp.Symbol("k")
+    torque = [l * (thrusts[3] - thrusts[1]), l * (thrusts[0] - thrusts[2])]
+    torque.append(k * (thrusts[0] - thrusts[1] + thrusts[2] - thrusts[3]))
+    omega = sp.Matrix([body.ang_vel_in(space).dot(axis) for axis in (body.x, body.y, body.z)])
+    q = [PSI, THETA, PHI]
+    forces = omega.jacobian([x.diff(T) for x in q]).T * sp.Matrix(torque)
+    assert satisfied(shipped("quadcopter_attitude"), kinetic(space, body, (A, B, C)), q, forces)
 
 
 def test_the_coriolis_matrix_of_the_quadcopter_is_that_of_a_passive_system():

@@ -100,12 +100,13 @@ class Cosine:
 
     @cached_property
     def _upright(self) -> sp.Expr | None:
-        """V_eff with equal momenta, if it is regular at θ = 0."""
+        """V_eff with equal momenta, if these alone make it regular at θ = 0."""
         equal = dict.fromkeys(self.motion.symbols, self.p)
         assert self.potential is not None
         found = sp.cancel(self.potential.xreplace(equal))
-        is_regular = sp.denom(found).xreplace({self.u: sp.S.One}) != 0
-        return found if len(equal) == 2 and is_regular else None
+        below = (sp.denom(sp.together(value)) for value in (self.potential, found))
+        poles = [divisor.xreplace({self.u: sp.S.One}) == 0 for divisor in below]
+        return found if len(equal) == 2 and poles == [True, False] else None
 
     def _sleeping(self) -> Iterator[Consequence]:
         """V_eff near θ = 0."""

@@ -116,9 +116,7 @@ class LagrangeEquations(Flow):
         return ROTATIONAL if alone else claims.KINETIC
 
     def potential_energy(self) -> Found:
-        return Found(
-            sp.ImmutableMatrix([[self.work.potential]]), "The body has the potential energy:"
-        )
+        return Found(sp.ImmutableMatrix([[self.work.potential]]), self.words_of_potential)
 
     def lagrangian(self) -> Found:
         if not self.is_holonomic:
@@ -128,7 +126,9 @@ class LagrangeEquations(Flow):
             "One point is fixed, so that all kinetic energy belongs to the rotation about it."
             if self._symbol is ROTATIONAL
             else "The kinetic energies of all parts add up.",
-            definition=claims.difference(self._symbol, claims.POTENTIAL),
+            definition=claims.difference(self._symbol, claims.POTENTIAL)
+            if self.work.potential
+            else self._symbol,
         )
 
     def energy(self) -> Found:
@@ -138,7 +138,11 @@ class LagrangeEquations(Flow):
             if not self.work.acting.frame_rate
             else "In a turning frame the energy is replaced by Jacobi's integral.",
             (self.prove.vanishes(self._energy_rate, self.energy_claim),),
-            definition=claims.total(self._symbol, is_jacobi=bool(self.work.acting.frame_rate)),
+            definition=claims.total(
+                self._symbol,
+                is_jacobi=bool(self.work.acting.frame_rate),
+                has_potential=bool(self.work.potential),
+            ),
         )
 
     @cached_property

@@ -22,6 +22,7 @@ from rigidsym.mechanics.derivation import FirstIntegral, Found
 from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, solved_euler
 from rigidsym.mechanics.kinematics.workspace import Values, encoded
 from rigidsym.mechanics.quantities import dynamics as claims
+from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.rotation import RotationModel
@@ -88,14 +89,14 @@ class EulerEquations(Flow):
         return half_form(self.present, self.inertia, self.omega) + self.forces.potential
 
     def potential_energy(self) -> Found:
-        return Found(
-            sp.ImmutableMatrix([[self.forces.potential]]), "The body has the potential energy:"
-        )
+        return Found(sp.ImmutableMatrix([[self.forces.potential]]), self.words_of_potential)
 
     def torque_body(self) -> Found:
         return Found(
             self.present.matrix(*self.torque),
-            "The torque of the potential follows from its power.",
+            "The torque of the potential follows from its power."
+            if any(self._gradient)
+            else "The torque about the fixed point is",
         )
 
     def energy(self) -> Found:
@@ -109,6 +110,7 @@ class EulerEquations(Flow):
             sp.ImmutableMatrix([[self._energy]]),
             "The energy changes at the power of the other torques.",
             (self.prove.vanishes(residual, self.energy_claim, divided_by=divisor),),
+            definition=None if self.forces.potential else ROTATIONAL,
         )
 
     def own_integrals(self) -> Iterator[FirstIntegral]:

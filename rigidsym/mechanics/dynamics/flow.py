@@ -92,6 +92,12 @@ class Flow:
         divisor = prod((block.divisor for block in self.blocks), start=ring.one)
         return parts[0] + parts[1] + self.explicit_rate(value).scale(divisor), ring.reduce(divisor)
 
+    @property
+    def words_of_potential(self) -> str:
+        if self.forces.potential:
+            return "The body has the potential energy:"
+        return "No potential acts on the body:"
+
     def explicit_rate(self, value: sp.Expr) -> RingMatrix:
         """∂F/∂t, the state being held."""
         return self.column(_slopes(value, [TIME], [TIME, *self.arguments["y"].symbols]))

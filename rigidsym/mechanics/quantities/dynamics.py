@@ -185,10 +185,9 @@ def difference(one: Formula, other: Formula) -> Formula:
     return formula(_MINUS, one, other)
 
 
-def total(kinetic: Formula, *, is_jacobi: bool) -> Formula:
-    if is_jacobi:
-        return formula("#1_2 - #1_0 + #2", kinetic, POTENTIAL)
-    return formula(_PLUS, kinetic, POTENTIAL)
+def total(kinetic: Formula, *, is_jacobi: bool, has_potential: bool) -> Formula:
+    found = formula("#1_2 - #1_0", kinetic) if is_jacobi else kinetic
+    return formula(_PLUS, found, POTENTIAL) if has_potential else found
 
 
 SUM_OF_PARTS = formula(
