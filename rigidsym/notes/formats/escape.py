@@ -25,6 +25,7 @@ _SPECIAL = {
     "|": r"\textbar{}",
     '"': r"\textquotedbl{}",
     "`": r"\textasciigrave{}",
+    "\u2011": r"\mbox{-}",  # no line ends there
 }
 _MATH = {
     "′": "'",
