@@ -27,7 +27,7 @@ _SUMMARIES = {  # name: what `rigidsym --help` says of it
     "check": "Compare generated files with a fresh derivation.",
     "eval": "Evaluate quantities for every row of a file.",
     "identify": "Find the convention that given numbers follow.",
-    "compare": "Check a formula against a rotation, and name what is wrong with it.",
+    "compare": "Name the convention of a formula and its errors.",
     "inertia": "Mass properties of particles or of a mesh.",
     "simulate": "Simulate a motion and report its first integrals.",
     "problems": "Write a problem sheet with worked solutions.",

@@ -49,10 +49,7 @@ class CompareOptions(RotationOptions):
         return self.rotation if is_name else motion_of(replace(spec, quantities=(self.quantity,)))
 
 
-@make(
-    "rigidsym compare src/\n"
-    '         rigidsym compare --rotation x --quantity rotation_matrix --formula "[1 0 0; 0 c s; 0 s c]"'
-)
+@make('rigidsym compare src/\n         rigidsym compare --formula "[c -s 0; s c 0; 0 0 1]"')
 @click.argument("paths", nargs=-1, type=click.Path(exists=True, path_type=Path))
 @with_options(CompareOptions)
 @click.pass_context

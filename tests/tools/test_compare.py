@@ -189,3 +189,10 @@ def test_constants_of_a_body_are_names_too():
 def test_numbers_that_nearly_agree_are_not_equal():
     text = "[[1, 0, 0], [0, cos(a), -1.0000000000001*sin(a)], [0, sin(a), cos(a)]]"
     assert rs.compare(text).found is None
+
+
+def test_a_long_wrong_entry_is_not_searched_for_ever():
+    formula = right("ZXZ", "rate_matrix_body").as_mutable()
+    formula[0, 0] += sum(sp.sin(k * sp.Symbol("psi")) for k in range(1, 80))
+    (repair,) = rs.compare(formula, "ZXZ", "rate_matrix_body").repairs
+    assert (repair.kind, repair.place) == ("entry", (1, 1))

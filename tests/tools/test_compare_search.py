@@ -171,7 +171,7 @@ def test_the_square_missing_in_copies_of_a_coriolis_matrix_is_found(tmp_path):
 
 
 def test_files_are_those_of_known_languages(tmp_path):
-    for name in ("b.py", "a.c", "notes.txt", "sub/d.m"):
+    for name in ("b.py", "a.c", "notes.txt", "sub/d.m", ".venv/e.py"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("x = 1")
     (tmp_path / "large.py").write_text(" " * 300_001)

@@ -102,7 +102,7 @@ _OF_MATRICES: dict[str, Callable[..., Any]] = {
     "diag": lambda *entries: sp.diag(*entries),
     "trace": lambda matrix: matrix.trace(),
 }
-_WRAPPERS = {"array", "asarray", "matrix", "Matrix", "ImmutableMatrix", "mat", "sym", "Array"}
+WRAPPERS = {"array", "asarray", "matrix", "Matrix", "ImmutableMatrix", "mat", "sym", "Array"}
 _SHORT = {"c": "cos", "s": "sin", "t": "tan", "C": "cos", "S": "sin", "T": "tan"}
 _CONSTANTS = {"pi": sp.pi, "M_PI": sp.pi}
 
@@ -175,7 +175,7 @@ class _FormulaWalk:
     def _call(self, name: str, values: list[Any], column: int) -> Any:
         if len(values) == 1 and isinstance(values[0], Sized):
             name = _SHORT.get(name, name) if name not in self.functions else name
-        elif name in _WRAPPERS and len(values) == 1:
+        elif name in WRAPPERS and len(values) == 1:
             return _matrix(values[0])
         if name in ("pow", "sq"):
             exponent = values[1] if name == "pow" else Sized.number(sp.Integer(2))

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from rigidsym.errors import ExpressionError
 from rigidsym.text.bounds import FUNCTIONS
 from rigidsym.text.names import GREEK_LETTERS, spelled
+from rigidsym.tools.compare.language import WRAPPERS
 
 MOST_CHARACTERS = 20_000
 _TOKEN = re.compile(
@@ -32,7 +33,6 @@ _OPTION = re.compile(r",\s*\w+\s*=\s*[\w.]+")  # dtype=float
 _COMPONENT = re.compile(r"\b(?P<name>[^\W\d]\w*)(?P<index>(?:\[\s*\d+\s*\])+|\(\s*\d+\s*\))")
 _BLANKS = (" ", "\n")
 _OPEN, _CLOSE = "([", ")]"
-_KINDS = {"array", "Matrix", "matrix", "ImmutableMatrix", "mat", "asarray", "Array"}
 
 
 def plain(text: str) -> str:
@@ -77,7 +77,7 @@ def name_of(name: str) -> str:
     parts = [part for part in re.split(r"::|->|\.|\(\)", name) if part]
     parts = parts[parts[0] in ("self", "this") and len(parts) > 1 :]
     last = _NAMES.get(parts[-1], parts[-1])
-    if last in _CALLS or last in _KINDS or len(parts) == 1:
+    if last in _CALLS or last in WRAPPERS or len(parts) == 1:
         return last
     return f"{parts[-2]}_{last}" if len(last) == 1 else last
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice, permutations, product
+from itertools import chain, islice, permutations, product
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from rigidsym.tools.compare.targets import (
     target,
 )
 
+_MOST_OPERATIONS = 200  # of an entry in which each part is changed
 _MOST_ENTRIES = 3  # that may be wrong, each by one change
 _HALF, _TWO = sp.Rational(1, 2), sp.Integer(2)
 
@@ -198,6 +199,7 @@ def _entry(reading: Meaning, place: tuple[int, int]) -> Repair:
     variants = [
         (kind, after, column)
         for column in (range(formula.cols) if goal.rates else [place[1]])
+        if row[column].count_ops() <= _MOST_OPERATIONS
         for kind, after in set(_variants(row[column], groups))
     ]
     back = {meant: symbol for symbol, meant in reading.names.items()}
@@ -296,4 +298,4 @@ def _here(
     if expression.is_Function or expression.is_Symbol:
         yield "square", expression**2
     if not expression.is_Add:
-        yield from (("product", expression * f(s)) for s in groups[0] for f in _SWAPPED)
+        yield from (("product", expression * f(s)) for s in chain(*groups[:1]) for f in _SWAPPED)

@@ -68,13 +68,18 @@ class FormulaInFile:
 
 
 def source_files(paths: Sequence[Path]) -> Iterator[Path]:
-    """The source files among the paths and below them, in order; raises ExpressionError for more
-    than can be searched."""
+    """The source files among the paths and below them, in order, without hidden folders.
+
+    Raises ExpressionError if there are more than can be searched.
+    """
     files = [
         file
         for path in paths
         for file in (sorted(path.rglob("*")) if path.is_dir() else [path])
-        if file.suffix in SUFFIXES and file.is_file() and file.stat().st_size <= _MOST_BYTES
+        if file.suffix in SUFFIXES
+        and not any(part.startswith(".") for part in file.relative_to(path).parts)
+        and file.is_file()
+        and file.stat().st_size <= _MOST_BYTES
     ]
     if len(files) > _MOST_FILES:
         raise ExpressionError(f"{len(files)} source files; expected at most {_MOST_FILES}")
