@@ -73,9 +73,7 @@ def note(
     """
     into = language_of(language)
     if notation.frames != FRAMES and language != "en":
-        raise ModelError(
-            f"notation: frames have names of their own only in English, not {language!r}"
-        )
+        raise ModelError(f"only English notes take names for the frames; language is {language!r}")
     computed = [step.quantity.name for step in derivation.steps if step.quantity.inputs]
     names = computed if functions is None else functions
     composer = _composer_of(derivation)(

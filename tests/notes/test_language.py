@@ -123,7 +123,7 @@ def test_an_unknown_language_and_frames_in_german_are_refused():
     with pytest.raises(ModelError, match="language is en or de, and not 'fr'"):
         derived("ZXZ").note(language="fr")
     renamed = derived("ZXZ").with_notation(frames=("inertial", "rotor"))
-    with pytest.raises(ModelError, match="only in English"):
+    with pytest.raises(ModelError, match="only English notes take names"):
         renamed.note(language="de")
 
 
