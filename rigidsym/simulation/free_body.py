@@ -32,12 +32,12 @@ def free_motion(inertia: Array, omega: Array, rotation: Array, t: Array) -> tupl
         return np.zeros((len(t), 3)), np.repeat(rotation[None], len(t), axis=0)
     a, b, c = (0, 1, 2) if square >= twice * moments[1] else (2, 1, 0)
     if np.linalg.norm(np.cross(momentum, start)) <= _ROUNDING * twice:  # a principal axis
-        return np.repeat(omega[None], len(t), axis=0), rotation @ _turns(omega, t)
+        return np.repeat(omega[None], len(t), axis=0), rotation @ _turned(t, omega)
     (in_a, in_b, in_c), precession = _in_principal_axes(moments, start, (a, b, c), t)
     principal = np.empty((len(t), 3))
     principal[:, a], principal[:, b], principal[:, c] = in_a, in_b, in_c
     frames = _frames(moments * principal / np.sqrt(square), c)
-    turned = _about_third(precession) @ frames
+    turned = _turned(precession, np.array([0.0, 0.0, 1.0])) @ frames
     whole = rotation @ axes @ _frames(momentum[None] / np.sqrt(square), c)[0].T @ turned @ axes.T
     return principal @ axes.T, whole
 
@@ -92,16 +92,8 @@ def _frames(momentum: Array, c: int) -> Array:
     return np.stack([np.cross(y, momentum), y, momentum], axis=1)
 
 
-def _about_third(angle: Array) -> Array:
-    c, s, zero = np.cos(angle), np.sin(angle), np.zeros_like(angle)
-    rows = [[c, -s, zero], [s, c, zero], [zero, zero, zero + 1]]
-    return np.moveaxis(np.array(rows), 2, 0)
+def _turned(angles: Array, axis: Array) -> Array:
+    """Rotations by multiples of a vector, (n, 3, 3)."""
+    from scipy.spatial.transform import Rotation
 
-
-def _turns(omega: Array, t: Array) -> Array:
-    """exp(t C(Ω))"""
-    x, y, z = omega
-    size = np.linalg.norm(omega)
-    skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) / size
-    angle = (size * t)[:, None, None]
-    return np.asarray(np.eye(3) + np.sin(angle) * skew + (1 - np.cos(angle)) * (skew @ skew))
+    return np.asarray(Rotation.from_rotvec(np.outer(angles, axis)).as_matrix())

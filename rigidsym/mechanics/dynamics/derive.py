@@ -115,9 +115,6 @@ class LagrangeEquations(Flow):
         alone = len(self.work.moving) == 1 and not self.work.acting.frame_rate
         return ROTATIONAL if alone else claims.KINETIC
 
-    def potential_energy(self) -> Found:
-        return Found(sp.ImmutableMatrix([[self.work.potential]]), self.words_of_potential)
-
     def lagrangian(self) -> Found:
         if not self.is_holonomic:
             return _NONE

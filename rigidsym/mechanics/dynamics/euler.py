@@ -88,9 +88,6 @@ class EulerEquations(Flow):
     def _energy(self) -> sp.Expr:
         return half_form(self.present, self.inertia, self.omega) + self.forces.potential
 
-    def potential_energy(self) -> Found:
-        return Found(sp.ImmutableMatrix([[self.forces.potential]]), self.words_of_potential)
-
     def torque_body(self) -> Found:
         return Found(
             self.present.matrix(*self.torque),

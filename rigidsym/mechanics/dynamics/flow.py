@@ -92,11 +92,11 @@ class Flow:
         divisor = prod((block.divisor for block in self.blocks), start=ring.one)
         return parts[0] + parts[1] + self.explicit_rate(value).scale(divisor), ring.reduce(divisor)
 
-    @property
-    def words_of_potential(self) -> str:
-        if self.forces.potential:
-            return "The body has the potential energy:"
-        return "No potential acts on the body:"
+    def potential_energy(self) -> Found:
+        potential = self.forces.potential
+        has_one = "The body has the potential energy:"
+        because = has_one if potential else "No potential acts on the body:"
+        return Found(sp.ImmutableMatrix([[potential]]), because)
 
     def explicit_rate(self, value: sp.Expr) -> RingMatrix:
         """∂F/∂t, the state being held."""
