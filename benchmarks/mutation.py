@@ -1,4 +1,4 @@
-"""Mutants of ring and prover: `python benchmarks/run.py mutation --samples 40`. Do tests see them?
+"""Mutants of ring, prover and printers: `run.py mutation --samples 40`. Do tests notice them?
 
 One operator, comparison, sign or constant of a function is changed at a time, and the tests of its
 file run in a forked process. A mutant that no test notices survives. Some survivors are no faults:
@@ -32,6 +32,8 @@ ARITHMETIC = "tests/algebra/test_mutants.py"
 RING = (ARITHMETIC, "tests/algebra/test_ring.py", "tests/algebra/test_codec.py")
 PRESENT = ("tests/algebra/test_present.py", "tests/algebra/test_codec.py")
 PROOFS = ("tests/house/test_one_door_for_proofs.py", "tests/mechanics/test_exactness.py")
+READ_BACK = "tests/laws/test_read_back.py"
+FORMULAS = ("tests/notes/test_formula.py", READ_BACK)
 TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the quickest first
     "rigidsym.algebra.ring": RING,
     "rigidsym.algebra.matrix": (*RING, PROOFS[0]),
@@ -41,7 +43,12 @@ TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the 
     "rigidsym.algebra.present": PRESENT,
     "rigidsym.algebra.witness": PROOFS,
     "rigidsym.mechanics.prove": PROOFS,
+    "rigidsym.formula.scalars": FORMULAS,
+    "rigidsym.formula.latex_pen": FORMULAS,
+    "rigidsym.formula.mathml_pen": FORMULAS,
+    "rigidsym.kernels.targets.text.infix": ("tests/kernels/test_lowering.py", READ_BACK),
 }
+PRINTERS = ("rigidsym.formula.", "rigidsym.kernels.")
 SECONDS = 150  # of processor time, after which a mutant has given itself away
 LEAST = 0.95
 _SKIPPED = "not test_only_the_door and not test_a_change"  # of sources, and of mutants themselves
@@ -256,19 +263,24 @@ def report(tried: Mapping[str, tuple[int, list[Mutant]]]) -> Report:
         (module, len(mutants(module)), count, count - len(left))
         for module, (count, left) in tried.items()
     )
-    total, noticed = sum(row[2] for row in rows), sum(row[3] for row in rows)
-    share = noticed / total if total else 0.0
     columns = (Column("module"), Column("mutants"), Column("tried"), Column("noticed"))
     return Report(
-        title="Mutation: one change of the ring or the prover at a time, against their own tests",
+        title="Mutation: one change of ring, prover or printers at a time, against their own tests",
         tables=(Table("Mutants that a test notices", columns, rows),),
-        figures=(
-            Figure(
-                "mutants of ring and prover noticed",
-                f"at least {LEAST:.0%}",
-                f"{noticed} of {total}, {share:.1%}",
-                share >= LEAST,
-            ),
-        ),
+        figures=tuple(_figures(tried)),
         notes=tuple(f"survived: {mutant}" for _, left in tried.values() for mutant in left),
     )
+
+
+def _figures(tried: Mapping[str, tuple[int, list[Mutant]]]) -> Iterator[Figure]:
+    for what, is_printer in (("ring and prover", False), ("printers", True)):
+        found = [tried[module] for module in tried if module.startswith(PRINTERS) == is_printer]
+        total = sum(count for count, _ in found)
+        noticed = total - sum(len(left) for _, left in found)
+        share = noticed / total if total else 0.0
+        yield Figure(
+            f"mutants of {what} noticed",
+            f"at least {LEAST:.0%}",
+            f"{noticed} of {total}, {share:.1%}",
+            share >= LEAST,
+        )

@@ -47,6 +47,7 @@ NAMES = (
     "fuzz",
     "kills",
     "mutation",
+    "kernel_mutants",
     "certificates",
 )
 

@@ -75,7 +75,7 @@ def _compare(record: Path) -> Iterator[Finding]:
         return
     fresh = output_of(read_record(content.get("request"), source=str(record)))
     for name, text in fresh.files.items():
-        yield _finding(record.parent / name, text)
+        yield finding_of(record.parent / name, text)
     certificate = record.with_suffix(".cert.json")
     if certificate.is_file():
         yield _certified(certificate, record)
@@ -90,7 +90,8 @@ def _certified(path: Path, record: Path) -> Finding:
     return Finding(path=path)
 
 
-def _finding(path: Path, expected: str) -> Finding:
+def finding_of(path: Path, expected: str) -> Finding:
+    """What is wrong with one file; nothing if its bytes are those expected."""
     if not path.is_file():
         return Finding(path=path, problem="missing")
     found = path.read_bytes()

@@ -1,4 +1,4 @@
-"""Short forms of the campaigns "fuzz" and "kills": hostile inputs, and commands that are killed."""
+"""Short forms of campaigns: hostile inputs, commands that are killed, kernels that are edited."""
 
 from __future__ import annotations
 
@@ -7,10 +7,14 @@ import sys
 from pathlib import Path
 from random import Random
 
+import numpy as np
 import pytest
 
-from benchmarks import fuzz, kills
+import rigidsym as rs
+from benchmarks import fuzz, kernel_mutants, kills
+from rigidsym.commands.check import finding_of
 from rigidsym.errors import LimitReached
+from rigidsym.kernels.lowering.lower import lower
 
 ROOT = Path(__file__).resolve().parents[2]
 COUNTS = {"derivation files": 60, "expressions": 300, "command lines": 30}
@@ -67,3 +71,17 @@ def test_a_record_beside_files_of_another_run_is_seen(tmp_path):
         (folder / "top.json").write_bytes(record)
         (folder / "top.py").write_bytes(module)
         assert trial._fault() == fault
+
+
+def test_check_names_every_change_of_a_kernel(tmp_path):
+    motion = rs.derive("ZXZ", ["angular_velocity_body"])
+    made = motion.kernels()
+    kernel = next(k for k in lower(motion).kernels if k.name == "angular_velocity_body")
+    same, *found = kernel_mutants.mutants(made.source, kernel, "numpy")
+    points = np.random.default_rng(1).uniform(0.2, 1.2, (6, 2))
+    values = kernel_mutants.values_in_python([same, *found], points, made.load())
+    assert len(found) > 20
+    assert not any(kernel_mutants._same(value, values[0]) for value in values[1:])
+    for text, is_named in ((same.module, False), *((mutant.module, True) for mutant in found)):
+        (tmp_path / made.main).write_text(text, "utf-8")
+        assert bool(finding_of(tmp_path / made.main, made.source).problem) == is_named
