@@ -32,8 +32,14 @@ ARITHMETIC = "tests/algebra/test_mutants.py"
 RING = (ARITHMETIC, "tests/algebra/test_ring.py", "tests/algebra/test_codec.py")
 PRESENT = ("tests/algebra/test_present.py", "tests/algebra/test_codec.py")
 PROOFS = ("tests/house/test_one_door_for_proofs.py", "tests/mechanics/test_exactness.py")
-READ_BACK = "tests/laws/test_read_back.py"
-FORMULAS = ("tests/notes/test_formula.py", READ_BACK)
+READ_BACK = "tests/laws/test_read_back.py::test_{}"
+NOTES = [
+    f"displays_of_the_note[{r}-{form}]"
+    for r in ("quaternion", "davenport")
+    for form in ("latex", "html")
+]
+FORMULAS = ("tests/notes/test_formula.py", *map(READ_BACK.format, NOTES))
+FUNCTIONS = [f"functions_in_three_languages[{r}]" for r in ("ZXZ", "quaternion", "rotation_vector")]
 TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the quickest first
     "rigidsym.algebra.ring": RING,
     "rigidsym.algebra.matrix": (*RING, PROOFS[0]),
@@ -46,7 +52,7 @@ TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the 
     "rigidsym.formula.scalars": FORMULAS,
     "rigidsym.formula.latex_pen": FORMULAS,
     "rigidsym.formula.mathml_pen": FORMULAS,
-    "rigidsym.kernels.targets.text.infix": ("tests/kernels/test_lowering.py", READ_BACK),
+    "rigidsym.kernels.targets.text.infix": tuple(map(READ_BACK.format, FUNCTIONS)),
 }
 PRINTERS = ("rigidsym.formula.", "rigidsym.kernels.")
 SECONDS = 150  # of processor time, after which a mutant has given itself away

@@ -48,6 +48,7 @@ NAMES = (
     "kills",
     "mutation",
     "kernel_mutants",
+    "versions",
     "certificates",
 )
 

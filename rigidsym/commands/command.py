@@ -7,12 +7,17 @@ from dataclasses import field, fields
 from functools import wraps
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from rigidsym.errors import printable
 from rigidsym.system.limits import memory_limit, time_limit
+
+if TYPE_CHECKING:
+    _Type = click.ParamType[Any]
+else:  # generic from click 8.2 on
+    _Type = click.ParamType
 
 _POSITIVE = click.FloatRange(min=0, min_open=True)
 _LIMITS = (
@@ -33,7 +38,7 @@ _LIMITS = (
 )
 
 
-class _Names(click.ParamType[Any]):
+class _Names(_Type):
     """Names between commas."""
 
     name = "names"
@@ -42,7 +47,7 @@ class _Names(click.ParamType[Any]):
         return value if isinstance(value, list) else [name.strip() for name in value.split(",")]
 
 
-class _NamedNumber(click.ParamType[Any]):
+class _NamedNumber(_Type):
     """NAME=NUMBER, as a pair."""
 
     name = "number"

@@ -169,6 +169,8 @@ class Language:
         if not value.names:
             return ONE * size
         value, at = value * size, self.sample(value * size)
+        if f"sqrt({value})" in self.at:  # of which the inverse is simpler
+            return math.prod([self.inverse(self.root(value))] * 2, start=ONE * size)
         if abs(at) < 1e-9:
             raise RefusedError(f"{value} is a divisor, and vanishes")
         rate = lambda x: -1 * x * x * self.rate(value)  # noqa: E731
