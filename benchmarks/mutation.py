@@ -38,7 +38,8 @@ NOTES = [
     for r in ("quaternion", "davenport")
     for form in ("latex", "html")
 ]
-FORMULAS = ("tests/notes/test_formula.py", *map(READ_BACK.format, NOTES))
+GOLDEN = "tests/notes/test_notes.py::test_the_note_of_the_lectures_rotation"
+FORMULAS = ("tests/notes/test_formula.py", GOLDEN, *map(READ_BACK.format, NOTES))
 FUNCTIONS = [f"functions_in_three_languages[{r}]" for r in ("ZXZ", "quaternion", "rotation_vector")]
 TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the quickest first
     "rigidsym.algebra.ring": RING,

@@ -17,6 +17,8 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Line, break_lines
 from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import factored
+from rigidsym.formula.tree import Big, Symbol
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.quantities.arguments import arguments_of
 from rigidsym.models.euler_angles import EulerAngles
@@ -352,3 +354,20 @@ def test_the_root_of_a_number_stands_above_the_line():
     assert text(half, LETTERS) == "√2/2"
     assert latex(half, LETTERS) == r"\frac{\sqrt{2}}{2}"
     assert text(-half, LETTERS) == "−√2/2"
+
+
+def test_what_all_entries_share_is_taken_out_only_if_that_is_shorter():
+    x, y = sp.symbols("x y")
+    whole = sp.ImmutableMatrix([[2 * x, 4], [6 * y, 8]])
+    assert factored(whole) == (1, whole)  # whole numbers stay
+    number, rest = factored(whole / 3)
+    assert (number, rest) == (sp.Rational(2, 3), whole / 2)
+    shared, rest = factored(m * whole)
+    assert (shared, rest) == (2 * m, whole / 2)
+
+
+def test_a_sum_and_an_integral_have_their_bounds():
+    i, n = Symbol("i", "italic"), Symbol("n", "italic")
+    pen = LatexPen(LETTERS.notation)
+    assert pen.write(Big("∫", i, n)).text == r"\int_i^n"
+    assert pen.write(Big("∑", i, n)).text == r"\sum_i^n"
