@@ -10,7 +10,7 @@ import numpy as np
 
 from rigidsym.errors import MissingTool
 from rigidsym.simulation.plot import SPHERE, check_picture, draw_trace, figure_class
-from rigidsym.simulation.samples import Array, Samples
+from rigidsym.simulation.sampled_motion import Array, Samples
 
 WRITERS = {".gif": "pillow", ".mp4": "ffmpeg"}
 _FRAMES_PER_SECOND = 15

@@ -17,7 +17,7 @@ from rigidsym.errors import ModelError
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.forces import Forces
 from rigidsym.simulation.problem import OMEGA, Problem
-from rigidsym.simulation.samples import Array
+from rigidsym.simulation.sampled_motion import Array
 
 _WANTED = ("rotation_matrix", "angular_velocity_body", "torque_body", "energy", "state_derivative")
 _ANGLE = 0.05  # radians, of a step in the group

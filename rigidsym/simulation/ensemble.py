@@ -11,7 +11,7 @@ import numpy as np
 from rigidsym.errors import MissingExtra, ModelError
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.simulation.problem import OMEGA, Problem
-from rigidsym.simulation.samples import Array, relative_changes
+from rigidsym.simulation.sampled_motion import Array, relative_changes
 from rigidsym.simulation.solver import with_motion
 
 _ANGLE = 0.05  # radians that the fastest body turns in a step

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rigidsym.errors import MissingExtra, ModelError
-from rigidsym.simulation.samples import Array, Samples
+from rigidsym.simulation.sampled_motion import Array, Samples
 
 PICTURES = (".png", ".svg", ".pdf")
 SPHERE = np.ones(3)  # its semi-axes

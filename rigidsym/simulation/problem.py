@@ -14,7 +14,7 @@ import sympy as sp
 from rigidsym.errors import ModelError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.simulation.samples import Array
+from rigidsym.simulation.sampled_motion import Array
 from rigidsym.simulation.trajectory import Trajectory
 
 POLE = 1e-3  # of the singularity margin: nearer to a pole, coordinates lose digits

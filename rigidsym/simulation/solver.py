@@ -17,7 +17,7 @@ from rigidsym.models.rotation import RotationModel
 from rigidsym.simulation.attitude import Attitude, quaternions_of
 from rigidsym.simulation.free_body import free_motion
 from rigidsym.simulation.problem import OMEGA as OMEGA, POLE, Problem
-from rigidsym.simulation.samples import Array
+from rigidsym.simulation.sampled_motion import Array
 from rigidsym.simulation.trajectory import Trajectory
 
 METHODS = ("DOP853", "RK45", "Radau", "LSODA", "lie", "exact")

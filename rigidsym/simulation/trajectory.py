@@ -8,7 +8,7 @@ from typing import Any
 
 from rigidsym.simulation.animation import save_animation
 from rigidsym.simulation.plot import save_plot
-from rigidsym.simulation.samples import Samples
+from rigidsym.simulation.sampled_motion import Samples
 
 
 class Trajectory(Samples):
