@@ -35,6 +35,13 @@ class Namer:
         self._letter = _free_letter(letters)
         self._known: dict[sp.Expr, sp.Symbol] = {}
         self._known_before = 0
+        self._given = 0  # names that are not of this letter
+
+    def give(self, names: Iterable[Part]) -> None:
+        """Use these names for what they stand for, instead of new ones."""
+        new = {value: name for name, value in names if value.args and value not in self._known}
+        self._known |= new
+        self._given += len(new)
 
     def named(
         self, matrix: sp.ImmutableMatrix, room: float
@@ -122,7 +129,7 @@ class Namer:
     def _name_of(self, value: sp.Expr) -> sp.Symbol:
         known = self._known.get(value)
         if known is None:
-            number = len(self._known) + 1
+            number = len(self._known) - self._given + 1
             known = self._known[value] = sp.Symbol(f"{self._letter}_{number}")
         return known
 

@@ -82,6 +82,22 @@ def test_the_note_gives_each_moment_once_and_the_energy_by_the_moments():
     assert {s.name for s in energy.scalar.free_symbols} == {"I_1", "I_3", "t"}
 
 
+def test_components_of_the_angular_velocity_keep_their_names():
+    """E_R = ½ I′₁₁ Ω′₁² + ..., and no k is another name of Ω′₁."""
+    quantities = ("angular_velocity_body", "inertia_tensor", "rotational_energy")
+    motion = rs.derive("ZXZ", quantities, body=rs.general_inertia())
+    document = motion.note().document
+    energy = next(e for e in document.equations if e.label == "rotational_energy")
+    names = motion.argument("omega_body").symbols
+    assert energy.scalar.free_symbols >= set(names)
+    omega = dict(zip(names, motion.angular_velocity_body, strict=True))
+    (step,) = (s for s in motion.steps if s.quantity.name == "rotational_energy")
+    assert sp.expand(energy.scalar.xreplace(omega) - step.expression[0]) == 0
+    blocks = [block for section in document.sections for block in section.blocks]
+    values = [v for b in blocks if isinstance(b, Equation) and not b.sides for v in b.matrix]
+    assert not set(values) & set(omega.values())
+
+
 def test_a_body_alone_has_a_note_without_a_rotation():
     document = cone("body").note().document
     labels = {equation.label for equation in document.equations}

@@ -40,6 +40,7 @@ from rigidsym.notes.prose.vector_words import sum_of_vectors
 _MOST_LINES = 24  # of one quantity, where there is a short way to say it
 _MOST_OF_ROTATION = 48  # a page of R itself, which the others are for
 _MOST_NAMES = 3  # that a reader is reminded of one by one
+_BODY_VELOCITY = "angular_velocity_body"
 _ROOM_OF_A_NAME = 6.0  # ems
 
 
@@ -77,6 +78,15 @@ class Fitter:
         if equation.number:  # it can be referred to
             for name, _ in form.parts:
                 self._explained_at.setdefault(name, equation.label)
+        if equation.number and step.quantity.name == _BODY_VELOCITY:
+            self._give(step)
+
+    def _give(self, step: Step) -> None:
+        """Use Ω′₁, Ω′₂, Ω′₃ from here on for the components of the angular velocity."""
+        found = [a.symbols for a in self.derivation.arguments if a.name == "omega_body"]
+        for names in found:
+            self._namer.give(zip(names, step.expression, strict=True))
+            self._explained_at |= dict.fromkeys(names, step.quantity.name)
 
     def _shortest(self, equation: Equation) -> _Form:
         """With names for its parts, where that is better than without."""
@@ -131,7 +141,8 @@ class Fitter:
         """An equation behind what its names stand for; what was said before is referred to."""
         new = [part for part in form.parts if part[0] not in self._explained_at]
         old: dict[str, list[Text]] = {}
-        for name, _ in form.parts:
+        names = sorted((name for name, _ in form.parts), key=lambda s: (len(s.name), s.name))
+        for name in names:
             if name in self._explained_at:
                 old.setdefault(self._explained_at[name], []).append(
                     (formula_of(name, self.letters),)
