@@ -146,7 +146,8 @@ def test_a_sheet_in_german_asks_in_german(tmp_path):
 
 @pytest.mark.usefixtures("tex")
 def test_a_german_note_compiles_without_a_warning():
-    assert typeset(derived("ZXZ").note(language="de").latex()).warnings == ()
+    note = motion_of(read("lecture")).note(style="audit", language="de")
+    assert typeset(note.latex()).warnings == ()
 
 
 def test_the_same_note_in_english_has_no_trace_of_languages():
