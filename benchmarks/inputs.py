@@ -266,7 +266,10 @@ def _output_table(rng: Random) -> list[str]:
         f"style = {some(1, 'paper', 'audit', 'prose').strip('[]')}",
     )
     notation = ["[notation]", f"frames = {_names(rng, 2)}"] if rng.random() < 0.2 else []
-    return ["[output]", *(key for key in keys if rng.random() < 0.3), *notation]
+    precision = f"precision = {_quoted(rng.choice(('double', 'float', 'half')))}"
+    lean = ["[output.c]", precision, "libm = true", f"arrays = {_value(rng, 0)}"]
+    more = lean[: rng.randrange(2, 5)] if rng.random() < 0.1 else []
+    return ["[output]", *(key for key in keys if rng.random() < 0.3), *more, *notation]
 
 
 def derivation_file(rng: Random) -> str:
@@ -326,6 +329,7 @@ OPTIONS: dict[str, dict[str, tuple[str, ...]]] = {
     "derive": {
         "--only": _QUANTITIES,
         "--target": ("numpy", "c", "numpy,javascript", "fortran"),
+        "--lean": _SWITCH,
         "--passive": _SWITCH,
         "--scalar-last": _SWITCH,
         "--angles": ("a,b,c", "a,b", "a,a,b", "1,2,3"),
