@@ -46,9 +46,12 @@ def _copies(
     work: Callable[[T], R], shares: Sequence[Sequence[T]]
 ) -> Iterator[list[Connection[R, R]]]:
     """Where the results of each share come in; the copies end with the block."""
+    if not shares:
+        yield []
+        return
     from multiprocessing import get_context  # few commands have several items
 
-    context = get_context("fork" if shares else None)
+    context = get_context("fork")
     running, ends = [], []
     try:
         for share in shares:
