@@ -74,8 +74,8 @@ class OwnText:
             more_sources=tuple(t for key, t in self.sources.items() if key != _OF_LECTURE),
         )
         labels = {equation.label for equation in changed.equations}
-        known = _without_rows(changed, labels)
-        return known.changed(lambda text: self._renamed(text, labels, document.language))
+        shorter = _without_rows(changed, labels)
+        return shorter.changed(lambda text: self._renamed(text, labels, document.language))
 
     def _blocks(self, section: Section) -> Iterator[NoteBlock]:
         yield from self._own(self.before, section.title)
