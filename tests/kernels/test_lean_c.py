@@ -164,3 +164,11 @@ def test_a_wrong_option_in_a_file_is_named(line, fault):
     text = FILE.split("precision")[0] + line
     with pytest.raises(SpecError, match=re.escape(fault)):
         read_spec(text, source="file.toml", name="top")
+
+
+def test_the_files_of_the_lecture(golden):
+    few = ("rotation_matrix", "angular_velocity_body", "rates_from_angular_velocity_body")
+    files = rs.derive("ZXZ", only=few).kernels("c", **LEAN).files
+    for name, text in files.items():
+        if not name.endswith(".h"):
+            golden(f"kernels/lean_{name}.txt", text)
