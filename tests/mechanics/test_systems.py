@@ -126,6 +126,10 @@ def test_the_rolling_disc_has_the_accelerations_of_kanes_method():
     assert [integral.name for integral in motion.first_integrals] == ["energy"]
 
 
+def test_a_note_tells_no_mass_that_no_equation_holds():
+    assert "has the mass" not in shipped("rolling_disc").note(with_kernels=False).markdown()
+
+
 def test_the_quadcopter_has_the_equations_that_sympy_finds():
     space, _, _, body = frame(("z", PSI), ("y", THETA), ("x", PHI))
     thrusts, k = sp.symbols("F_1:5"), sp.Symbol("k")

@@ -131,6 +131,9 @@ def _body(derivation: Derivation, notation: Notation) -> Iterator[Text]:
     if derivation.about_fixed_point:
         yield (ABOUT_FIXED_POINT,)
         return
+    if derivation.forces and not any(s.expression.has(body.mass) for s in derivation.steps):
+        yield ("The inertia tensor is about the centre of mass, along the axes of the body.",)
+        return
     centre = listed([(name,) for name in derivation.argument("centre").notation], ", ")
     head = words(
         "The body has the mass {}, and its inertia tensor is about the centre of mass, along the "

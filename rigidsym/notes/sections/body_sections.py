@@ -75,10 +75,10 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
 def _parameters(derivation: Derivation, body: RigidBody, letters: Letters) -> Iterator[NoteBlock]:
     """What the letters of the body are; those with a value are in the table of numbers.
 
-    About a fixed point the mass of the body may not be in any equation.
+    The mass of a body on which forces act may not be in any equation.
     """
     told = [p for p in body.parameters if p.about and p.value is None]
-    if derivation.about_fixed_point:
+    if derivation.forces is not None:
         shown = [step.expression for step in derivation.steps]
         told = [p for p in told if any(entry.has(p.symbol) for entry in shown)]
     if told:
