@@ -226,3 +226,11 @@ def test_lean_gets_each_entry_with_its_cofactors():
     text = lean(certificate_of(record_of("ZXZ", BASIC)))
     assert text.count("theorem ") == text.count("linear_combination") == 10 + 9 + 9 + 3
     assert "Not compiled" in text
+
+
+def test_the_inverse_of_a_square_is_the_square_of_an_inverse():
+    # 1/n² beside 1/n took minutes: each needs a relation of its own, and sums of squares to a power
+    names = json.loads(certified("rotation_vector", ("rotation_matrix", "rate_matrix_body")))[
+        "names"
+    ]
+    assert sum(name.startswith("1/(") for name in names) == 1

@@ -272,9 +272,8 @@ class Language:
             if dot(axis, axis).names:  # letters in an axis make it a unit vector
                 self.assume_unit(axis)
             length = ONE if dot(axis, axis).names else self.root(dot(axis, axis))
-            yield turned(
-                [part * self.inverse(length) for part in axis], *self.turn(self.read(angle))
-            )
+            unit = [part * self.inverse(length) for part in axis]
+            yield turned(unit, *self.turn(self.read(angle)))
 
 
 def dot(first: Sequence[Poly], second: Sequence[Poly]) -> Poly:
@@ -309,8 +308,7 @@ def orthogonal(m: Matrix) -> list[Equation]:
 
 def sides(first: Matrix, second: Matrix) -> list[Equation]:
     """The equations between the entries of two matrices."""
-    rows = zip(first, second, strict=True)
-    return [pair for one, two in rows for pair in zip(one, two, strict=True)]
+    return [pair for rows in zip(first, second, strict=True) for pair in zip(*rows, strict=True)]
 
 
 UNITS = [[ONE if j == k else ZERO for k in range(3)] for j in range(3)]
@@ -328,7 +326,7 @@ def claims(record: Mapping[str, Any], known: Language) -> Iterator[tuple[str, li
     for definition in record["definitions"]:
         known.values[definition["name"]] = known.read(definition["expression"])
     for quantity in record["quantities"]:
-        name, rows = quantity["name"], quantity["expression"]
+        name = quantity["name"]
         frame = "body" if name.endswith("body") else "space"
         kind, spin = name.removesuffix(f"_{frame}"), spins[frame]
         omega = [[spin[j][k]] for j, k in ((2, 1), (0, 2), (1, 0))]
@@ -346,8 +344,8 @@ def claims(record: Mapping[str, Any], known: Language) -> Iterator[tuple[str, li
         }
         if kind not in right:
             continue
-        rows = rows if len(quantity["shape"]) == 2 else [[entry] for entry in rows]
-        left = [[known.read(entry) for entry in row] for row in rows]
+        rows = (row if isinstance(row, list) else [row] for row in quantity["expression"])
+        left = [[*map(known.read, row)] for row in rows]
         words = re.findall(r"\w+", " ".join(str(entry) for row in left for entry in row))
         if kind == "rate_matrix" and not set(words).isdisjoint(q_dot):
             raise RefusedError(f"{name} holds a rate")
