@@ -160,6 +160,10 @@ def _table(values: Values) -> dict[str, Quantity]:
         coordinates=len(values.model.coordinates),
         rate_unit=units.pop() if len(units) == 1 else "",
     )
+    matrix = of_rotation["rotation_matrix"]
+    if not values.model.passive:  # where R is found: equation 17 of the lecture is that of ZXZ
+        matrix = matrix._replace(source=values.model.source)
+    of_rotation = {**of_rotation, "rotation_matrix": matrix}
     return {**of_rotation, **INERTIA_QUANTITIES, **ENERGY_QUANTITIES}
 
 

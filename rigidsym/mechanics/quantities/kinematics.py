@@ -73,7 +73,7 @@ BODY = Frame(
 
 _ACTIVE = read_table(
     """
-    rotation_matrix                    matrix  -        q                -
+    rotation_matrix                    matrix  -        q                3.2 (17)
         rotation matrix, body to space components
     rotation_rate                      matrix  1/s      q q_dot          3.2 (15)
         time derivative of the rotation matrix
