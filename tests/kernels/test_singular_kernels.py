@@ -146,6 +146,14 @@ def test_the_margin_is_one_far_away_and_small_at_a_pole():
     assert skew.singularity_margin([0.1, 0.0, 0.2]) == pytest.approx(np.sqrt(0.5))
 
 
+def test_the_margin_of_a_long_chain_takes_constants_that_only_its_axes_hold():
+    kernels = derive("z(p0) x(a) y(b) z(c) x(d) y(e)").kernels("numpy").load()
+    q, parameters = np.array([0.3, -0.7, 1.1, 0.2, -2.0]), np.array([0.4])
+    rates = kernels.rate_matrix_body(q)
+    size = np.sqrt(np.linalg.det(rates @ rates.T))
+    np.testing.assert_allclose(kernels.singularity_margin(q, parameters), size, rtol=1e-14)
+
+
 @pytest.mark.parametrize("name", ["gibbs_vector", "modified_rodrigues"])
 def test_no_margin_where_the_rates_never_fail(name):
     found = derive(rotation_from(name)).singularities

@@ -213,10 +213,20 @@ class _Lowering:
             value = sp.Abs(minors[0] / scale, evaluate=False)
         else:
             value = sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
-        is_free = value.free_symbols.isdisjoint(self.derivation.model.constants)
+        is_free = self._symbols(value).isdisjoint(self.derivation.model.constants)
         inputs = map(self.derivation.argument, ("q",) if is_free else ("q", "parameters"))
         symbol = _SYMBOLS.get(found.measure, "√Σ minors²") + ("" if scale == 1 else f"/({scale})")
         yield self._kernel(MARGIN, list(inputs), [value], shape=(), symbol=symbol, about=about)
+
+    def _symbols(self, expression: sp.Expr) -> set[sp.Basic]:
+        """Those of the expression and of what it is defined by."""
+        found: set[sp.Basic] = set()
+        left = [expression]
+        while left:
+            new = left.pop().free_symbols - found
+            found |= new
+            left += [self._definitions[symbol] for symbol in new if symbol in self._definitions]
+        return found
 
     def _over_squares(self, entry: sp.Expr) -> sp.Expr:
         """The entry with the minors squared in place of the determinant that divides.
