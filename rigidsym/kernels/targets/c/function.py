@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from textwrap import wrap
 from typing import Any
 
 from rigidsym.kernels.ir import Call, Compare, Expression, Guarded, Kernel, names_in
@@ -12,6 +13,7 @@ from rigidsym.kernels.targets.text.precision import Precision
 from rigidsym.kernels.targets.text.python_layout import bracketed
 
 _FORMS = {"choice": "{0} ? {1} : {2}"}
+_WIDTH = 92
 _PLAIN = frozenset({"sqrt", "abs", "atan2", "eps"})  # functions without far angles
 
 
@@ -49,22 +51,21 @@ class Function:
     contents: Contents
 
     def pieces(self) -> dict[str, Any]:
-        kernel = self.kernel
-        places = [f"{a.name}[{k}]" for a in kernel.arguments for k in range(len(a.components))]
-        columns = [f"tile[{k}][j]" for k in range(len(places))]
+        kernel, arguments = self.kernel, list(self._arguments())
+        columns = [f"tile{a['offset']} + j" for a in arguments]
         return {
             "name": self.name,
-            "inputs": len(places),
+            "inputs": len(kernel.components),
             "outputs": len(kernel.outputs),
-            "arguments": list(self._arguments()),
+            "arguments": arguments,
             "signature": self.signature,
             "array": self._array,
             "array_parameters": listed(4, "(", self._array_parameters).lstrip(),
             "array_given": listed(4, "(", map(_name, self._array_parameters)).lstrip(),
             "body": self._body(),
-            "scalar_call": self._call("1", places, "out", 4) + ";",
-            "tile_call": self._call("0", columns, "at", 12),
-            "far_call": self._call("1", columns, "at", 12),
+            "scalar_call": self._call(4, "1", "1", *(a["name"] for a in arguments), "out") + ";",
+            "tile_call": self._call(12, "0", "TILE", *columns, "found + j"),
+            "far_call": self._call(12, "1", "TILE", *columns, "found + j"),
         }
 
     @property
@@ -95,27 +96,40 @@ class Function:
         offset = 0
         for argument in self.kernel.arguments:
             count = len(argument.components)
-            place = f" + {offset}" if offset else ""
+            place = f" + {offset} * TILE" if offset else ""
             yield {"name": argument.name, "count": count, "offset": place}
             offset += count
 
-    def _call(self, far: str, places: list[str], result: str, indent: int) -> str:
+    def _call(self, indent: int, *given: str) -> str:
         head = f"evaluate_{self.kernel.name}{self.precision.suffix}("
-        return listed(indent, head, [far, *places, result]).lstrip()
+        return listed(indent, head, given).lstrip()
 
     def _body(self) -> str:
         kernel, real, word = self.kernel, self.precision.real, self.precision.word
-        given = [f"const {real} {name}" for name in kernel.components]
+        given = [f"const {real} *in{k}" for k in range(len(kernel.arguments))]
         head = f"INLINED {word} evaluate_{kernel.name}{self.precision.suffix}("
         called = (call.function for call in kernel.calls.values())
         has_far = not self.contents.libm and not _PLAIN.issuperset(called)
-        unused = [name for name in kernel.components if name not in kernel.used]
+        read = [
+            f"{name} = {_entry(f'in{k}', place)}"
+            for k, argument in enumerate(kernel.arguments)
+            for place, name in enumerate(argument.components)
+            if name in kernel.used
+        ]
+        unused = [f"in{k}" for k in range(len(given)) if f" in{k}[" not in "".join(read)]
+        unbroken = ", ".join(item.replace(" ", "\xa0") for item in read)
+        lines = wrap(f"    const {real} {unbroken};", _WIDTH, subsequent_indent=" " * 8)
+        declared = [line.replace("\xa0", " ") for line in lines if read]
         return "\n".join(
             [
-                listed(0, head, ["const int far", *given, f"{real} *out"]),
+                listed(0, head, ["const int far", "const ptrdiff_t apart", *given, f"{real} *out"]),
                 "{",
                 f"    {word} beyond = 0;",
-                *(f"    (void){name};" for name in (*([] if has_far else ["far"]), *unused)),
+                *(
+                    f"    (void){name};"
+                    for name in (*([] if has_far else ["far"]), "apart", *unused)
+                ),
+                *declared,
                 *(f"    {line}" for step in self.steps() for line in step.lines),
                 "    return beyond;",
                 "}",
@@ -132,7 +146,8 @@ class Function:
                 tuple(self._lines(name, value)), known, used, isinstance(value, Compare)
             )
         for k, value in enumerate(self.kernel.outputs):
-            line = f"out[{k}] = {self._text(value)};"
+            place = _entry("out", k) if self.contents.arrays else f"out[{k}]"
+            line = f"{place} = {self._text(value)};"
             yield CStatement((line,), frozenset(), frozenset(names_in(value)))
 
     def _named(self, name: str) -> Iterable[str]:
@@ -188,6 +203,11 @@ class Function:
     def _text(self, expression: Expression) -> str:
         nan = f"({self.precision.real})NAN"  # the macro is a float
         return infix(expression, {**_FORMS, "nan": nan}, self.precision.literal)
+
+
+def _entry(array: str, k: int) -> str:
+    """Of components that are `apart` from one to the next."""
+    return f"{array}[{f'{k} * ' if k > 1 else ''}{'apart' if k else 0}]"
 
 
 def _name(parameter: str) -> str:
