@@ -53,7 +53,10 @@ TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the 
     "rigidsym.formula.scalars": FORMULAS,
     "rigidsym.formula.latex_pen": FORMULAS,
     "rigidsym.formula.mathml_pen": FORMULAS,
-    "rigidsym.kernels.targets.text.infix": tuple(map(READ_BACK.format, FUNCTIONS)),
+    "rigidsym.kernels.targets.text.infix": (
+        *map(READ_BACK.format, FUNCTIONS),
+        "tests/kernels/test_lowering.py",
+    ),
 }
 PRINTERS = ("rigidsym.formula.", "rigidsym.kernels.")
 SECONDS = 150  # of processor time, after which a mutant has given itself away

@@ -15,6 +15,7 @@ from helpers.printing import latex, text
 from rigidsym.errors import AlgebraError
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
+from rigidsym.formula.mathml_pen import MathmlPen
 from rigidsym.formula.pen import Line, break_lines
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import factored
@@ -371,3 +372,7 @@ def test_a_sum_and_an_integral_have_their_bounds():
     pen = LatexPen(LETTERS.notation)
     assert pen.write(Big("∫", i, n)).text == r"\int_i^n"
     assert pen.write(Big("∑", i, n)).text == r"\sum_i^n"
+    mathml = MathmlPen(LETTERS.notation)
+    integral, total = (mathml.write(Big(sign, i, n)).text for sign in "∫∑")
+    assert re.findall(r"<(m\w+)>", integral)[0] == "msubsup"
+    assert re.findall(r"<(m\w+)>", total)[0] == "munderover"
