@@ -26,7 +26,7 @@ _ENDINGS = ("tex", "html")
     type=click.IntRange(0),
     default=1,
     show_default=True,
-    help="The same variant is the same sheet; others have other numbers.",
+    help="Equal variants give equal sheets; others have other numbers.",
 )
 @click.option("--author", default="", help="A name below the title.")
 @click.option("--course", default="", help="A course below the title.")
@@ -44,7 +44,7 @@ _ENDINGS = ("tex", "html")
     type=click.Path(file_okay=False, path_type=Path),
     default=Path("out"),
     show_default=True,
-    help="The folder for the results.",
+    help="Write to DIR/NAME/.",
 )
 def command(
     subject: str,
