@@ -159,7 +159,9 @@ class MissingExtra(RigidsymError):
     remedy: ClassVar[str] = "Install the extra that the message names."
 
     def __init__(self, what: str, extra: str) -> None:
-        super().__init__(f"{what} needs an extra that is missing: pip install 'rigidsym[{extra}]'")
+        super().__init__(
+            f"{what} needs an extra that is missing: pip install '.[{extra}]' in the clone"
+        )
 
 
 class ClusterError(RigidsymError):

@@ -12,6 +12,7 @@ import click
 
 from rigidsym.commands.command import command as make, message, option, with_options
 from rigidsym.commands.options import RotationOptions
+from rigidsym.data.columns import counted
 from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import motion_of, read
 from rigidsym.system.progress import bar
@@ -93,7 +94,7 @@ def _searched(paths: Sequence[Path], *, as_json: bool) -> bool:
                 progress((place + 1) / len(files))
     if as_json:
         click.echo(_json(records))
-    message(f"{len(records)} formulas in {len(files)} files")
+    message(f"{counted(len(records), 'formula')} in {counted(len(files), 'file')}")
     return wrong
 
 

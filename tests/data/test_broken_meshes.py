@@ -53,7 +53,7 @@ def test_a_mesh_in_an_encoding_that_needs_an_extra_is_a_message(tmp_path):
     try:
         count = len(read_mesh_file(path).faces)
     except MissingExtra as error:
-        count = 12 if "pip install 'rigidsym[mesh]'" in str(error) else 0
+        count = 12 if "pip install '.[mesh]'" in str(error) else 0
     assert count == 12
 
 

@@ -133,6 +133,11 @@ def _area(points: tuple[tuple[float, float], ...]) -> float:
     return float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2)
 
 
+def test_a_note_on_the_energy_alone_says_what_the_moments_are():
+    latex = cone("rotational_energy").note().latex()
+    assert r"I_3 = \frac{3}{10}\,M\,a^2" in latex
+
+
 def test_letters_for_entries_need_no_moments_in_closed_form():
     """Equal products of inertia leave moments in closed form, which I₁₂ and I₁₃ do not."""
     product = sp.Symbol("D") * sp.Symbol("M")

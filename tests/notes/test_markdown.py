@@ -170,7 +170,7 @@ def test_without_nbformat_the_extra_is_named(monkeypatch: pytest.MonkeyPatch):
     with pytest.raises(MissingExtra) as caught:
         note(derived("ZXZ")).notebook()
     assert str(caught.value) == (
-        "a notebook needs an extra that is missing: pip install 'rigidsym[notebook]'"
+        "a notebook needs an extra that is missing: pip install '.[notebook]' in the clone"
     )
     assert caught.value.exit_code == 4
 

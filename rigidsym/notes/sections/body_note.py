@@ -61,9 +61,8 @@ class BodyComposer(Composer):
         yield from blocks_of_body(self.derivation, self.letters)
         yield from self._steps(_FIRST)
         if self.moments:
-            step = self.derivation.step("inertia_tensor")
             yield said("Here")
-            yield from self.fitter.fitted(definitions(self.moments, self.letters), step)
+            yield from self.fitter.whole(definitions(self.moments, self.letters))
         yield from self._steps([name for name in INERTIA_QUANTITIES if name not in _FIRST])
 
     def _equation(self, step: Step) -> Equation:

@@ -81,6 +81,10 @@ class Fitter:
         if equation.number and step.quantity.name == _BODY_VELOCITY:
             self._give(step)
 
+    def whole(self, equation: Equation) -> Iterator[NoteBlock]:
+        """An equation that belongs to no quantity, with the names of its parts."""
+        yield from self._blocks(self._shortest(equation))
+
     def _give(self, step: Step) -> None:
         """Use Ω′₁, Ω′₂, Ω′₃ from here on for the components of the angular velocity."""
         found = [a.symbols for a in self.derivation.arguments if a.name == "omega_body"]
