@@ -203,7 +203,7 @@ class _Lowering:
         )
 
     def margin(self) -> Iterator[ir.Kernel]:
-        """How far the rate matrix is from failing, if it is among the quantities and may fail."""
+        """How far the coordinates are from a singular orientation, where rates are asked for."""
         found = self.derivation.singularities
         if found is None or (found.is_solved and not any(p.places for p in found.points)):
             return
@@ -296,13 +296,13 @@ def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rationa
     A product of sines, cosines and Stumpff functions is largest where each of them is; of anything
     else the determinant is taken as it is.
     """
-    about = "how far the rates are from failing"
+    about = "how far the coordinates are from a singular orientation"
     if found.measure not in ("det W", "det [W, J]"):
-        return sp.S.One, f"{about}, the product of the singular values of W; 0 where they do"
+        return sp.S.One, f"{about}, the product of the singular values of W; 0 at one"
     number, rest = minors[0].as_coeff_Mul()
     factors = [factor.as_base_exp()[0] for factor in sp.Mul.make_args(rest)]
     if not all(isinstance(factor, sp.sin | sp.cos | Stumpff) for factor in factors):
-        return sp.S.One, f"{about}; 0 where they do"
+        return sp.S.One, f"{about}; 0 at one"
     value = at_zero(rest) if rest.has(Stumpff) else sp.S.One
     scale = abs(number) * (value if value.is_Rational and value else 1)
-    return scale, f"{about}; 1 at most, 0 where they do"
+    return scale, f"{about}; 1 at most, 0 at one"

@@ -27,7 +27,7 @@ _MOST_POINTS = 8  # that are listed
 def planes_of_axes(model: RotationModel, minors: Sequence[sp.Expr]) -> Singularities | None:
     """Where all axes of a chain lie in one plane; None if that was not decided.
 
-    `minors` measure how far the rate matrix is from failing.
+    `minors` measure how far an orientation is from a singular one.
     """
     recursion = Recursion(model)
     if tuple(recursion.angles) != model.coordinates or not _all_span_planes(recursion.axes):

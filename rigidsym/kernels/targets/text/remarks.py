@@ -27,18 +27,18 @@ _ADDED = (
 )
 _GUARDED = {
     "angle": "Angles such as pi/2 are not exact floats. Where a sine or cosine that divides is at "
-    "most eps times its angle, the angle cannot be told from the pole, and what is divided is NaN. "
+    "most eps times its angle, the angle cannot be told from the pole, and the quotient is NaN. "
     "Elsewhere the error is a few eps of the largest entry for angles that are exact as given; "
     "one known to a relative eps brings eps |angle/divisor| more.",
-    "length": "Where c2 divides and n is within 4 eps n of a whole turn, what is divided is NaN; "
+    "length": "Where c2 divides and n is within 4 eps n of a whole turn, the quotient is NaN; "
     "elsewhere the error is a few eps n/|sin(n/2)| of the largest entry.",
-    "sum": "Where a sum that divides is at most 4 eps of its terms' sizes together, what is "
-    "divided is NaN; elsewhere the error is a few eps of the sizes over the sum.",
+    "sum": "Where a sum that divides is at most 4 eps of its terms' sizes together, the "
+    "quotient is NaN; elsewhere the error is a few eps of the sizes over the sum.",
     "minors": "Where the root of a sum of squares of sines and cosines divides, squared, and is at "
-    "most 4 eps times one plus the sizes of their angles, what is divided is NaN; elsewhere the "
+    "most 4 eps times one plus the sizes of their angles, the quotient is NaN; elsewhere the "
     "error is a few times that over the root, of the largest entry.",
-    "squares": "Where a sum of squares that divides is so small that squares underflow, what is "
-    "divided is NaN.",
+    "squares": "Where a sum of squares that divides is so small that squares underflow, the "
+    "quotient is NaN.",
 }
 
 
@@ -139,7 +139,7 @@ def _poles(kernel: Kernel) -> Iterator[str]:
     if found:
         yield (
             f"Divides by {', '.join(found)}: near its zeros the result grows and loses digits; "
-            "at them what is divided is NaN."
+            "at the zeros the quotient is NaN."
         )
 
 
