@@ -99,9 +99,12 @@ def unique(names: Iterable[Sequence[str]]) -> tuple[str, ...]:
 
 
 class Command(click.Command):
-    """A command that refuses an option given twice when only the last would count."""
+    """A command that refuses null characters, and an option twice when only the last would count."""
 
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
+        for text in args:
+            if "\0" in text:
+                raise click.UsageError(f"{text!r}: expected text without null characters", context)
         _, _, given = self.make_parser(context).parse_args(list(args))
         for parameter in given:
             is_many = getattr(parameter, "multiple", False) or getattr(parameter, "is_flag", False)

@@ -274,6 +274,11 @@ def test_targets_given_one_by_one_are_all_written(tmp_path):
     assert {".py", ".mjs"} <= kernels
 
 
+def test_a_null_character_in_an_option_is_refused(tmp_path):
+    done = call("derive", "ZXZ", "--templates", "no\0ne", cwd=tmp_path, status=2)
+    assert "'no\\x00ne': expected text without null characters" in done.stderr
+
+
 def test_an_option_whose_last_value_alone_would_count_is_refused(tmp_path):
     twice = call("derive", "ZXZ", "--out", "one", "--out", "two", cwd=tmp_path, status=2)
     assert "--out is given twice" in twice.stderr
