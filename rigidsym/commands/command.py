@@ -99,7 +99,7 @@ def unique(names: Iterable[Sequence[str]]) -> tuple[str, ...]:
 
 
 class Command(click.Command):
-    """A command that refuses null characters, and an option twice when only the last would count."""
+    """A command that refuses null characters, and an option twice where only the last counts."""
 
     def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
         for text in args:
