@@ -377,7 +377,7 @@ def python_function(source: str, name: str, known: Values) -> list[Value]:
 
 
 _C_CALL = re.compile(r"beyond \|= (sin_cos|entire)\(far, (.+), (?:&(\w+), &(\w+)|(\w+))\)")
-_STORED = re.compile(r"(?:(\w+)\[([\w +]*)\]|const \[(.*)\]|(?:const )?(?:double )?(\w+)) = (.+)")
+_STORED = re.compile(r"(?:(\w+)\[([\w +*]*)\]|const \[(.*)\]|(?:const )?(?:double )?(\w+)) = (.+)")
 
 
 def braced_function(source: str, head: str, known: Values) -> list[Value]:
@@ -392,7 +392,11 @@ def braced_function(source: str, head: str, known: Values) -> list[Value]:
                 known[called[5]] = value
             else:
                 known[called[3]], known[called[4]] = mp.sin(value), mp.cos(value)
-        elif stored and not re.match(r"uint|\w+\[\w*_at", stored[5]) and "double " not in stored[5]:
+        elif (
+            stored
+            and not re.match(r"uint|in\d|\w+\[\w*_at", stored[5])
+            and "double " not in stored[5]
+        ):
             array, index, several, name, text = stored.groups()
             element = re.fullmatch(r"(_entire_\w+)\[(\d+)\]", text)
             if element:
@@ -400,7 +404,8 @@ def braced_function(source: str, head: str, known: Values) -> list[Value]:
                 continue
             value = computed(ast.parse(text, mode="eval").body, known)
             if array == "out":
-                out[int(index.replace("at", "").replace("+", "").strip() or 0)] = value
+                number = re.search(r"\d+", index)  # "2", "2 * apart", "at + 2"
+                out[int(number[0]) if number else int(index == "apart")] = value
             elif several:
                 known |= zip(several.split(", "), value, strict=True)
             else:
