@@ -215,8 +215,8 @@ def test_a_tile_of_any_width_is_taken_and_given_back(sources, compiler, flag):
             f"\nvoid turn{suffix}(const int n, const {real} *from, {real} *tile, {real} *to)\n{{"
         )
         for n in widths:
-            take = f"take{suffix}({n}, TILE, from, {n}, 1, tile);"
-            give = f"give{suffix}({n}, TILE, tile, to, {n}, 1);"
+            take = f"take_rows{suffix}({n}, from, tile);"
+            give = f"give_rows{suffix}({n}, tile, to);"
             text += f"\n    if (n == {n}) {{\n        {take}\n        {give}\n    }}"
         text += "\n}\n"
     name = f"tiles_{compiler}_{flag.strip('-')}"

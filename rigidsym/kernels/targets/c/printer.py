@@ -89,7 +89,7 @@ def _source(
         ],
         two_over_pi=_words(),
         half_pi=repr(pi / 2),
-        most=max(map(len, groups)),
+        widths=sorted(set(map(len, groups))),
     )
 
 
