@@ -106,8 +106,8 @@ def _processor() -> str:
         lines = []
     names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
     flags = {flag for line in lines if line.startswith("flags") for flag in line.split()}
-    names = {"avx512f": "AVX-512", "avx2": "AVX2"}
-    vectors = [f", {name}" for flag, name in names.items() if flag in flags][:1]
+    widths = {"avx512f": "AVX-512", "avx2": "AVX2"}
+    vectors = [f", {name}" for flag, name in widths.items() if flag in flags][:1]
     return (names[0] if names else platform.processor() or platform.machine()) + "".join(vectors)
 
 
