@@ -84,11 +84,14 @@ def _many(call: Callable[[], Any]) -> float:
 
 
 def _plain(motion: Motion) -> tuple[list[sp.Symbol], list[sp.Expr]]:
-    """Ω′ in plain symbols."""
+    """Ω′ in plain symbols, written out: the peers know nothing of named intermediate quantities."""
     step = motion.step(BODY)
+    entries = list(step.expression)
+    for known in reversed(motion.definitions):
+        entries = [entry.xreplace({known.symbol: known.expression}) for entry in entries]
     arguments = [motion.argument(name) for name in step.quantity.inputs]
     symbols = {s: sp.Symbol(n) for a in arguments for s, n in zip(a.symbols, a.names, strict=True)}
-    return list(symbols.values()), [entry.xreplace(symbols) for entry in step.expression]
+    return list(symbols.values()), [entry.xreplace(symbols) for entry in entries]
 
 
 def threads(modules: Mapping[str, ModuleType], size: int, repeats: int) -> Part:
