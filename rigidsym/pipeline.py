@@ -199,7 +199,8 @@ def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
     if PAGE in spec.note:
         from rigidsym.page.print_page import print_page
 
-        yield page_name(spec.name), print_page(motion, in_language(language="en").document)
+        english = note if spec.language == "en" else in_language(language="en")
+        yield page_name(spec.name), print_page(motion, english.document)
 
 
 def digest(content: bytes) -> str:

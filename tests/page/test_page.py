@@ -10,6 +10,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -50,6 +51,23 @@ def test_every_shipped_derivation_has_a_page_of_bounded_size_with_its_whole_note
         assert note_in(page) == main_of(files[f"{name}.html"]), name
         for quantity in SHOWN:
             assert f'id="{quantity}-value"' in page, name
+
+
+def test_a_note_is_composed_once_for_its_formats_and_the_page(monkeypatch):
+    composed = []
+    module = import_module("rigidsym.notes.note")
+    compose = module.note
+
+    def counted(*arguments, **options):
+        composed.append(options["language"])
+        return compose(*arguments, **options)
+
+    monkeypatch.setattr(module, "note", counted)
+    for language, expected in (("en", ["en"]), ("de", ["de", "en"])):
+        spec = read_spec('[rotation]\nsequence = "ZXZ"\n', source="zxz.toml", name="zxz")
+        output_of(replace(spec, note=("html", "page"), language=language))
+        assert composed == expected
+        composed.clear()
 
 
 def test_every_constant_of_a_shipped_derivation_has_its_unit_beside_the_slider():
