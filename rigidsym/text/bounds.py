@@ -100,7 +100,7 @@ def _power(base: Sized, exponent: Sized, column: int) -> Sized:
         )
     if power < 0 and base.expression == 0:
         raise ExpressionError("division by zero", column=column)
-    if power.q > 1 and _longest_number(base.expression) > _LONGEST_ROOT:
+    if power.q > 1 and longest_number(base.expression) > _LONGEST_ROOT:
         raise ExpressionError("too large: a root of a number with too many digits", column=column)
     times = ceil(abs(power))
     degree, bits = base.degree * times, base.bits * times + 1
@@ -111,7 +111,7 @@ def _power(base: Sized, exponent: Sized, column: int) -> Sized:
     return Sized(value, degree, terms, bits)
 
 
-def _longest_number(expression: sp.Expr) -> int:
+def longest_number(expression: sp.Expr) -> int:
     """Binary digits of the longest number in it: SymPy factors those under a root."""
     return max(map(_bits, expression.atoms(sp.Rational)), default=0)
 

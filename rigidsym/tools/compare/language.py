@@ -20,7 +20,7 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.errors import ExpressionError, offer
-from rigidsym.text.bounds import FUNCTIONS, Sized, apply, operate
+from rigidsym.text.bounds import FUNCTIONS, Sized, apply, longest_number, operate
 from rigidsym.text.names import spelled
 
 _LARGEST = 20  # rows or columns
@@ -74,8 +74,7 @@ def _checked(value: Any) -> Any:
     if isinstance(value, Sized):
         return value
     expression = sp.sympify(value)
-    sizes = [int(n.p).bit_length() + int(n.q).bit_length() for n in expression.atoms(sp.Rational)]
-    return Sized.atom(expression, bits=max(sizes, default=1))
+    return Sized.atom(expression, bits=longest_number(expression) or 1)
 
 
 def cross_matrix(vector: sp.MatrixBase) -> sp.Matrix:
