@@ -18,7 +18,7 @@ import sympy as sp
 import rigidsym
 from benchmarks.accuracy import SYMBOLS, angle_groups, exact, largest_error
 from benchmarks.measure import Spread, interleaved, peak_memory, progress, ratios, timed
-from benchmarks.peers import PEERS, Array, Task
+from benchmarks.peers import PEERS, Array, Task, in_plain_symbols
 from benchmarks.report import Cell, Column, Figure, Table, spread_columns
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.operations import count
@@ -48,7 +48,7 @@ def calls(motion: Motion, modules: Mapping[str, ModuleType], repeats: int) -> Pa
         if hasattr(module, f"{BODY}_scalar"):
             actions[f"{name}, scalar twin"] = partial(getattr(module, f"{BODY}_scalar"), *point)
             actions[f"{name}, arrays"] = partial(getattr(module, BODY), q, q_dot)
-    symbols, entries = _plain(motion)
+    symbols, entries = in_plain_symbols(motion, BODY)
     actions["lambdify math, cse"] = partial(
         sp.lambdify(symbols, entries, modules="math", cse=True), *point
     )
@@ -81,17 +81,6 @@ def _many(call: Callable[[], Any]) -> float:
     for _ in range(CALLS):
         call()
     return (perf_counter() - start) / CALLS
-
-
-def _plain(motion: Motion) -> tuple[list[sp.Symbol], list[sp.Expr]]:
-    """Ω′ in plain symbols, written out: the peers know nothing of named intermediate quantities."""
-    step = motion.step(BODY)
-    entries = list(step.expression)
-    for known in reversed(motion.definitions):
-        entries = [entry.xreplace({known.symbol: known.expression}) for entry in entries]
-    arguments = [motion.argument(name) for name in step.quantity.inputs]
-    symbols = {s: sp.Symbol(n) for a in arguments for s, n in zip(a.symbols, a.names, strict=True)}
-    return list(symbols.values()), [entry.xreplace(symbols) for entry in entries]
 
 
 def threads(modules: Mapping[str, ModuleType], size: int, repeats: int) -> Part:
@@ -215,7 +204,7 @@ def _chain(turns: int, repeats: int, size: int) -> tuple[Cell, ...]:
         " ".join(f"{'zxy'[k % 3]}({name})" for k, name in enumerate(names)), only=[BODY]
     )
     points = np.random.default_rng(turns).uniform(-3.0, 3.0, (size, 2 * turns))
-    symbols, entries = _plain(motion)
+    symbols, entries = in_plain_symbols(motion, BODY)
     task = Task(symbols, entries, points)
     actions: dict[str, Callable[[], Any]] = {}
     halves = [np.ascontiguousarray(half) for half in np.split(points, 2, axis=1)]

@@ -13,7 +13,6 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-import sympy as sp
 
 from benchmarks.kernel_parts import (
     calls,
@@ -35,7 +34,7 @@ from benchmarks.measure import (
     timed,
 )
 from benchmarks.node import node_side
-from benchmarks.peers import PEERS, Array, Side, Task, jitted
+from benchmarks.peers import PEERS, Array, Side, Task, in_plain_symbols, jitted
 from benchmarks.report import Cell, Column, Figure, Report, Table, spread_columns
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.motion import Motion, derive
@@ -115,15 +114,9 @@ def modules() -> Mapping[str, ModuleType]:
 
 def sides(quantity: str, size: int) -> tuple[dict[str, Side], int]:
     """All sides of one case, and the bytes that it reads and writes."""
-    step = motion().step(quantity)
-    arguments = [motion().argument(name) for name in step.quantity.inputs]
-    names = [name for argument in arguments for name in argument.names]
-    symbols = dict(
-        zip((s for a in arguments for s in a.symbols), map(sp.Symbol, names), strict=True)
-    )
-    plain = [entry.xreplace(symbols) for entry in step.expression]
-    points = np.random.default_rng(0).uniform(-3.0, 3.0, (size, len(names)))
-    task = Task(list(symbols.values()), plain, points, SEQUENCE)
+    symbols, plain = in_plain_symbols(motion(), quantity)
+    points = np.random.default_rng(0).uniform(-3.0, 3.0, (size, len(symbols)))
+    task = Task(symbols, plain, points, SEQUENCE)
     found = {name: _ours(module, quantity, points) for name, module in modules().items()}
     if not TARGETS["javascript"].missing:
         batches = np.split(points, points.shape[1] // 3, 1)
@@ -133,7 +126,7 @@ def sides(quantity: str, size: int) -> tuple[dict[str, Side], int]:
         if peer.is_there and (quantity == "rotation_matrix" or peer.package != "scipy"):
             progress(f"preparing {name}")
             found[name] = peer.make(task)
-    moved = 8 * size * (len(names) + len(plain))
+    moved = 8 * size * (len(symbols) + len(plain))
     source, target = np.ones(moved // 16), np.ones(moved // 16)
     found[COPY] = Side(lambda: np.copyto(target, source), lambda: target)
     return found, moved

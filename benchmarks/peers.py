@@ -17,6 +17,8 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from rigidsym.motion import Motion
+
 Array = NDArray[np.float64]
 Call = Callable[[], Any]
 
@@ -46,6 +48,20 @@ class Task:
     def rows(self) -> Array:
         """Room for the result, a row a component."""
         return np.empty((len(self.expressions), len(self.points)))
+
+
+def in_plain_symbols(motion: Motion, name: str) -> tuple[list[sp.Symbol], list[sp.Expr]]:
+    """The inputs of a quantity as symbols, and its entries in them, written out.
+
+    The peers know nothing of functions of time and of named intermediate quantities.
+    """
+    step = motion.step(name)
+    entries = list(step.expression)
+    for known in reversed(motion.definitions):
+        entries = [entry.xreplace({known.symbol: known.expression}) for entry in entries]
+    arguments = [motion.argument(vector) for vector in step.quantity.inputs]
+    plain = {s: sp.Symbol(n) for a in arguments for s, n in zip(a.symbols, a.names, strict=True)}
+    return list(plain.values()), [entry.xreplace(plain) for entry in entries]
 
 
 def _apart(function: Callable[..., Sequence[Any]], columns: Sequence[Any], size: int) -> Side:

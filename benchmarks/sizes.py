@@ -35,6 +35,7 @@ from benchmarks.measure import (
     ratios,
     run_process,
 )
+from benchmarks.peers import in_plain_symbols
 from benchmarks.report import Cell, Column, Figure, Report, Table, machine
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.motion import Motion, derive
@@ -66,7 +67,7 @@ Call = Callable[[], object]
 
 def stacked(motion: Motion, name: str) -> Callable[..., Array]:
     """np.stack of lambdify's results, entries on the last axis."""
-    function = sp.lambdify(*_in_plain_symbols(motion, name), "numpy", cse=True)
+    function = sp.lambdify(*in_plain_symbols(motion, name), "numpy", cse=True)
 
     def call(*arrays: Array, out: Array | None = None) -> Array:
         return np.stack(function(*(column for array in arrays for column in array.T)), -1, out)
@@ -79,7 +80,7 @@ def of_heyoka(motion: Motion, name: str) -> Callable[..., Array] | None:
     if find_spec("heyoka") is None:
         return None
     heyoka: Any = import_module("heyoka")
-    symbols, entries = _in_plain_symbols(motion, name)
+    symbols, entries = in_plain_symbols(motion, name)
     variables = heyoka.make_vars(*map(str, symbols))
     function: Callable[..., Array] = heyoka.cfunc(
         [heyoka.from_sympy(_without_cotangents(entry)) for entry in entries], variables
@@ -91,14 +92,6 @@ def _without_cotangents(entry: sp.Expr) -> sp.Expr:
     """heyoka has none."""
     written: sp.Expr = entry.replace(sp.cot, lambda angle: sp.cos(angle) / sp.sin(angle))
     return written
-
-
-def _in_plain_symbols(motion: Motion, name: str) -> tuple[list[sp.Symbol], list[sp.Expr]]:
-    """The inputs of a quantity as symbols, and its entries in them."""
-    step = motion.step(name)
-    given = [s for vector in step.quantity.inputs for s in motion.argument(vector).symbols]
-    plain = {symbol: sp.Symbol(f"v{k}") for k, symbol in enumerate(given)}
-    return list(plain.values()), list(step.expression.xreplace(plain))
 
 
 def seconds(call: Call) -> float:
