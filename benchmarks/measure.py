@@ -44,7 +44,7 @@ class Settings:
     size: int = 1_000_000  # orientations in a batch of the kernels
     samples: int = 40  # orientations of each kind whose errors are taken
     files: int = 100  # inputs of each kind of the campaign "fuzz", kills of "kills"
-    resume: Path | None = None  # what the campaign "fuzz" found so far
+    resume: Path | None = None  # what the campaign "fuzz" or "chains" found so far
     fresh: bool = False  # survey SymPy's forms anew
 
 

@@ -45,6 +45,7 @@ NAMES = (
     "motion",
     "rosetta",
     "fuzz",
+    "chains",
     "kills",
     "mutation",
     "kernel_mutants",
@@ -120,7 +121,10 @@ def _parser() -> argparse.ArgumentParser:
     ):
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)
     parser.add_argument(
-        "--resume", type=Path, metavar="FILE", help="the whole of fuzz, going on from this file"
+        "--resume",
+        type=Path,
+        metavar="FILE",
+        help="the whole of fuzz or chains, going on from FILE",
     )
     parser.add_argument(
         "--docs", action="store_true", help="put the tables into README.md and docs/reference"

@@ -90,8 +90,15 @@ def product_of(turns: tuple[Turn, ...]) -> sp.ImmutableMatrix:
 
 @lru_cache(maxsize=128)
 def _times(first: sp.ImmutableMatrix, second: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """The product, remembered, since several sequences begin with the same two turns."""
-    return first * second
+    """The product, remembered, since several sequences begin with the same two turns.
+
+    Zeros are left out, since SymPy would ask of each whether its partner is finite.
+    """
+    rows, columns = first.tolist(), second.T.tolist()
+    pairs = [[zip(row, column, strict=True) for column in columns] for row in rows]
+    return sp.ImmutableMatrix(
+        [[sp.Add(*(a * b for a, b in e if a and b)) for e in r] for r in pairs]
+    )
 
 
 class Pullback(NamedTuple):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from fractions import Fraction
 from pathlib import Path
 from random import Random
 
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 
 import rigidsym as rs
-from benchmarks import fuzz, kernel_mutants, kills
+from benchmarks import chains, fuzz, kernel_mutants, kills
 from rigidsym.commands.check import finding_of
 from rigidsym.errors import LimitReached
 from rigidsym.kernels.lowering.lower import lower
@@ -71,6 +72,19 @@ def test_a_record_beside_files_of_another_run_is_seen(tmp_path):
         (folder / "top.json").write_bytes(record)
         (folder / "top.py").write_bytes(module)
         assert trial._fault() == fault
+
+
+def test_random_chains_are_the_rotations_of_scipy():
+    found = chains.campaign(40)
+    assert found.failures == []
+    assert (found.compared, found.velocities) == (200, 2)
+
+
+def test_a_chain_with_another_axis_is_a_failure(monkeypatch):
+    x = (1.0, 0.0, 0.0)
+    other = chains.Chain("z(a)", (x,), (chains.Angle({"a": Fraction(1)}),))
+    monkeypatch.setattr(chains, "random_chain", lambda _: other)
+    assert len(chains.campaign(1).failures) == 1
 
 
 def test_check_names_every_change_of_a_kernel(tmp_path):
