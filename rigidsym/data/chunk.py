@@ -71,7 +71,8 @@ def without_missing(
         if not rows.any():
             yield chunk
         elif missing == "drop":
-            yield chunk.at(~rows)
+            if not rows.all():
+                yield chunk.at(~rows)
         else:
             row = int(rows.argmax())
             name = names[int(lacking[row].argmax())]

@@ -1,9 +1,7 @@
 """Text with one row a line, between commas, semicolons, tabs or blanks.
 
-NumPy reads the numbers. A chunk that it refuses, for one with gaps say, is read again by the csv
-module, field by field, so that a fault is named with its line and field. pyarrow's reader of CSV
-is faster and not used: it knows neither comments nor decimal commas among points, and makes no
-difference between a missing number and a wrong one.
+pyarrow reads the numbers of a long chunk if it is installed, else NumPy. A chunk that they refuse
+is read again by the csv module, field by field, so that a fault is named with its line and field.
 """
 
 from __future__ import annotations
@@ -12,7 +10,7 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, nullcontext, suppress
 from functools import partial
 from itertools import chain, islice
 from pathlib import Path
@@ -31,6 +29,9 @@ _LONGEST = 1 << 20  # bytes in a line
 _WIDEST = 10_000  # columns
 _COMMENTS = ("#", "%")
 _MISSING = frozenset({"", "-", "na", "n/a", "nan", "null", "none", "#n/a"})
+_AFTER_QUOTES = re.compile(r'((?<!")")[ \t]+(?=[,;\t]|$)')  # blanks that no dialect expects
+_CASES = (str.lower, str.upper, str.capitalize)
+_LONG = 1 << 22  # characters in a chunk for which pyarrow is worth the time it takes to import
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?")
 _KINDS = {
     b"\x1f\x8b": "data compressed by gzip (gunzip unpacks them)",
@@ -69,6 +70,8 @@ class TextReader:
             comments, first = self._first_line(lines)
             self.separator = _separator(first)
             fields = self._fields(first)
+            if fields is None:
+                raise DataError(f"{path}, line {self._skipped + 1}: {_QUOTES}")
             if len(fields) > _WIDEST:
                 raise DataError(f"{path}: {len(fields)} columns; at most {_WIDEST} are read")
             self.names = self._header(fields, comments, lines)
@@ -111,12 +114,13 @@ class TextReader:
         """The names of the columns, with the units of a second line in brackets."""
         if any(map(self._is_number, fields)):
             named = [self._fields(comment) for comment in reversed(comments)]
-            alike = (names for names in named if len(names) == len(fields))
+            alike = (names for names in named if names and len(names) == len(fields))
             return next((tuple(n) for n in alike if not any(map(is_number, n))), None)
         self._skipped = len(self._ahead)
         second = next(lines, b"")  # type: ignore[call-overload]
         self._ahead.append(second)
-        units = [field.strip("[]() ") for field in self._fields(_decoded(second).lstrip("#% "))]
+        second_fields = self._fields(_decoded(second).lstrip("#% ")) or ()
+        units = [field.strip("[]() ") for field in second_fields]
         if len(units) != len(fields) or not any(units) or any(map(is_number, units)):
             return tuple(fields)
         if not all(map(is_unit, units)):
@@ -127,18 +131,15 @@ class TextReader:
             for name, unit in zip(fields, units, strict=True)
         )
 
-    def _fields(self, text: str) -> list[str]:
-        return [field.strip() for fields in self._split([text]) for field in fields]
-
-    def _split(self, lines: Iterable[str]) -> Iterator[list[str]]:
-        """The fields of each line that is not empty."""
-        if self.separator is None:
-            lines = map(str.strip, lines)
+    def _fields(self, line: str) -> list[str] | None:
+        """The fields of a line; None if quotes end within a field, or in a later line."""
         separator = self.separator or " "
+        lines = [_AFTER_QUOTES.sub(r"\1", line if self.separator else line.strip())]
         try:
-            yield from filter(None, csv.reader(lines, delimiter=separator, skipinitialspace=True))
-        except csv.Error as error:
-            raise DataError(f"{self.path}: {error}") from None
+            rows = list(csv.reader(lines, delimiter=separator, skipinitialspace=True, strict=True))
+        except csv.Error:
+            return None
+        return [field.strip() for fields in rows for field in fields]
 
     def _is_number(self, field: str) -> bool:
         return is_number(self._with_point(field))
@@ -211,26 +212,57 @@ class TextReader:
             table = self._by_field(rows, before, columns)
         if not kept:
             return table, ()
-        fields = [row for row in self._split(rows) if any(row)]
+        fields = [self._fields(row) or () for row in rows if row.strip()]
         return table, tuple(np.array([row[k] for row in fields], object) for k in kept)
 
     def _at_once(self, text: str, rows: Sequence[str], columns: Sequence[int]) -> Table | None:
-        """The numbers as NumPy reads them; None for text with gaps, quotes or faults."""
-        if '"' in text or not text.strip():
+        """The numbers as pyarrow or NumPy reads them; None for text with quotes or faults."""
+        if '"' in text or "\r" in text or not text.strip():
             return None
+        if self.separator and len(text) > _LONG and "(" not in text:  # pyarrow knows nan(1)
+            table = self._by_arrow(text, columns)
+            if table is not None:
+                return table
         if self.separator != "," and "," in text:
             if "." in text:
                 return None
             rows = text.replace(",", ".").split("\n")
         try:
-            table: Table = np.loadtxt(
+            table = np.loadtxt(
                 rows, delimiter=self.separator, comments=None, ndmin=2, usecols=list(columns)
             )
         except ValueError:
             return None
         if self.separator is None:
-            return table if len(text.split()) == self.width * len(table) else None
-        return table if text.count(self.separator) == (self.width - 1) * len(table) else None
+            widths = {len(row.split()) for row in rows} - {0}
+        else:
+            widths = {row.count(self.separator) + 1 for row in rows if row.strip()}
+        return table if widths == {self.width} else None
+
+    def _by_arrow(self, text: str, columns: Sequence[int]) -> Table | None:
+        """The numbers as pyarrow reads them; None without it, or for text that it refuses."""
+        try:
+            import pyarrow as arrow
+            from pyarrow import csv as arrow_csv
+        except ImportError:
+            return None
+        names = [str(column) for column in range(self.width)]
+        used = [names[column] for column in columns]
+        for point in ".," if self.separator != "," else ".":
+            with suppress(arrow.ArrowInvalid):
+                table = arrow_csv.read_csv(
+                    io.BytesIO(text.encode()),
+                    arrow_csv.ReadOptions(use_threads=False, column_names=names),
+                    arrow_csv.ParseOptions(delimiter=self.separator, quote_char=False),
+                    arrow_csv.ConvertOptions(
+                        column_types=dict.fromkeys(used, arrow.float64()),
+                        include_columns=used,
+                        null_values=[case(word) for word in _MISSING for case in _CASES],
+                        decimal_point=point,
+                    ),
+                )
+                return np.column_stack([table[name].to_numpy() for name in used])
+        return None
 
     def _quoted(self, field: str) -> str:
         return f": {field[:40]!r}" if self.quotes else ""
@@ -244,15 +276,18 @@ class TextReader:
         table: list[list[float]] = []
         numbered = [(number, row) for number, row in enumerate(rows, before + 1) if row.strip()]
         marks: set[str] = set()
-        split = self._split(row for _, row in numbered)
-        for (number, _), fields in zip(numbered, split, strict=True):
+        for number, row in numbered:
+            fields = self._fields(row)
+            if fields is None:
+                faults.append(f"line {number}: {_QUOTES}")
+                continue
             extra = fields[self.width :]
             if len(fields) < self.width or any(extra):
                 faults.append(
                     f"line {number}: {counted(len(fields), 'field')}, expected {self.width}"
                 )
                 continue
-            found = [fields[column].strip() for column in columns]
+            found = [fields[column] for column in columns]
             points = [self._with_point(field) for field in found]
             marks |= {
                 "," if a != b else "." for a, b in zip(found, points, strict=True) if "." in b
@@ -274,6 +309,7 @@ class TextReader:
 
 
 _NONE = np.empty(0, np.intp)
+_QUOTES = "quotes that do not end where the field does; expected one row a line"
 
 
 def listed(path: Path | str, faults: Sequence[str], count: int | None = None) -> str:

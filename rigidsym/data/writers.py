@@ -116,11 +116,12 @@ class TextWriter:
         """Write rows, kept columns first."""
         # plain floats are faster to write; of a float32 they would hold digits it does not have
         rows = table.tolist() if self._dtype.itemsize == 8 else table
-        lines = [f"{','.join(map(str, row))}\n" for row in rows]
         if kept:
-            before = _quoted(zip(*kept, strict=True)).splitlines()
-            lines = [f"{head},{line}" for head, line in zip(before, lines, strict=True)]
-        self._file.write("".join(lines).encode())
+            heads = zip(*kept, strict=True)
+            text = _quoted((*head, *map(str, row)) for head, row in zip(heads, rows, strict=True))
+        else:
+            text = "".join(f"{','.join(map(str, row))}\n" for row in rows)
+        self._file.write(text.encode())
         self._file.flush()
 
     def finish(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import time
 
@@ -12,6 +13,7 @@ from scipy.spatial.transform import Rotation
 import rigidsym as rs
 from helpers.log_files import run
 from rigidsym.data.readers import reader_of
+from rigidsym.data.text import TextReader
 from rigidsym.errors import DataError
 from rigidsym.tools.evaluate.evaluation import evaluation
 from rigidsym.tools.identify.identification import identify_file
@@ -356,3 +358,92 @@ def test_identify_reads_parquet_and_structured_npy(tmp_path):
         found = identify_file(tmp_path / name)
         assert found.names == ("yaw", "pitch", "roll")
         assert [answer.reading.sequence for answer in found.answers] == ["ZYX"]
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        ('"a\nb",1,2,3', "line 3: quotes that do not end where the field does"),
+        ('"calm,1,2,3', "line 3: quotes that do not end where the field does"),
+        ('"calm",1,"2"5,3', "line 3: quotes that do not end where the field does"),
+        ("calm,1,2,3,4\ncalm,1,2", "line 3: 5 fields, expected 4"),  # as many on the whole
+    ],
+)
+def test_rows_of_odd_quotes_or_lengths_are_refused_with_their_line(motion, tmp_path, row, message):
+    path = text(tmp_path / "log.csv", "note,yaw,pitch,roll", "calm,1,2,3", row)
+    for keep in ((), ("note",)):
+        with pytest.raises(DataError, match=message):
+            matrices(motion, path, keep=keep)
+
+
+def test_blanks_after_quotes_are_read_and_odd_quotes_in_comments_are_no_matter(motion, tmp_path):
+    rows = ('"calm" ,' + row for row in ROWS)
+    path = text(tmp_path / "log.csv", '# 5" "pipe"s', f'"note" ,{HEADER}', *rows)
+    np.testing.assert_allclose(matrices(motion, path), MATRIX, atol=1e-15)
+
+
+def test_no_row_is_left_where_each_lacks_a_number(motion, tmp_path):
+    path = text(tmp_path / "log.csv", f"time,{HEADER}", "0,1,2,", "1,,2,3")
+    assert matrices(motion, path, missing="drop").shape == (0, 9)
+    text(path, f"note,{HEADER}", "calm,1,2,", "calm,,2,3")
+    assert matrices(motion, path, missing="drop", keep=["note"]).shape == (0, 10)
+
+
+def test_a_kept_text_with_line_breaks_stays_in_its_row(motion, tmp_path):
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    notes = ["calm", "two\nlines", "a\u2028b"]
+    angles = dict(zip(("yaw", "pitch", "roll"), ANGLES.T, strict=True))
+    parquet.write_table(pyarrow.table({"note": notes} | angles), tmp_path / "log.parquet")
+    result = tmp_path / "result.csv"
+    evaluation(motion, ("quaternion",), tmp_path / "log.parquet", result, keep=["note"]).run()
+    with result.open(newline="", encoding="utf-8") as file:
+        _, *rows = csv.reader(file)
+    assert [row[0] for row in rows] == notes
+    assert {len(row) for row in rows} == {5}
+
+
+NUMBERS = (
+    *("1.5", "-2", "+3", "1e5", "1E+05", ".5", "5.", " 1.5", "1.5 ", "1,5", "1.000,5", "4.9e-324"),
+    *("0.1000000000000000055511151231257827", "9" * 30, "1e400", "inf", "-Infinity", "iNf"),
+    *("", "-", "NA", "n/a", "NULL", "None", "nan", "NaN", "nAn", "-nan", "nan(1)", "#N/A"),
+    *("1_000", "0x10", "1d5", "true", "１", "1 2", "--1", "1e", "\u20091", '"1"', '"1"5', "1\x00"),
+    *("# 1", "1\r", "\r1", "1\r2"),
+)
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_every_reader_reads_the_same(tmp_path, monkeypatch, separator):
+    """pyarrow, NumPy and the csv module, chosen by length and content."""
+    pytest.importorskip("pyarrow")
+
+    def read(path):
+        try:
+            return [c.table.tobytes() for c in TextReader(path).chunks((0, 1))]
+        except DataError as error:
+            return str(error)
+
+    for number in NUMBERS:
+        if separator in number:
+            continue
+        row = f"{number}{separator}7"
+        path = text(tmp_path / "log.csv", *["1;2".replace(";", separator)] * 3, row)
+        found = []
+        for long in (0, 1 << 40):
+            monkeypatch.setattr("rigidsym.data.text._LONG", long)
+            found.append(read(path))
+        monkeypatch.setattr(TextReader, "_at_once", lambda *_: None)
+        assert found == [read(path)] * 2, number
+        monkeypatch.undo()
+
+
+def test_long_chunks_with_gaps_go_through_pyarrow(tmp_path, monkeypatch):
+    pytest.importorskip("pyarrow")
+    path = text(tmp_path / "log.csv", "a,b,c", *(f"{k},,{k + 0.5}" for k in range(100)))
+    monkeypatch.setattr("rigidsym.data.text._LONG", 500)
+    monkeypatch.setattr(TextReader, "_by_field", None)
+    table = np.concatenate([c.table for c in TextReader(path).chunks((0, 1, 2))])
+    assert table.shape == (100, 3)
+    assert np.isnan(table[:, 1]).all()
+    np.testing.assert_array_equal(table[:, 2] - table[:, 0], 0.5)
