@@ -6,6 +6,7 @@ imported when the command is called, so that `rigidsym --help` imports neither S
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import sys
@@ -19,6 +20,7 @@ from rigidsym.errors import RigidsymError
 from rigidsym.version import __version__
 
 _INTERRUPTED = 130
+_NEW_OBJECTS = 200_000  # between two searches for cycles; importing SymPy makes 100,000
 _SUMMARIES = {  # name: what `rigidsym --help` says of it
     "derive": "Derive one rotation; show it and write its files.",
     "run": "Run derivation files.",
@@ -39,6 +41,7 @@ _FILES = {"eval": "evaluate"}  # where the file is not named after its command
 
 def main() -> None:
     """The `rigidsym` command: runs, and turns errors into messages and exit codes."""
+    gc.set_threshold(_NEW_OBJECTS)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a terminal that cannot show φ shows a ?
             stream.reconfigure(errors="replace")
@@ -59,6 +62,7 @@ def main() -> None:
         place = f"{error.filename}: " if error.filename else ""
         message(f"{place}{error.strerror or error}")
         status = 1
+    gc.freeze()  # the process ends: what is left needs no search
     sys.exit(status if isinstance(status, int) else 0)
 
 
