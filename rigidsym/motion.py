@@ -169,14 +169,22 @@ class Motion(Derivation):
 
         return simulate_ensemble(self, initial, parameters, t_end, **options)
 
-    def page(self, *, with_kernels: bool = True, start: Mapping[str, float] | None = None) -> str:
+    def page(
+        self,
+        *,
+        with_kernels: bool = True,
+        start: Mapping[str, float] | None = None,
+        language: str = "en",
+    ) -> str:
         """One HTML file that needs no network: the note, and a figure with sliders.
 
-        `start` holds initial values by name, of coordinates, rates and constants, in SI units.
+        `start` holds initial values by name, of coordinates, rates and constants, in SI units;
+        `language` is "en" or "de".
         """
         from rigidsym.page.print_page import print_page
 
-        return print_page(self, self.note(with_kernels=with_kernels).document, start or {})
+        note = self.note(with_kernels=with_kernels, language=language)
+        return print_page(self, note.document, start or {})
 
     def with_notation(self, **choices: Any) -> Motion:
         """The same motion in another notation: `rates`, `vectors`, `body`, `frames`,

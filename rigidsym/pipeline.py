@@ -14,7 +14,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
@@ -185,22 +184,20 @@ def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
 
 
 def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
-    in_language = partial(
-        motion.note,
+    note = motion.note(
         with_kernels="numpy" in spec.kernels,
         conversions=spec.conversions,
         style=spec.style,
         text=cast("OwnText | None", spec.text),
+        language=spec.language,
     )
-    note = in_language(language=spec.language)
     for ending in FORMATS:
         if ending in spec.note or (ending == "tex" and PDF in spec.note):
             yield f"{spec.name}.{ending}", note.render(ending)
     if PAGE in spec.note:
         from rigidsym.page.print_page import print_page
 
-        english = note if spec.language == "en" else in_language(language="en")
-        yield page_name(spec.name), print_page(motion, english.document)
+        yield page_name(spec.name), print_page(motion, note.document)
 
 
 def digest(content: bytes) -> str:

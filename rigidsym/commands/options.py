@@ -166,7 +166,22 @@ class KernelOptions(SelectionOptions):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OutputOptions:
+class LanguageOptions:
+    """The language of what people read."""
+
+    language: str | None = option(
+        "--language",
+        type=click.Choice(languages()),
+        help="Language of the note.  [default: en]",
+    )
+
+    def in_language(self, spec: DerivationSpec) -> DerivationSpec:
+        """The specification in the language chosen here, or in its own."""
+        return replace(spec, language=self.language or spec.language)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputOptions(LanguageOptions):
     """What is printed, and what the terminal shows."""
 
     target: tuple[list[str], ...] = option(
@@ -187,11 +202,6 @@ class OutputOptions:
         type=click.Choice(("lecture", "paper", "audit")),
         help="Style of the note: lecture explains, paper is terse, audit shows every identity and "
         "function.  [default: lecture]",
-    )
-    language: str | None = option(
-        "--language",
-        type=click.Choice(languages()),
-        help="Language of the note.  [default: en]",
     )
     pdf: bool = option("--pdf", is_flag=True, help="Also typeset the note; needs TeX.")
     fragment: bool = option(
@@ -222,12 +232,11 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, KernelOptio
         lean = {"c": _LEAN} if self.lean else {}
         asked = ("pdf",) * self.pdf + ("fragment.tex",) * self.fragment
         return replace(
-            self.in_notation(self.selected(spec)),
+            self.in_language(self.in_notation(self.selected(spec))),
             note=tuple(dict.fromkeys((*spec.note, *asked))),
             kernels=tuple(dict.fromkeys((*(targets or spec.kernels), *lean))),
             target_options={**spec.target_options, **lean},
             style=self.style or spec.style,
-            language=self.language or spec.language,
         )
 
 

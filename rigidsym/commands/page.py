@@ -9,6 +9,7 @@ import click
 from rigidsym.commands.command import command as make, with_options
 from rigidsym.commands.options import (
     FolderOptions,
+    LanguageOptions,
     NotationOptions,
     RotationOptions,
     SelectionOptions,
@@ -18,7 +19,9 @@ from rigidsym.pipeline import PAGE, integrated, output_of, page_name, read
 
 
 @dataclass(frozen=True, kw_only=True)
-class PageOptions(FolderOptions, NotationOptions, SelectionOptions, RotationOptions):
+class PageOptions(
+    FolderOptions, NotationOptions, LanguageOptions, SelectionOptions, RotationOptions
+):
     """All options of `page`."""
 
 
@@ -32,7 +35,7 @@ def command(source: str, options: PageOptions) -> None:
     that needs no network; NAME.json beside it is the record that `check` reads.
     """
     spec = integrated(read(source, **options.of_rotation()))
-    for single in options.in_notation(options.selected(spec)).singles():
+    for single in options.in_language(options.in_notation(options.selected(spec))).singles():
         asked = replace(single, kernels=(), note=(PAGE,))
         output = output_of(with_existing_files(asked, options.out))
         write(output, options.out, force=options.force)

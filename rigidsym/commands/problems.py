@@ -39,6 +39,7 @@ _ENDINGS = ("tex", "html")
 )
 @click.option("--pdf", is_flag=True, help="Also typeset the sheet and solutions; needs TeX.")
 @click.option("--moodle", is_flag=True, help="Also write a question bank in Moodle XML.")
+@click.option("--quiet", is_flag=True, help="Print only the names of the files written.")
 @click.option(
     "--out",
     type=click.Path(file_okay=False, path_type=Path),
@@ -55,6 +56,7 @@ def command(
     language: str,
     pdf: bool,
     moodle: bool,
+    quiet: bool,
     out: Path,
 ) -> None:
     """Write a problem sheet and its worked solutions.
@@ -65,6 +67,8 @@ def command(
     sheet = sheet_of(subject, SUBJECTS, count=number, variant=variant, language=language)
     own = OwnText(author=author, course=course)
     documents = [own.applied(sheet.document(solved=solved)) for solved in (False, True)]
+    for place, section in enumerate(() if quiet else documents[0].sections, start=1):
+        click.echo(f"{place}  {section.title}")
     for document in documents:
         for ending in _ENDINGS:
             path = out / sheet.name / f"{document.name}.{ending}"

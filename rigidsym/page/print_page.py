@@ -10,6 +10,7 @@ import hashlib
 import json
 import re
 from collections.abc import Collection, Iterator, Mapping
+from functools import cache
 from types import MappingProxyType
 from typing import Any
 
@@ -47,10 +48,10 @@ _SHOWN = {  # what the figure can show, and whether it does at first
     "frames": ("Intermediate frames", False),
     "trace": ("Trace of the axis", True),
 }
-_TURN = "Turn {} of {}: by {} about {}"
 _NAMES = {"own": "This body"}
 _OF_TURNS = ("sum", "rings", "frames")
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
+_SAID = re.compile(r'\bsaid\("([^"]+)"\)')  # in a module, words that the page shows
 _EXPORT = re.compile(r"^export (?=\w)", re.MULTILINE)
 
 
@@ -83,21 +84,22 @@ def print_page(
     own = own_shape(derivation.body)
     shapes |= {"own": own} if own else {}
     body = "own" if own else _body(derivation.model)
-    choices = _choices(derivation.model, document, flows=bool(functions.integrals))
+    choices = _choices(derivation.model, printer, flows=bool(functions.integrals))
     data = {
         "name": derivation.name,
+        "words": {words: printer.said(words) for words in _words()},
         "scene": stage,
         "bodies": {name: as_data(shape) for name, shape in shapes.items()},
         "body": body,
         "growing": growing(derivation.body),
-        "others": functions.others,
+        "others": [other | {"title": printer.said(other["title"])} for other in functions.others],
         "shown": [name for name, _, is_shown in choices if is_shown],
         "controls": [_data(control) for control in controls],
         "parameters": [starts.get(symbol, 0.0) for symbol in functions.constants],
         "inputs": functions.arguments,
         "in_degrees": in_degrees,
         "passive": derivation.model.passive,
-        "spoken": document.letters.notation.words("angular velocity, body components"),
+        "spoken": printer.named("angular velocity, body components"),
         "turn_words": _turn_words(derivation.model, document, printer),
         "languages": LANGUAGES,
         "copies": copies,
@@ -112,21 +114,24 @@ def print_page(
         script=script,
         groups=[
             {
-                "title": group.title,
+                "title": escape(printer.said(group.title)),
                 "controls": [_shown(control, printer) for control in group.controls],
             }
             for group in groups
         ],
         values=[_value(step, printer, in_degrees=in_degrees) for step in functions.steps],
-        others=[(other["key"], other["title"]) for other in functions.others],
+        others=[(other["key"], escape(other["title"])) for other in data["others"]],
         integrals=[printer.span(integral.symbol) for integral in functions.integrals],
         pole=_pole(functions),
         stage=stage,
-        bodies=[(name, _NAMES.get(name, name.capitalize()), name == body) for name in shapes],
+        bodies=[
+            (name, escape(printer.said(_NAMES.get(name, name.capitalize()))), name == body)
+            for name in shapes
+        ],
         choices=choices,
         has_turns=has_turns(derivation.model),
         count=len(stage["turns"]),
-        title_of_figure=escape(document.letters.notation.words(_FIGURE)),
+        title_of_figure=escape(printer.named(_FIGURE)),
     )
 
 
@@ -144,8 +149,13 @@ class PagePrinter(HtmlPrinter):
         return f'<p class="copy" data-of="{escape(equation.label)}">{equation.number}</p>'
 
     def sentence(self, text: Text) -> str:
-        """A sentence, in the notation of the document."""
-        return self.block(Paragraph(tuple(map(self.notation.named, text))))
+        """A sentence, in the notation and the language of the document."""
+        named = tuple(map(self.notation.named, text))
+        return self.block(Paragraph(self.language.text(named)))
+
+    def named(self, english: str) -> str:
+        """Words, with the names of the frames, in the language of the document."""
+        return self.said(self.notation.words(english))
 
 
 def _script(functions: Functions, data: object) -> str:
@@ -155,12 +165,19 @@ def _script(functions: Functions, data: object) -> str:
         "// --- the functions of the derivation: every number of this page comes from them\n",
         functions.source,
         f"\nconst kernels = {{ {names} }};\nconst page = {_json(data)};\n",
-        *(
-            _EXPORT.sub("", _IMPORT.sub("", resources.text("templates", f"page/{name}.mjs")))
-            for name in MODULES
-        ),
+        *(_EXPORT.sub("", _IMPORT.sub("", _module(name))) for name in MODULES),
     ]
     return "\n".join(parts).replace("</", "<\\/").replace("<!--", "<\\!--")
+
+
+def _words() -> list[str]:
+    """What the script shows or says."""
+    return [s for name in MODULES for s in _SAID.findall(_module(name))]
+
+
+@cache
+def _module(name: str) -> str:
+    return resources.text("templates", f"page/{name}.mjs")
 
 
 def _json(data: object) -> str:
@@ -176,12 +193,16 @@ def _body(model: RotationModel) -> str:
 
 
 def _choices(
-    model: RotationModel, document: Document, *, flows: bool
+    model: RotationModel, printer: PagePrinter, *, flows: bool
 ) -> list[tuple[str, str, bool]]:
     """Name, label and initial state of what can be shown in the figure; little of a motion."""
-    omega = escape(label(document.letters.notation.applied(SPACE.omega)))
+    omega = label(printer.notation.applied(SPACE.omega))
     return [
-        (name, text.format(omega), is_shown and not (flows and name != "trace"))
+        (
+            name,
+            escape(printer.said(text.format(omega))),
+            is_shown and not (flows and name != "trace"),
+        )
         for name, (text, is_shown) in _SHOWN.items()
         if name not in _OF_TURNS or (has_turns(model) and len(model.turns) > 1)
     ]
@@ -215,7 +236,7 @@ def _value(step: Step, printer: PagePrinter, *, in_degrees: bool) -> dict[str, A
     return {
         "id": f"{quantity.name}-value",
         "symbol": printer.span(quantity.symbol),
-        "about": escape(printer.notation.words(quantity.about)),
+        "about": escape(printer.named(quantity.about)),
         "unit": escape(unit) if quantity.unit else "",
         "rows": range(rows),
         "columns": range(columns),
@@ -251,11 +272,13 @@ def _pole(functions: Functions) -> str:
 
 def _shown(control: Control, printer: PagePrinter) -> dict[str, str]:
     """A slider as the template places it."""
-    unit = control.unit.replace("°", "degrees").replace("/s", " per second")
+    unit = control.unit.replace("°/s", "degrees per second").replace("°", "degrees")
+    stem, dot, _ = control.name.partition(" dot")
+    name = f"{stem} {printer.said('dot')}" if dot else stem
     return {
         "key": control.key,
         "symbol": printer.span(control.symbol),
-        "name": escape(f"{control.name}{', in ' if unit else ''}{unit}"),
+        "name": escape(f"{name}, {printer.said(f'in {unit}')}" if unit else name),
         "unit": escape(control.unit),
         "low": f"{control.low:g}",
         "high": f"{control.high:g}",

@@ -4,7 +4,7 @@ import { kernels, page } from "./generated.mjs";
 import { STANDARD, dot, length, minus, plus, scaled, within } from "./vectors.mjs";
 import { posed, wholeTurn } from "./scene.mjs";
 import { cameraAt, draw } from "./drawing.mjs";
-import { bind, evaluated, settle, state } from "./state.mjs";
+import { bind, evaluated, said, settle, state } from "./state.mjs";
 import { LAST, begin, goTo } from "./flow.mjs";
 
 const { controls, scene } = page;
@@ -174,7 +174,7 @@ export function rest() {
   resting = setTimeout(() => {
     const factor = page.in_degrees ? DEGREE : 1;
     const omega = evaluated("angular_velocity_body").map((part) => fixed(part / factor, 2));
-    at("said").textContent = `${page.spoken}: ${omega.join(", ")} ${page.in_degrees ? "degrees per second" : "rad/s"}`;
+    at("said").textContent = `${page.spoken}: ${omega.join(", ")} ${page.in_degrees ? said("degrees per second") : "rad/s"}`;
     remember();
   }, 700);
 }
@@ -344,13 +344,13 @@ function frame(time) {
 function pause() {
   last = null;
   stepping = null;
-  at("play").textContent = calm.matches ? "Step" : "Play";
+  at("play").textContent = calm.matches ? said("Step") : said("Play");
   rest();
 }
 
 function start() {
   last = performance.now();
-  at("play").textContent = "Pause";
+  at("play").textContent = said("Pause");
   requestAnimationFrame(frame);
 }
 

@@ -2,6 +2,7 @@
 
 import { page } from "./generated.mjs";
 import { at } from "./main.mjs";
+import { said } from "./state.mjs";
 
 async function copy(text) {
   try {
@@ -21,7 +22,7 @@ async function copy(text) {
 /** Copy, and say so: on the button and aloud. */
 async function copyFrom(button, text, name) {
   const done = await copy(text);
-  at("said").textContent = done ? `${name} is copied.` : "It could not be copied.";
+  at("said").textContent = done ? `${said("Copied:")} ${name}` : said("It could not be copied.");
   button.classList.toggle("done", done);
   setTimeout(() => button.classList.remove("done"), 1500);
   button.focus();
@@ -34,17 +35,17 @@ function buttonFor(place, language) {
   button.type = "button";
   button.dataset.copy = language;
   button.textContent = page.languages[language];
-  button.setAttribute("aria-label", `Copy equation (${place.textContent}) as ${button.textContent}`);
+  button.setAttribute("aria-label", `${said("Copy equation")} (${place.textContent}): ${button.textContent}`);
   button.addEventListener("click", () => copyFrom(button, page.copies[name][language], button.textContent));
   return button;
 }
 
 for (const place of document.querySelectorAll(".copy")) {
   const known = Object.keys(page.copies[place.dataset.of]);
-  place.replaceChildren("Copy ", ...known.map((language) => buttonFor(place, language)));
+  place.replaceChildren(`${said("Copy")} `, ...known.map((language) => buttonFor(place, language)));
 }
 
-at("link").addEventListener("click", () => copyFrom(at("link"), location.href, "The link"));
+at("link").addEventListener("click", () => copyFrom(at("link"), location.href, said("Link")));
 
 // --- saving the figure
 
@@ -102,5 +103,5 @@ at("full").addEventListener("click", () => {
   else at("board").requestFullscreen();
 });
 document.addEventListener("fullscreenchange", () => {
-  at("full").textContent = document.fullscreenElement ? "Leave full screen" : "Full screen";
+  at("full").textContent = document.fullscreenElement ? said("Leave full screen") : said("Full screen");
 });

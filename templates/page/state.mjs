@@ -7,6 +7,8 @@ for (const { kind, place, start, factor } of page.controls) state[kind][place] =
 
 /** The vectors that functions take: those of the state, and y, which holds coordinates and rates. */
 const given = (input) => (input === "y" ? [...state.q, ...state.q_dot] : state[input]);
+/** Words of the page in its language. */
+export const said = (english) => page.words[english] ?? english;
 export const evaluated = (name) => kernels[name](...page.inputs[name].map(given));
 
 /** x with A x = b, by elimination with pivots; A is small and regular. */

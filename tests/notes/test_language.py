@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -20,6 +21,7 @@ from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.problems.exercise import sheet_of
 from rigidsym.notes.problems.subjects import SUBJECTS
+from rigidsym.page.print_page import MOST_BYTES, print_page
 from rigidsym.pipeline import motion_of, output_of, read, read_record, read_spec
 
 GERMAN = language_of("de")
@@ -66,6 +68,17 @@ def test_every_sentence_of_a_sheet_has_a_german_one(variant):
         untranslated(sheet_of("all", SUBJECTS, count=7, variant=variant).document(solved=True))
         == set()
     )
+
+
+@pytest.mark.parametrize("name", ["ZXZ", "quaternion", "composite_body", "heavy_symmetric_top"])
+def test_every_sentence_of_a_live_page_has_a_german_one(name):
+    motion, lacked = motion_of(read(name)), set()
+    into = replace(GERMAN, lacked=lacked)
+    document = motion.note(style="paper").document.translated(into)
+    page = print_page(motion, document)
+    assert {sentence for sentence in lacked if sentence not in " ".join(document.sources)} == set()
+    assert '<html lang="de">' in page
+    assert len(page.encode()) <= MOST_BYTES
 
 
 def test_a_translation_has_the_holes_of_its_sentence():
@@ -127,13 +140,21 @@ def test_an_unknown_language_and_frames_in_german_are_refused():
         renamed.note(language="de")
 
 
-def test_a_file_and_its_record_hold_the_language_and_the_live_page_is_english():
+def test_a_file_its_record_and_its_live_page_have_one_language():
     text = '[rotation]\nsequence = "ZXZ"\n[output]\nkernels = []\nlanguage = "de"\n'
     spec = read_spec(f'{text}note = ["md", "page"]', source="x.toml", name="x")
     assert read_record(spec.to_data()).language == spec.language == "de"
     files = output_of(spec).files
     assert "## Konvention" in files["x.md"]
-    assert '<html lang="en">' in files["x_page.html"]
+    assert '<html lang="de">' in files["x_page.html"]
+    assert ">Abspielen</button>" in files["x_page.html"]
+
+
+def test_the_command_page_takes_a_language(tmp_path):
+    options = ("--language", "de", "--out", str(tmp_path))
+    done = CliRunner().invoke(commands, ["page", "z(phi)", *options])
+    assert done.exit_code == 0, done.output
+    assert '<html lang="de">' in Path(done.output.strip()).read_text(encoding="utf-8")
 
 
 def test_a_sheet_in_german_asks_in_german(tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from itertools import combinations
+from pathlib import Path
 from random import Random
 from xml.etree import ElementTree
 
@@ -89,6 +90,15 @@ def test_the_command_typesets_sheet_and_solutions_with_author_and_course(monkeyp
         assert b"Ada" in tex
         assert b"Tops" in tex
         assert (folder / f"{name}.pdf").read_bytes() == tex
+
+
+def test_the_command_lists_the_problems_unless_it_is_quiet(tmp_path):
+    options = ["problems", "bodies", "--number", "1", "--out", str(tmp_path)]
+    listed = CliRunner().invoke(commands, options).output.splitlines()
+    quiet = CliRunner().invoke(commands, [*options, "--quiet"]).output.splitlines()
+    assert [line.split()[0] for line in listed[:-4]] == ["1"]
+    assert quiet == listed[-4:]
+    assert all(Path(line).is_file() for line in quiet)
 
 
 def test_only_the_solutions_hold_answers():

@@ -386,6 +386,20 @@ def test_no_request_can_leave_a_page(tab, tmp_path):
     tab.events.clear()
 
 
+@pytest.mark.parametrize("width", [320, 1280])
+def test_the_page_in_german_speaks_german(tab, width, tmp_path):
+    opened(tab, motion_of("ZXZ").page(language="de"), tmp_path, width)
+    assert tab.run("document.documentElement.lang") == "de"
+    assert tab.run("document.documentElement.scrollWidth") <= width
+    assert tab.run("document.getElementById('play').textContent") == "Abspielen"
+    tab.run("document.getElementById('play').click()")
+    assert tab.run("document.getElementById('play').textContent") == "Pause"
+    tab.run("document.getElementById('one-by-one').click()")
+    assert tab.run("document.getElementById('turn-words').textContent").startswith("Drehung 1 von")
+    labels = tab.run("[...document.querySelectorAll('.copy button')].map((b) => b.ariaLabel)")
+    assert labels[0] == "Gleichung kopieren (1): LaTeX"
+
+
 def test_words_for_angles_fit_too(tab, tmp_path):
     opened(
         tab, derive(rs.EulerAngles("XZY", ("heading", "elevation", "bank"))).page(), tmp_path, 360
