@@ -105,9 +105,9 @@ class Motion(Derivation):
     @property
     def conversions(self) -> Conversions:
         """The conversions between the coordinates, the unit quaternion and R, with proofs."""
-        from rigidsym.mechanics.conversions.conversions import conversions_of
+        from rigidsym.mechanics.conversions.conversions import Conversions
 
-        return conversions_of(self.model)
+        return Conversions(self.model)
 
     def note(
         self,

@@ -11,9 +11,11 @@ from typing import Any
 from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.targets.javascript import printer as javascript
-from rigidsym.mechanics.conversions.conversion_functions import converted
+from rigidsym.mechanics.conversions.conversion_functions import from_matrix
+from rigidsym.mechanics.conversions.conversions import Conversions
+from rigidsym.mechanics.conversions.function import Converted
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.mechanics.derive import derive
+from rigidsym.mechanics.quantities.arguments import arguments_of
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.formula.derivation_letters import letters_of
@@ -21,7 +23,6 @@ from rigidsym.page.stage import has_turns, label, stage_of, turns_step
 
 _COMPARED = ("ZXZ", "ZYX", "unit_quaternion", "rotation_vector")
 _TITLES = {"unit_quaternion": "Quaternion", "rotation_vector": "Rotation vector"}
-_FROM_MATRIX = "from_rotation_matrix"
 
 
 def others(model: RotationModel) -> Iterator[tuple[dict[str, Any], tuple[Kernel, ...]]]:
@@ -36,8 +37,16 @@ _model = cache(rotation_from)
 
 @cache
 def _other(name: str) -> tuple[dict[str, Any], tuple[Kernel, ...]]:
-    """Of one convention, once for all pages."""
-    derivation = derive(_model(name), ("rotation_matrix",))
+    """Of one convention, once for all pages; nothing is derived, since no quantity is shown."""
+    model = _model(name)
+    derivation = Derivation(
+        name=model.name,
+        title=model.title,
+        model=model,
+        arguments=arguments_of(model),
+        steps=(turns_step(model),) if has_turns(model) else (),
+        singularities=None,
+    )
     return _data(name, derivation), tuple(_kernels(name, derivation))
 
 
@@ -56,9 +65,8 @@ def _data(name: str, derivation: Derivation) -> dict[str, Any]:
 
 
 def _kernels(name: str, derivation: Derivation) -> Iterator[Kernel]:
-    steps = (turns_step(derivation.model),) if has_turns(derivation.model) else ()
-    shown = replace(derivation, steps=steps, singularities=None)
-    program = lower(shown, javascript.RESERVED, added=converted(shown))
-    for kernel in program.kernels:
-        if kernel.name in (_FROM_MATRIX, "turns"):
-            yield replace(kernel, name=f"{kernel.name.removesuffix('_rotation_matrix')}_{name}")
+    inverse = Conversions(derivation.model).inverse
+    assert inverse is not None
+    added = Converted(functions=(from_matrix(derivation, inverse),))
+    for kernel in lower(derivation, javascript.RESERVED, added=added).kernels:
+        yield replace(kernel, name=f"{kernel.name.removesuffix('_rotation_matrix')}_{name}")

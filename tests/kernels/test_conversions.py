@@ -12,7 +12,7 @@ import rigidsym as rs
 from helpers.conversion_modules import CHAINS, module
 from helpers.motions import derived
 from helpers.witness import mp, rotation as exact_rotation
-from rigidsym.mechanics.conversions.conversions import conversions_of
+from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.models.matrices import given
 from rigidsym.models.parametrisations import RotationVector
@@ -222,7 +222,7 @@ def test_shadow_sets_are_the_same_rotation():
 
 @pytest.mark.parametrize("text", [*ALL, "z(phi) x(theta) z(psi) y(delta)", "z(phi)", "davenport"])
 def test_every_conversion_is_proved(text):
-    found = conversions_of(rotation_from(text))
+    found = Conversions(rotation_from(text))
     assert found.proofs
     assert all(proof.is_exact for proof in found.proofs)
     assert (found.inverse is None) == bool(found.without)
@@ -239,7 +239,7 @@ def test_every_conversion_is_proved(text):
 )
 def test_what_is_not_offered_says_why(text, reason):
     model = rotation_from(text)
-    found = conversions_of(model)
+    found = Conversions(model)
     assert found.inverse is None
     assert reason in found.without
     functions = rs.derive(model, ["rotation_matrix"]).kernels(conversions=True).load()
@@ -289,7 +289,7 @@ def test_what_was_not_chosen_is_not_taken_for_granted():
 
 def test_a_matrix_of_ones_own_converts_by_what_it_is():
     vector = given(RotationVector().matrix, name="mine")
-    assert conversions_of(vector).inverse.rule.rule == "rotation_vector"
+    assert Conversions(vector).inverse.rule.rule == "rotation_vector"
     phi = sp.Function("phi")(sp.Symbol("t"))
     c, s = sp.cos(phi), sp.sin(phi)
     about_z = given(sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]]), name="own")
@@ -298,7 +298,7 @@ def test_a_matrix_of_ones_own_converts_by_what_it_is():
     angles = np.array([1.0, -1.0, 3.0])
     expected = np.stack([np.cos(angles / 2), 0 * angles, 0 * angles, np.sin(angles / 2)], axis=-1)
     assert_allclose(found, expected, atol=4 * EPS)
-    assert "entries or formulas of R" in conversions_of(about_z).without
+    assert "entries or formulas of R" in Conversions(about_z).without
 
 
 def test_arguments_are_checked_and_shaped_as_elsewhere():

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
 from rigidsym.formula.sentence import text_of
-from rigidsym.mechanics.conversions.conversions import conversions_of
+from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.models.rotation_text import rotation_from
 
 EPS = np.finfo(np.float64).eps
@@ -90,7 +90,7 @@ def samples(case: Case, q: np.ndarray, *, passive: bool = False) -> Samples:
     names = [symbol.name for symbol in model.constants]
     values = LEAN if "a" not in names else {}
     constants = [[(NUMBERS | values)[name] for name in names]] if names else []
-    rule = conversions_of(model).inverse.rule
+    rule = Conversions(model).inverse.rule
     functions = module(case.text, passive=passive)
     assert len(rule.kept) == case.kept
     return Samples(
@@ -337,7 +337,7 @@ def test_zero_quaternions_and_nan_give_nan(case):
 
 @pytest.mark.parametrize("case", CASES, ids=str)
 def test_every_claim_is_proved_and_said(case):
-    found = conversions_of(rotation_from(case.text))
+    found = Conversions(rotation_from(case.text))
     assert all(proof.is_exact for proof in found.proofs)
     branch = text_of(found.inverse.branch)
     assert ("need not reach every rotation" in branch) is not case.reaches_all

@@ -96,6 +96,8 @@ def _convention(model: RotationModel) -> tuple[str, ...]:
 
 def _roots(derivation: Derivation) -> list[sp.Expr]:
     """The roots of numbers that a body adds to those of R, such as √3 where a part is turned."""
+    if derivation.body is None:
+        return []
     entries = (entry for step in derivation.steps for entry in step.expression)
     powers = {power for entry in entries for power in entry.atoms(sp.Pow)}
     return list(sp.ordered(p for p in powers if p.is_number and p.exp.is_Rational))

@@ -14,7 +14,6 @@ from rigidsym.mechanics.conversions.conversions import (
     UNIT,
     Conversions,
     InverseConversion,
-    conversions_of,
 )
 from rigidsym.mechanics.conversions.davenport_angles import DavenportAngles
 from rigidsym.mechanics.conversions.function import (
@@ -56,11 +55,11 @@ _WHOLE_TURNS = "No angle of a turn changes by more than π from one sample to th
 
 def converted(derivation: Derivation) -> Converted:
     """The functions of the conversions; where there is no inverse, a remark says why."""
-    conversions = conversions_of(derivation.model)
+    conversions = Conversions(derivation.model)
     inverse = conversions.inverse
     steps, functions = _quaternion(derivation, conversions)
     if inverse is not None:
-        functions += (_from_quaternion(derivation, inverse), _from_matrix(derivation, inverse))
+        functions += (_from_quaternion(derivation, inverse), from_matrix(derivation, inverse))
         functions += _shadow_sets(derivation, inverse)
     names = {step.quantity.name for step in derivation.steps}
     variants = (v for v in conversions.variants if v.quantity.name.removesuffix(UNIT) in names)
@@ -133,7 +132,8 @@ def _from_quaternion(derivation: Derivation, inverse: InverseConversion) -> Conv
     )
 
 
-def _from_matrix(derivation: Derivation, inverse: InverseConversion) -> ConversionFunction:
+def from_matrix(derivation: Derivation, inverse: InverseConversion) -> ConversionFunction:
+    """The function `from_rotation_matrix`."""
     model = derivation.model
     given = symbols(MATRIX)
     values = NamedValues(given[0])

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cache, reduce
+from functools import cache, cached_property, reduce
 
 import sympy as sp
 
@@ -70,36 +70,85 @@ _TURNS = formula(r"\mathbf{R}(\mathbf{p}) = \mathbf{R}")
 _UNIT = formula(r"\mathbf{p}\cdot\mathbf{p} = 1")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True)
 class InverseConversion:
     """How the coordinates follow from a quaternion of any length but zero."""
 
+    model: RotationModel
     rule: DavenportAngles | TurnChain | ClosedForm
-    because: Sentence  # how it follows
-    branch: Sentence  # which of the possible coordinates are given
-    proofs: tuple[Proof, ...]
-    given: tuple[str, ...]  # arguments that the functions take besides: "parameters", "kept"
 
     @property
     def source(self) -> Citation | None:
         return self.rule.source
 
+    @property
+    def because(self) -> Sentence:
+        """How it follows."""
+        return self.rule.sentences(self.model)[0]
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+    @property
+    def branch(self) -> Sentence:
+        """Which of the possible coordinates are given."""
+        return self.rule.sentences(self.model)[1]
+
+    @property
+    def given(self) -> tuple[str, ...]:
+        """Arguments that the functions take besides: "parameters", "kept"."""
+        return (*["parameters"] * bool(self.model.constants), *["kept"] * bool(self.rule.kept))
+
+    @cached_property
+    def proofs(self) -> tuple[Proof, ...]:
+        proofs = _vanishing(self.model, self.rule.claims(self.model))
+        return proofs + (_of_any_axes(self.rule) if isinstance(self.rule, TurnChain) else ())
+
+
+@dataclass(frozen=True)
 class Conversions:
     """What converts between a model's coordinates, its unit quaternion and its matrix.
 
-    Where the quaternion has no formula of its own it is taken from R; where the coordinates do
-    not follow from a rotation, `without` says why.
+    Each is derived and proved in the ring of the model when it is asked for.
     """
 
     model: RotationModel
-    quaternion: Step | None
-    because: Sentence  # how the quaternion follows
-    inverse: InverseConversion | None
-    without: str  # a sentence; empty where there is `inverse`
-    from_matrix: Proof  # that 4 p pᵀ can be read off from R
-    variants: tuple[Step, ...] = ()  # quantities in a shorter form, for coordinates that obey more
+
+    @cached_property
+    def _form(self) -> ClosedForm | None:
+        return closed_form(self.model)
+
+    @cached_property
+    def _rule(self) -> DavenportAngles | TurnChain | ClosedForm | str:
+        return self._form or davenport_angles(self.model) or turn_chain(self.model)
+
+    @cached_property
+    def quaternion(self) -> Step | None:
+        """The unit quaternion; None if it has no formula of its own, but is taken from R."""
+        return _forward(self.model, self._form)
+
+    @property
+    def because(self) -> Sentence:
+        """How the quaternion follows."""
+        return sentence(self._form.because) if self._form else _FACTORS
+
+    @cached_property
+    def inverse(self) -> InverseConversion | None:
+        return None if isinstance(self._rule, str) else InverseConversion(self.model, self._rule)
+
+    @property
+    def without(self) -> str:
+        """Why the coordinates do not follow from a rotation; empty if there is `inverse`."""
+        if not isinstance(self._rule, str):
+            return ""
+        return f"The coordinates do not follow from a rotation: {self._rule}."
+
+    @property
+    def from_matrix(self) -> Proof:
+        """That 4 p pᵀ can be read off from R."""
+        return _read_off()
+
+    @cached_property
+    def variants(self) -> tuple[Step, ...]:
+        """Quantities in a shorter form, for coordinates that obey more."""
+        return _unit_variants(self.model, self._form)
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
@@ -109,38 +158,6 @@ class Conversions:
     @property
     def is_proved(self) -> bool:
         return all(proof.is_exact for proof in self.proofs)
-
-
-def conversions_of(model: RotationModel) -> Conversions:
-    """The conversions of one model, each proved in its ring."""
-    form = closed_form(model)
-    rule = form or davenport_angles(model) or turn_chain(model)
-    has_none = isinstance(rule, str)
-    return Conversions(
-        model=model,
-        quaternion=_forward(model, form),
-        because=sentence(form.because) if form else _FACTORS,
-        inverse=None if isinstance(rule, str) else _inverse(model, rule),
-        without=f"The coordinates do not follow from a rotation: {rule}." if has_none else "",
-        from_matrix=_read_off(),
-        variants=_unit_variants(model, form),
-    )
-
-
-def _inverse(
-    model: RotationModel, rule: DavenportAngles | TurnChain | ClosedForm
-) -> InverseConversion:
-    because, branch = rule.sentences(model)
-    proofs = _vanishing(model, rule.claims(model))
-    if isinstance(rule, TurnChain):
-        proofs += _of_any_axes(rule)
-    return InverseConversion(
-        rule=rule,
-        because=because,
-        branch=branch,
-        proofs=proofs,
-        given=(*["parameters"] * bool(model.constants), *["kept"] * bool(rule.kept)),
-    )
 
 
 def _of_any_axes(rule: TurnChain) -> tuple[Proof, ...]:
