@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import keyword
 import re
 
 import sympy as sp
@@ -60,8 +59,6 @@ def _fault(name: str) -> str:
         return "expected a letter (Latin or Greek), then letters, digits and single underscores"
     if name in _TAKEN:
         return f"{name} is {_TAKEN[name]}"
-    if keyword.iskeyword(name) and name != "lambda":
-        return "it is a keyword of Python"
     if name.endswith("dot"):
         return "a name that ends in dot reads as a rate"
     if _ANGULAR_VELOCITY.fullmatch(name):

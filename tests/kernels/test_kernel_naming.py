@@ -78,6 +78,7 @@ WORDS = [
     ("eps_row", "least", "far"),
     ("new", "this", "arguments"),
     ("signed", "j1", "NULL"),
+    ("def", "class", "None"),
 ]
 
 
