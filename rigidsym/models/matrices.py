@@ -65,7 +65,9 @@ def _example(
     model: str, given: Mapping[sp.Expr | str, Any], known: Iterable[sp.Expr]
 ) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
     """(symbol, value) pairs from values by name; raises ModelError for what is neither."""
-    named = {str(symbol.func if symbol.is_Function else symbol): symbol for symbol in known}
+    named = {
+        str(symbol.func if isinstance(symbol, AppliedUndef) else symbol): symbol for symbol in known
+    }
     found = []
     for key, value in given.items():
         name = str(key.func if isinstance(key, AppliedUndef) else key)

@@ -188,7 +188,7 @@ class RotationModel:
         for place, coordinate in enumerate(self.coordinates):
             if coordinate in self.coordinates[:place]:
                 raise ModelError(f"{self.name}: the coordinate {coordinate} is named twice")
-            if not coordinate.is_Function or coordinate.args != (TIME,):
+            if not isinstance(coordinate, AppliedUndef) or coordinate.args != (TIME,):
                 raise ModelError(
                     f"{self.name}: the coordinate {coordinate} is not a function of t; "
                     "make it with sympy.physics.vector.dynamicsymbols"

@@ -197,6 +197,9 @@ def shaped(
     if len(lengths) != len(shape.names):
         raise BodyError(f"{name}: expected {', '.join(shape.names)}, got {len(lengths)} lengths")
     lengths = [symbolic(length, f"{name}: a length") for length in lengths]
+    for length in lengths:
+        if length.is_real is False:
+            raise BodyError(f"{name}: {length} is not a length")
     check_lengths(name, [float(e) if e.is_number else None for e in lengths])
     coordinates = _free_coordinates([*lengths, mass, density])
     names = dict(zip(shape.names, lengths, strict=True)) | coordinates

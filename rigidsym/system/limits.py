@@ -9,6 +9,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import isfinite
+from numbers import Real
 from pathlib import Path
 from time import monotonic
 from types import FrameType
@@ -32,8 +33,8 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
     Raises LimitReached when the time is up, and RequestError for a time that is not positive or
     outside the main thread, since only that receives signals.
     """
-    if not seconds > 0:
-        raise RequestError(f"timeout: expected a positive number of seconds, got {seconds}")
+    if not (isinstance(seconds, Real) and seconds > 0):
+        raise RequestError(f"timeout: expected a positive number of seconds, got {seconds!r}")
     if threading.current_thread() is not threading.main_thread():
         raise RequestError("timeout works only in the main thread")
     if not hasattr(signal, "setitimer"):  # Windows: no limit

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import sympy as sp
 
 import rigidsym as rs
 
 a, b = sp.symbols("a b")
+MASKED = np.ma.masked_array([1.0, 2.0, 3.0], mask=[0, 0, 1])
 IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 
 
@@ -25,6 +27,12 @@ IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
         (lambda: rs.EulerAngles("ZYX", angles=None), "three different names, got None"),
         (lambda: rs.EulerAngles("ZYX", angles=(1, 2, 3)), "expected a name in quotes, got 1"),
         (lambda: rs.chain("z(a) x(b)"), "for a text use rs.rotation_from('z(a) x(b)')"),
+        (lambda: rs.solid("sphere", radius=1j, density=a), "is not a length"),
+        (lambda: rs.chain(None), "expected a list of rs.Turn, got None"),
+        (lambda: rs.given(sp.eye(3), name="mine", coordinates="a"), "is not a function of t"),
+        (lambda: rs.derive("ZXZ", timeout="1"), "expected a positive number of seconds, got '1'"),
+        (lambda: rs.identify("abc", matrix=sp.eye(3)), "angles: expected real numbers"),
+        (lambda: rs.identify(MASKED, matrix=np.eye(3)), "angles: masked entries"),
         (lambda: rs.chain([1]), "expected a list of rs.Turn, got 1 in it"),
         (lambda: rs.given(IDENTITY, name="mine"), "expected a SymPy expression, got '1'"),
         (lambda: rs.given(None, name="mine"), "expected a"),

@@ -102,7 +102,7 @@ def from_arrays(
             arrays[name] = array
             faults += fault
     faults += parts_missing(set(arrays))
-    counts = {name: len(array) for name, array in arrays.items()}
+    counts = {name: len(array) for name, array in arrays.items() if array.ndim}
     if not faults and len(set(counts.values())) > 1:
         said = ", ".join(f"{count} of {name}" for name, count in counts.items())
         faults.append(f"every part needs one row a sample, got {said}")
@@ -126,6 +126,8 @@ def _shaped(name: str, value: ArrayLike) -> tuple[NDArray[Any], list[str]]:
         return np.empty(0), [f"{name}: not an array of numbers ({error})"]
     if array.dtype.kind not in "fiub":
         return array, [f"{name}: expected real numbers, got {array.dtype}"]
+    if np.ma.is_masked(array):
+        return array, [f"{name}: masked entries; leave their samples out"]
     shapes = _SHAPES[name]
     if array.shape in shapes:
         return array.reshape(1, -1), []
