@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterable, Sequence
 
 import click
 
 from rigidsym.commands.command import Command, command as make
 from rigidsym.formula.unicode_pen import columns
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.mechanics.quantities.dynamics import (
+    DYNAMICS_QUANTITIES,
+    EULER_QUANTITIES,
+    FLOW_QUANTITIES,
+)
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.kinematics import quantities
 from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
-from rigidsym.models.rotation_text import rotation_from
+from rigidsym.models.rotation_text import ALIASES, rotation_from
 from rigidsym.models.solids import SHAPES
 from rigidsym.system.resources import names, text
 
@@ -49,53 +55,61 @@ def _rotations() -> list[str]:
 
 
 def _parametrisations() -> list[str]:
-    return [f"{name:<20} R = {entry.product}" for name, entry in PARAMETRISATIONS.items()]
+    short = {name: f" or {alias}" for alias, name in ALIASES.items()}
+    entries = PARAMETRISATIONS.items()
+    return _table([(name + short.get(name, ""), f"R = {e.product}") for name, e in entries])
 
 
 def _presets() -> list[str]:
-    lines = []
+    rows = []
     for name, preset in PRESETS.items():
         model = rotation_from(name)
         shown = "A = Rᵀ, " if model.passive else ""
-        lines.append(f"{name:<16} {shown}R = {model.product}: {preset.about}")
-        lines.append(f"{'':<16} {preset.source}")
-    return lines
+        rows.append((name, f"{shown}R = {model.product}: {preset.about}"))
+        rows.append(("", str(preset.source)))
+    return _table(rows)
 
 
 def _solids() -> list[str]:
-    return [
-        f"{name:<16} {', '.join(length.key for length in shape.lengths)}: {shape.about}"
+    return _table(
+        (name, f"{', '.join(length.key for length in shape.lengths)}: {shape.about}")
         for name, shape in SHAPES.items()
-    ]
+    )
 
 
 def _quantities() -> list[str]:
-    return [
-        f"{BODY_ALONE:<50} all quantities that a body has without a rotation",
-        *(
-            f"{quantity.name:<34} {_padded(quantity.symbol.text, 15)} {quantity.about}"
-            for table in (quantities(passive=False), INERTIA_QUANTITIES, ENERGY_QUANTITIES)
-            for quantity in table.values()
-        ),
-    ]
-
-
-def _padded(text: str, width: int) -> str:
-    """The text and blanks, by the columns that it takes on a screen."""
-    return text + " " * (width - columns(text))
+    known = {
+        **quantities(passive=False),
+        **INERTIA_QUANTITIES,
+        **ENERGY_QUANTITIES,
+        **DYNAMICS_QUANTITIES,
+        **EULER_QUANTITIES,
+        **FLOW_QUANTITIES,
+    }
+    rows = [(name, quantity.symbol.text, quantity.about) for name, quantity in known.items()]
+    return _table([(BODY_ALONE, "", "all quantities that a body has without a rotation"), *rows])
 
 
 def _targets() -> list[str]:
-    return [
-        f"{name:<12} {target.about}" + (f"; {lacking} is not installed" if lacking else "")
+    return _table(
+        (name, target.about + (f"; {lacking} is not installed" if lacking else ""))
         for name, target in TARGETS.items()
         for lacking in [target.missing]
-    ]
+    )
 
 
 def _shipped() -> list[str]:
-    shipped = names("derivations", ".toml")
-    titles = [
-        tomllib.loads(text("derivations", f"{name}.toml")).get("title", "") for name in shipped
-    ]
-    return [f"{name:<16} {title}" for name, title in zip(shipped, titles, strict=True)]
+    files = {name: text("derivations", f"{name}.toml") for name in names("derivations", ".toml")}
+    return _table((name, tomllib.loads(file).get("title", "")) for name, file in files.items())
+
+
+def _table(rows: Iterable[Sequence[str]]) -> list[str]:
+    """Rows with their columns below each other, by the width that they take on a screen."""
+    rows = list(rows)
+    widths = [max(map(columns, column)) for column in zip(*rows, strict=True)]
+    widths[-1] = 0
+    padded = (
+        [text + " " * (width - columns(text)) for text, width in zip(row, widths, strict=True)]
+        for row in rows
+    )
+    return ["  ".join(row) for row in padded]

@@ -140,10 +140,11 @@ class SelectionOptions:
 class KernelOptions(SelectionOptions):
     """What functions are printed."""
 
-    derivative: tuple[str, ...] = option(
+    derivative: tuple[list[str], ...] = option(
         "--derivative",
         multiple=True,
-        metavar="QUANTITY:VECTOR",
+        type=NAMES,
+        metavar="QUANTITY:VECTOR,...",
         help="Add the Jacobian of a quantity with respect to q, q_dot, ...; QUANTITY:VECTOR:jvp "
         "and :vjp add products with a vector. May be repeated.",
     )
@@ -154,15 +155,16 @@ class KernelOptions(SelectionOptions):
 
     def _derivatives(self, spec: DerivationSpec) -> tuple[str, ...]:
         """Those of the specification, then those of the command line, each once."""
-        for text in self.derivative:
+        asked = unique(self.derivative)
+        for text in asked:
             if ":" not in text:
                 raise KernelError(
                     f"--derivative {text}: expected QUANTITY:VECTOR, such as "
                     "angular_velocity_body:q"
                 )
-        for request in read_requests(self.derivative):
+        for request in read_requests(asked):
             _check_quantity(request.quantity, "--derivative")
-        return tuple(map(str, read_requests([*spec.derivatives, *self.derivative])))
+        return tuple(map(str, read_requests([*spec.derivatives, *asked])))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -45,6 +45,11 @@ class ColumnNames:
         self.plain = tuple(map(plain, self.names))
         self._others = [dict(_other_keys(name)) for name in self.names]
 
+    @property
+    def listed(self) -> str:
+        """For messages: the names; not that of a single column, which may be a line of prose."""
+        return ", ".join(self.names) if len(self.names) > 1 else "1 column"
+
     def find(self, spellings: Iterable[str]) -> int | None:
         """The column with one of these names, the first of which is preferred.
 

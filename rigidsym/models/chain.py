@@ -34,8 +34,8 @@ def chain(
     """
     if isinstance(turns, str):
         raise ModelError(f"expected a list of rs.Turn; for a text use rs.rotation_from({turns!r})")
-    if not isinstance(turns, Sequence):
-        raise ModelError(f"expected a list of rs.Turn, got {turns!r}")
+    if turns is None:
+        raise ModelError("expected a list of rs.Turn, got None")
     for turn in turns:
         if not isinstance(turn, Turn):
             raise ModelError(f"expected a list of rs.Turn, got {turn!r} in it")

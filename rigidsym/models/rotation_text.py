@@ -31,7 +31,7 @@ LONGEST = 900  # characters of a sequence or of turns
 _AT_REST = re.compile(r".*\D0")  # a name that ends in 0: alpha0, b_0; not a_10
 _SHOWN = 40  # characters of a wrong text that a message repeats
 _AXES_OF_DIGITS = str.maketrans("123", "XYZ")
-_ALIASES = {"mrp": "modified_rodrigues", "quat": "quaternion", "rotvec": "rotation_vector"}
+ALIASES = {"mrp": "modified_rodrigues", "quat": "quaternion", "rotvec": "rotation_vector"}
 _A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name'
 
 
@@ -59,8 +59,8 @@ def rotation_from(
     if constants and "(" not in text:
         raise ModelError(f"{text} has no constants; they go with turns such as z(phi) x(incline)")
     name = text.strip().lower().replace("-", "_").replace(" ", "_")
-    if name in _ALIASES:
-        name = asked["sequence"] = _ALIASES[name]
+    if name in ALIASES:
+        name = asked["sequence"] = ALIASES[name]
     if "(" in text:
         model = _turned(text, names, constants, passive)
     elif name in PARAMETRISATIONS:

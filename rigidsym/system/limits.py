@@ -9,7 +9,6 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import isfinite
-from numbers import Real
 from pathlib import Path
 from time import monotonic
 from types import FrameType
@@ -33,7 +32,7 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
     Raises LimitReached when the time is up, and RequestError for a time that is not positive or
     outside the main thread, since only that receives signals.
     """
-    if not (isinstance(seconds, Real) and seconds > 0):
+    if not (isinstance(seconds, int | float) and seconds > 0):
         raise RequestError(f"timeout: expected a positive number of seconds, got {seconds!r}")
     if threading.current_thread() is not threading.main_thread():
         raise RequestError("timeout works only in the main thread")
@@ -79,8 +78,11 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
 def memory_limit(gigabytes: float) -> Iterator[None]:
     """Stop what runs inside when it needs this much more memory than is in use now.
 
-    Raises LimitReached. Without support by the system there is no limit.
+    Raises LimitReached, and RequestError for no positive number. Without support by the system
+    there is no limit.
     """
+    if not (isinstance(gigabytes, int | float) and gigabytes > 0):
+        raise RequestError(f"memory: expected a positive number of GB, got {gigabytes!r}")
     used = _memory_in_use()
     if used is None or not isfinite(gigabytes):
         yield

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -10,9 +11,11 @@ from click.testing import CliRunner, Result
 
 import rigidsym as rs
 from rigidsym.commands.cli import commands
+from rigidsym.commands.list import inventory
 from rigidsym.commands.options import MOST_LINES
-from rigidsym.errors import RigidsymError
+from rigidsym.errors import RequestError, RigidsymError
 from rigidsym.models.rotation_text import rotation_from
+from rigidsym.motion import QUANTITIES
 
 NAMES = commands.list_commands(None)
 BODY = "angular_velocity_body"
@@ -135,6 +138,22 @@ def test_the_syntax_of_the_option_is_named_for_the_option():
     assert said == f"--derivative {BODY}: expected QUANTITY:VECTOR, such as {BODY}:q"
 
 
+def test_derivatives_may_be_separated_by_commas(tmp_path):
+    both = f"{BODY}:q,{BODY}:q_dot:jvp"
+    done = run("derive", "ZXZ", "--derivative", both, "--out", str(tmp_path), "--only", BODY)
+    assert done.exit_code == 0, done.exception
+    module = (tmp_path / "euler_zxz_intrinsic/euler_zxz_intrinsic.py").read_text("utf-8")
+    assert f"def {BODY}_jacobian_q(" in module
+    assert f"def {BODY}_jvp_q_dot(" in module
+
+
+@pytest.mark.parametrize("option", ["--timeout", "--memory"])
+@pytest.mark.parametrize("bad", ["nan", "0", "-1", "much"])
+def test_a_limit_is_a_positive_number(option, bad):
+    done = run("derive", "ZXZ", option, bad)
+    assert done.exit_code == 2 or isinstance(done.exception, RequestError)
+
+
 def test_an_axis_may_hold_roots(tmp_path):
     done = run("derive", "z(a) [0,sqrt(3),1](b)", "--out", str(tmp_path))
     assert done.exit_code == 0, done.exception
@@ -154,3 +173,14 @@ def test_kernels_are_one_step():
 
 def test_one_quantity_may_be_named_by_itself():
     assert [step.quantity.name for step in rs.derive("ZXZ", only=BODY).steps] == [BODY]
+
+
+def test_the_list_has_every_quantity_and_straight_columns():
+    lines = inventory().splitlines()
+    begin, end = map(lines.index, ("Quantities", "Targets of the kernels (--target NAME,...)"))
+    rows = lines[begin + 1 : end - 1]
+    assert {row.split()[0] for row in rows} == set(QUANTITIES)
+    shipped = lines[lines.index("Shipped derivations (rigidsym run NAME)") + 1 :]
+    titles = {re.match(r"  \S+ +", line).end() for line in shipped}
+    assert len(titles) == 1
+    assert "  rotation_vector or rotvec  R = " in inventory()

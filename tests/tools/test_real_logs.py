@@ -14,7 +14,7 @@ import rigidsym as rs
 from helpers.log_files import run
 from rigidsym.data.readers import reader_of
 from rigidsym.data.text import TextReader
-from rigidsym.errors import DataError
+from rigidsym.errors import DataError, RigidsymError
 from rigidsym.tools.evaluate.evaluation import evaluation
 from rigidsym.tools.identify.identification import identify_file
 
@@ -447,3 +447,12 @@ def test_long_chunks_with_gaps_go_through_pyarrow(tmp_path, monkeypatch):
     assert table.shape == (100, 3)
     assert np.isnan(table[:, 1]).all()
     np.testing.assert_array_equal(table[:, 2] - table[:, 0], 0.5)
+
+
+def test_a_file_that_is_no_table_is_not_quoted(motion, tmp_path):
+    path = text(tmp_path / "secret", "root:x:0:0:secret:", "daemon:x:1:1")
+    for work in (lambda: matrices(motion, path), lambda: identify_file(path)):
+        with pytest.raises(RigidsymError, match="among 1 column") as caught:
+            work()
+        assert "secret:" not in str(caught.value).replace(str(path), "")
+        assert "root" not in str(caught.value).replace(str(path), "")

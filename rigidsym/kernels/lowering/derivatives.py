@@ -30,8 +30,8 @@ _FREE = (
 )
 _TEXT = re.compile(r"(\w+)(?: by |:)(\w+)(?:[ :](\w+))?")
 _EXPECTED = (
-    'expected "QUANTITY by VECTOR", with jvp or vjp behind it for a product with a vector: '
-    '"angular_velocity_body by q", "angular_velocity_body by q jvp"'
+    "expected a quantity and a vector, such as angular_velocity_body:q, or a product with a "
+    "vector, such as angular_velocity_body:q:jvp or angular_velocity_body:q:vjp"
 )
 
 Asked = str | Iterable[str] | Mapping[str, str | Iterable[str]]

@@ -150,5 +150,5 @@ def _kept(header: ColumnNames | None, name: str) -> tuple[int, str]:
     if header is None:
         raise DataError("the columns have no names for --keep; --columns gives them")
     if (column := header.find([name])) is None:
-        raise DataError(f"no column {name} among {', '.join(header.names)}")
+        raise DataError(f"no column {name} among {header.listed}")
     return column, header.names[column]

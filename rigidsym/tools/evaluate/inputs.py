@@ -92,5 +92,5 @@ def _by_name(arguments: Sequence[FunctionArgument], header: ColumnNames) -> tupl
                 ", or --angles the coordinates in the order of the turns, "
                 "such as `--angles yaw,pitch,roll`"
             )
-        raise DataError(f"no column {', '.join(missing)} among {', '.join(header.names)}; {remedy}")
+        raise DataError(f"no column {', '.join(missing)} among {header.listed}; {remedy}")
     return tuple(columns)

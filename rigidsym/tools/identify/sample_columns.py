@@ -180,5 +180,5 @@ def _missing(wanted: Sequence[str], header: ColumnNames) -> list[str]:
     rest = [name for name, found in near.items() if not found]
     if rest:
         said = ", ".join(rest).replace(", ".join(MATRICES[0]), "r11, ..., r33 or qw, qx, qy, qz")
-        faults.append(f"no column {said} among {', '.join(there.values())}")
+        faults.append(f"no column {said} among {header.listed}")
     return faults
