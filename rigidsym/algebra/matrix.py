@@ -121,7 +121,8 @@ class RingMatrix:
         return RingMatrix(self.ring, tuple(rows))
 
     def is_zero(self) -> bool:
-        return not any(self.entries)
+        """Whether each entry reduces to zero."""
+        return all(self.ring.is_zero(entry) for row in self.rows for entry in row)
 
     def det(self) -> PolyElement:
         """The determinant: of three rows their triple product, else by the first row."""

@@ -145,10 +145,6 @@ class Ring:
     def is_zero(self, element: PolyElement) -> bool:
         return not self.reduce(element)
 
-    def are_zero(self, elements: Iterable[PolyElement]) -> bool:
-        """Whether each of the elements reduces to zero."""
-        return all(map(self.is_zero, elements))
-
     def can_derive(self, element: PolyElement) -> bool:
         """Whether every generator in the element has a time derivative in this ring."""
         used = (place for monomial in element for place, power in enumerate(monomial) if power)

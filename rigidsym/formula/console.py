@@ -50,19 +50,18 @@ class Console:
         )
         return [line.replace(_NO_BREAK, " ") for line in lines]
 
-    def scalar(self, sides: Sequence[Formula], value: Formula | sp.Expr) -> Iterator[str]:
+    def scalar(self, sides: Sequence[Formula], value: Formula | sp.Expr) -> list[str]:
         """The value behind its sides, or below them, where a long one is broken."""
         shown = value if isinstance(value, Formula) else formula_of(value, self.letters)
         heads = self._heads(sides)
         whole = f"{INDENT}{heads[0]}{self.text(shown)}"
         if columns(whole) <= self.width:
-            yield whole
-            return
+            return [whole]
         head = f"{INDENT}{heads[-1]}".removesuffix("= ")
-        if len(heads) > 1:
-            yield f"{INDENT}{heads[0].removesuffix(' = ')}"
-            head = " " * columns(head)
-        yield from self._hung(f"{head}= ", shown)
+        if len(heads) == 1:
+            return self._hung(f"{head}= ", shown)
+        first = f"{INDENT}{heads[0].removesuffix(' = ')}"
+        return [first, *self._hung(f"{' ' * columns(head)}= ", shown)]
 
     def matrix(
         self, sides: Sequence[Formula], matrix: sp.ImmutableMatrix, names: Sequence[Formula]
@@ -72,15 +71,15 @@ class Console:
         for lines in _forms(self._heads(sides), self._texts(rows)):
             if max(map(columns, lines)) <= self.width:
                 return lines
-        return list(self.listing(*zip(*listed_entries(names, matrix), strict=True)))
+        return self.listing(*zip(*listed_entries(names, matrix), strict=True))
 
-    def listing(
-        self, names: Iterable[Formula], entries: Iterable[Formula | sp.Expr]
-    ) -> Iterator[str]:
+    def listing(self, names: Iterable[Formula], entries: Iterable[Formula | sp.Expr]) -> list[str]:
         """A line an entry; long ones are broken."""
+        lines: list[str] = []
         for name, entry in zip(names, entries, strict=True):
             shown = entry if isinstance(entry, Formula) else formula_of(entry, self.letters)
-            yield from self._hung(f"{INDENT}{self.text(name)} = ", shown)
+            lines += self._hung(f"{INDENT}{self.text(name)} = ", shown)
+        return lines
 
     def numbered(self, number: str, sides: Sequence[Formula], matrix: Matrix | None) -> list[str]:
         """An equation behind its number, with the matrix that its sides are equal to, if any."""
@@ -96,13 +95,12 @@ class Console:
         short = f"{symbol} = "
         return [f"{short}{definition[0]} = ", short] if definition else [short]
 
-    def _hung(self, head: str, value: Formula) -> Iterator[str]:
+    def _hung(self, head: str, value: Formula) -> list[str]:
         """A value behind a head; where it is long, its other lines hang below its start."""
         room = self.width - columns(head)
         first, *others = break_lines(self.pen.write(value), room, len(INDENT), self.pen.blank)
-        yield head + first.text
-        for line in others:
-            yield " " * columns(head) + INDENT * line.depth + line.text
+        hanging = (" " * columns(head) + INDENT * line.depth + line.text for line in others)
+        return [head + first.text, *hanging]
 
 
 def _forms(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[list[str]]:

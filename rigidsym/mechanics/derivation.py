@@ -71,14 +71,6 @@ class Quantity(NamedTuple):
     definition: Formula = NOTHING  # how it follows: C⁻¹(dR/dt Rᵀ)
     source: Citation | None = None
 
-    @property
-    def is_vector(self) -> bool:
-        return self.shape == "vector"
-
-    @property
-    def is_scalar(self) -> bool:
-        return self.shape == "scalar"
-
 
 class Argument(NamedTuple):
     """A vector of inputs, (n,): the coordinates, their rates, an angular velocity."""
@@ -205,9 +197,7 @@ class Step:
     def shape(self) -> tuple[int, ...]:
         """Shape of one value in kernels and JSON."""
         rows, columns = self.expression.shape
-        if self.quantity.is_scalar:
-            return ()
-        return (rows,) if self.quantity.is_vector else (rows, columns)
+        return {"scalar": (), "vector": (rows,), "matrix": (rows, columns)}[self.quantity.shape]
 
 
 class Statement(NamedTuple):
@@ -376,7 +366,7 @@ class Derivation:
         for step in (*self.steps, *self.functions):
             if step.quantity.name == name:
                 value = self.spelled(step.expression)
-                return value[0] if step.quantity.is_scalar else value
+                return value[0] if step.quantity.shape == "scalar" else value
         raise AttributeError(f"{type(self).__name__} {self.name!r} has no quantity {name!r}")
 
     def __dir__(self) -> list[str]:

@@ -87,7 +87,7 @@ class Prover:
         enough to tell, the proof is *unproved* and holds what is left.
         """
         divisors = () if divided_by is None else (divided_by,)
-        if self._reduces_to_zero(residual):
+        if residual.is_zero():
             self._compare(residual, claim)
             return self._unless_zero(divisors, claim)
         left = self._decoded(residual)
@@ -134,9 +134,6 @@ class Prover:
                 f"{self.subject.name}: not a rotation, since {claim.text} fails; "
                 f"left over: {self._plain(self._decoded(residual))}"
             ) from error
-
-    def _reduces_to_zero(self, residual: RingMatrix) -> bool:
-        return self.codec.ring.are_zero(residual.entries)
 
     def _compare(self, residual: RingMatrix, claim: Formula) -> None:
         """Evaluate a residual that reduced to zero at a real point, from its factors, to 50 digits.

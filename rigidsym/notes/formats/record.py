@@ -237,9 +237,10 @@ def _vector(column: sp.ImmutableMatrix | None, names: Names) -> list[str] | None
 
 def _expression(step: Step, names: Names) -> Any:
     """A string, a list of them, or a list of rows, as the shape is."""
-    if step.quantity.is_scalar:
+    shape = step.quantity.shape
+    if shape == "scalar":
         return _plain(step.expression[0], names)
-    return _entries(step.expression, names, is_vector=step.quantity.is_vector)
+    return _entries(step.expression, names, is_vector=shape == "vector")
 
 
 def _entries(matrix: sp.ImmutableMatrix, names: Names, *, is_vector: bool) -> list[Any]:

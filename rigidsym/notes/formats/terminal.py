@@ -87,7 +87,7 @@ class _Steps:
         sides = (quantity.symbol, quantity.definition)
         if step.recursion is not None:
             yield from self.console.scalar(sides[:1], step.recursion)
-        elif quantity.is_scalar:
+        elif quantity.shape == "scalar":
             yield from self.console.scalar(sides, step.expression[0])
         else:
             names = entry_names(step, self.arguments)

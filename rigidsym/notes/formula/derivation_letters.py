@@ -71,7 +71,7 @@ def entry_names(step: Step, arguments: Iterable[Argument]) -> tuple[Formula, ...
     Vectors that are arguments of other quantities, such as the rates, have the names of those.
     """
     quantity = step.quantity
-    if quantity.is_scalar:
+    if quantity.shape == "scalar":
         return (quantity.symbol,)
     is_rates = quantity.name.startswith("rates_from_")
     used_as = "q_dot" if is_rates else quantity.name.replace("angular_velocity_", "omega_")

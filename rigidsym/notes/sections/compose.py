@@ -14,7 +14,7 @@ import sympy as sp
 
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import equal, indexed, row
+from rigidsym.formula.tree import NOTHING, equal, indexed, row
 from rigidsym.mechanics.derivation import Argument, Derivation, Step, claims_of
 from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, EULER_QUANTITIES
@@ -333,15 +333,16 @@ class Composer:
 def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
     """The numbered equation of a step."""
     quantity = step.quantity
-    definition = () if not quantity.definition.text else (quantity.definition,)
+    definition = () if quantity.definition == NOTHING else (quantity.definition,)
     proved, unproved = claims_of(step.proofs)
-    is_matrix = not (quantity.is_scalar or step.recursion)
+    is_scalar = quantity.shape == "scalar"
+    is_matrix = not (is_scalar or step.recursion)
     return Equation(
         sides=(quantity.symbol, step.recursion)
         if step.recursion
         else (quantity.symbol, *definition),
         matrix=step.expression if is_matrix else None,
-        scalar=step.expression[0] if quantity.is_scalar else None,
+        scalar=step.expression[0] if is_scalar else None,
         entries=entry_names(step, arguments),
         number=step.number,
         label=quantity.name,

@@ -54,10 +54,11 @@ def symbols(derivation: Derivation, letters: Letters) -> NoteTable:
     if found is not None and found.measure == "det [W, J]":
         bound = "rows by which the conditions bind the rates"
         known["J"] = (WITH_CONDITIONS,), (bound,), ("1",), ()
+    found_symbols = symbols_of(derivation)
     for step in derivation.steps:
         quantity = step.quantity
         about = "rates of the coordinates" if quantity.symbol == RATES else quantity.about
-        meaning = with_symbols(about, symbols_of(derivation))
+        meaning = with_symbols(about, found_symbols)
         row = ((quantity.symbol,), meaning, (unit_in_words(quantity.unit),))
         known.setdefault(str(row[0]), (*row, _reference(step)))
     return NoteTable(
