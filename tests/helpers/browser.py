@@ -10,6 +10,7 @@ import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
+from itertools import groupby
 from pathlib import Path
 
 import pytest
@@ -29,23 +30,30 @@ _POLICY = re.compile(r'<meta http-equiv="Content-Security-Policy"[^>]*>')  # axe
 _LOOK = """
 async function look(page) {
   const frame = document.createElement("iframe");
-  frame.style.cssText = `border: 0; width: ${page.width}px; height: 900px`;
+  frame.style.cssText = `border: 0; width: ${page.widths[0]}px; height: 900px`;
   const loaded = new Promise((resolve) => (frame.onload = resolve));
   frame.srcdoc = page.html;
   document.body.append(frame);
   await loaded;
-  const view = frame.contentWindow, root = view.document.documentElement;
+  const seen = [];
+  for (const width of page.widths) {
+    frame.style.width = `${width}px`;
+    seen.push(await measured(frame.contentWindow, width, page.with_axe));
+  }
+  frame.remove();
+  return seen;
+}
+async function measured(view, width, with_axe) {
+  const root = view.document.documentElement;
   const shown = [...root.querySelectorAll(".formula, .scroll")].filter((box) => box.offsetParent);
   const wide = shown.filter((box) => box.scrollWidth > box.clientWidth + 1);
-  const seen = {
-    width: page.width,
+  return {
+    width,
     page_width: root.scrollWidth,
     formulas: shown.length,
     wide: wide.map((box) => box.textContent.slice(0, 80)),
-    faults: page.with_axe ? await faults(view) : [],
+    faults: with_axe ? await faults(view) : [],
   };
-  frame.remove();
-  return seen;
 }
 async function faults(view) {
   const script = view.document.createElement("script");
@@ -57,7 +65,7 @@ async function faults(view) {
 }
 (async () => {
   const seen = [];
-  for (const page of pages) seen.push(await look(page));
+  for (const page of pages) seen.push(...(await look(page)));
   const result = document.createElement("pre");
   result.id = "result";
   result.textContent = JSON.stringify(seen);
@@ -90,8 +98,12 @@ def look_at(
     """Each page, given as HTML, in a frame of its width in pixels. Fails on a console message."""
     data = json.dumps(
         [
-            {"html": _POLICY.sub("", html), "width": width, "with_axe": with_axe}
-            for html, width in pages
+            {
+                "html": _POLICY.sub("", html),
+                "widths": [width for _, width in same],  # loaded once for all of them
+                "with_axe": with_axe,
+            }
+            for html, same in groupby(pages, lambda page: page[0])
         ]
     ).replace("</", "<\\/")
     axe = json.dumps(axe_source()).replace("</", "<\\/")
