@@ -4,11 +4,6 @@ def _longest(block, dtype, shape):
     return max(min(_LONGEST, _CACHE // held) // dtype.itemsize, _SHORTEST)
 
 
-def _are_alike(arrays):
-    """Whether the axes before the last are the same."""
-    return all(array.shape[:-1] == arrays[0].shape[:-1] for array in arrays[1:])
-
-
 def _columns(array, dtype):
     """The components of an array, each a contiguous copy in the given type."""
     if array.ndim < 3:
@@ -31,33 +26,24 @@ def _quiet():
 _quietly = _quiet()
 
 
-def _compute(result, leading, block, scalar, arrays, shape, out, threads):
-    """Fill the result by the scalar twin, by one call of the block, or by many."""
-    dtype, count = result.dtype, prod(leading)
-    if count <= _FEWEST and dtype is _DOUBLE and _are_alike(arrays):
-        rows = zip(
-            *[array.reshape(count, array.shape[-1]).tolist() for array in arrays]
-        )
-        values = [scalar(*[c for part in row for c in part]) for row in rows]
-        result[...] = np.array(values).reshape(result.shape)
-    elif count <= _SHORTEST or count <= _longest(block, dtype, shape):
-        columns, views = [], count < _FEW and out is None
-        for array in arrays:
-            if views and array.ndim < 3 and array.dtype is dtype:
-                columns.extend(array.T)
-            else:
-                columns.extend(_columns(array, dtype))
-        _quietly(_evaluate, result, block, columns, shape)
+def _compute(result, leading, block, arrays, shape, out, threads):
+    """Fill the result by one call of the block, or by many."""
+    count = prod(leading)
+    if count <= _SHORTEST or count <= _longest(block, result.dtype, shape):
+        vectors = [_columns(array, result.dtype) for array in arrays]
+        _quietly(_evaluate, result, block, vectors, shape, False)
     else:
         inputs = [_unshared(array, out) for array in arrays]
         _fill(result, block, inputs, shape, threads)
 
 
-def _place(result, values, shape):
-    """Write entries, one array each, to where they belong."""
+def _place(result, values, shape, is_even):
+    """Write entries to where they belong; they are arrays of one length each if all is even."""
     if len(shape) == 2 and result.flags.c_contiguous:
         result, shape = result.reshape(*result.shape[:-2], prod(shape)), shape[:1]
-    if len(shape) == 1:
+    if len(shape) == 1 and is_even and float not in map(type, values):
+        result.T[...] = values
+    elif len(shape) == 1:
         for k, value in enumerate(values):
             result[..., k] = value
     else:
@@ -80,10 +66,8 @@ def _fill(result, block, arrays, shape, threads):
     def work(places):
         with np.errstate(all="ignore"):
             for place in places:
-                parts = [_columns(array[place], result.dtype) for array in wide]
-                _place(
-                    result[place], block(*[c for part in parts for c in part]), shape
-                )
+                vectors = [_columns(array[place], result.dtype) for array in wide]
+                _place(result[place], block(*vectors), shape, False)
 
     places = list(_places(leading, longest))
     if threads == 1:

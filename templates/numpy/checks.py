@@ -12,7 +12,7 @@ def _checked(name, value):
         raise TypeError(
             f"{name}: got dtype {array.dtype}; expected float64, float32 or integers"
         )
-    if array.shape[-1:] != _SHAPES[name]:
+    if array.shape[-1:] != (_WIDTHS[name],):
         raise ValueError(f"{name}: got shape {array.shape}; {_expected(name)}")
     return array.astype(_SINGLE, copy=False) if array.dtype.char == "f" else array
 

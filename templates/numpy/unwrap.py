@@ -53,10 +53,8 @@ def _unwrapped_turns(turns_of, coordinates_of, count, q, *constants):
     `turns_of` gives `count` angles, and for three turns what relates both sets of a rotation.
     """
     samples, lost = _samples(q)
-    given = [*np.moveaxis(samples, -1, 0)]
-    given += [
-        np.atleast_1d(c) for array in constants for c in np.moveaxis(array, -1, 0)
-    ]
+    given = [np.moveaxis(samples, -1, 0)]
+    given += [np.moveaxis(np.atleast_2d(array), -1, 0) for array in constants]
     found = [np.asarray(value, samples.dtype) for value in turns_of(*given)]
     angles = [np.broadcast_to(angle, lost.shape) for angle in found[:3]]
     if len(found) > 3:
@@ -65,8 +63,7 @@ def _unwrapped_turns(turns_of, coordinates_of, count, q, *constants):
         angles = _nearer_set(angles, base, *halves)
     followed = [angle + _whole_turns(angle) for angle in angles[:count]]
     values = [
-        np.broadcast_to(value, lost.shape)
-        for value in coordinates_of(*given, *followed)
+        np.broadcast_to(value, lost.shape) for value in coordinates_of(*given, followed)
     ]
     return _with_gaps(np.stack(values, axis=-1).astype(samples.dtype), lost)
 

@@ -100,6 +100,31 @@ def test_any_number_of_orientations(name, count):
     assert_allclose(found[places], expected, atol=1e-13)
 
 
+@pytest.mark.parametrize("sequence", ["ZXZ", "ZYX"])
+@pytest.mark.parametrize("count", [6, 7, 79, 80, 119, 120, 239, 240, 4095, 4096])
+@pytest.mark.parametrize("arrange", [np.ascontiguousarray, np.asfortranarray])
+def test_every_way_to_compute_gives_the_same_within_rounding(sequence, count, arrange):
+    """One by one, by sines or by tangents, of each angle or of all at once."""
+    rows = [0, count // 2, count - 1]
+    for name in QUANTITIES:
+        arrays = [arrange(array) for array in inputs(name, (count,))]
+        function = getattr(module(sequence), name)
+        expected = one_by_one(name, [a[rows] for a in arrays], sequence)
+        found, out = function(*arrays), np.empty((count, *QUANTITIES[name][1]))
+        assert function(*arrays, out=out) is out
+        assert_array_equal(out, found)
+        assert_allclose(found[rows], expected, rtol=1e-13, atol=1e-13)
+
+
+@pytest.mark.parametrize("count", [1, 7, 150, 300])
+def test_a_component_that_is_a_result_survives_an_out_that_overlaps(count):
+    functions = rs.derive("z(phi)", ["angular_velocity_body"]).kernels().load()
+    memory = np.random.default_rng(3).uniform(-3, 3, 3 * count)
+    q, q_dot, out = np.zeros((count, 1)), memory[:count, np.newaxis], memory.reshape(count, 3)
+    expected = functions.angular_velocity_body(q, q_dot.copy())
+    assert_array_equal(functions.angular_velocity_body(q, q_dot, out=out), expected)
+
+
 def test_axes_broadcast_against_each_other_over_many_blocks():
     q, q_dot = inputs("angular_velocity_space", (200,))
     found = module().angular_velocity_space(q[:, np.newaxis], q_dot)
@@ -236,7 +261,7 @@ def test_what_is_not_finite_goes_where_it_belongs(bad, leading, dtype):
 
 
 @pytest.mark.parametrize("name", [n for n in QUANTITIES if "inverse" in n or "rates_from" in n])
-@pytest.mark.parametrize("leading", [(), (2,)])
+@pytest.mark.parametrize("leading", [(), (2,), (150,)])
 def test_a_pole_gives_no_finite_number_and_no_warning(name, leading):
     arrays = inputs(name, leading)
     arrays[0][..., 1] = 0.0

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from types import ModuleType
 
 from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import FUNCTIONS, Call, Kernel, Name, Program, functions_of, last_order
+from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.numpy.unwrap import unwrap_text
 from rigidsym.kernels.targets.text import python, remarks
@@ -26,8 +27,8 @@ RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError", "e
 OPTIONS = ("out: Array | None = None", "threads: int = 1")  # of every function of arrays
 
 _BY_SIZE = (
-    "Batches of at least 200 orientations take sines and cosines by another formula than smaller "
-    "ones, so that the last bits of a row may depend on the number of rows."
+    "Small batches, of fewer than 240 rows at most, take sines and cosines by another formula than "
+    "larger ones, so that the last bits of a row may depend on the number of rows."
 )
 _SPELLED = len("float, float, float, float")  # longer types are those of tuples of any length
 
@@ -127,6 +128,7 @@ def _function(kernel: Kernel, at_once: str) -> dict[str, str]:
     ]
     shape = str(kernel.shape)
     given = [block, scalar, shape, "out", "threads", *python.passed(kernel, "np")]
+    points = [_row(argument.components) for argument in kernel.arguments]
     nesting = ("a float", "a tuple", "a tuple of rows")[len(kernel.shape)]
     twin = [f"`{kernel.name}` of one orientation; floats to {nesting}."]
     return {
@@ -144,9 +146,7 @@ def _function(kernel: Kernel, at_once: str) -> dict[str, str]:
         ),
         "scalar_about": docstring(twin, indent=4),
         "scalar_body": "\n".join([*_scalar_lines(kernel), _scalar_return(kernel)]),
-        "exceptional": bracketed(
-            8, "return _exceptional(", [block, shape, *kernel.components], ")"
-        ),
+        "exceptional": bracketed(8, "return _exceptional(", [block, shape, *points], ")"),
         "block": _block(kernel),
     }
 
@@ -190,25 +190,70 @@ def _scalar_lines(kernel: Kernel) -> Iterator[str]:
 
 
 def _block(kernel: Kernel) -> str:
-    """The function of arrays, one a component."""
-    signature = bracketed(0, f"def _{kernel.name}(", kernel.components, "):")
-    outputs = list(map(infix, kernel.outputs))
-    return "\n".join([signature, *_block_lines(_fitted(kernel)), _tuple(4, "return ", outputs)])
+    """The function of arrays with the components on their first axis.
+
+    An output that is a component is a copy, since writing results may change the arguments.
+    """
+    names = Names([*kernel.components, *(a.name for a in kernel.assignments)])
+    vectors = [names.fresh(argument.name) for argument in kernel.arguments]
+    parts = kernel.components
+    outputs = [
+        f"+{output.text}" if isinstance(output, Name) and output.text in parts else infix(output)
+        for output in kernel.outputs
+    ]
+    lines = [bracketed(0, f"def _{kernel.name}(", vectors, "):")]
+    for vector, argument in zip(vectors, kernel.arguments, strict=True):
+        lines += _unpacked(vector, argument.components, kernel.used)
+    return "\n".join([*lines, *_block_lines(_fitted(kernel)), _tuple(4, "return ", outputs)])
+
+
+def _unpacked(vector: str, components: Sequence[str], used: Container[str]) -> list[str]:
+    """The components of an array that are used; an index costs half of what unpacking does."""
+    found = {name: f"{vector}[{k}]" for k, name in enumerate(components) if name in used}
+    line = f"    {', '.join(found)} = {', '.join(found.values())}"
+    if len(line) <= WIDTH:
+        return [line] if found else []
+    return [f"    {name} = {place}" for name, place in found.items()]
 
 
 def _block_lines(kernel: Kernel) -> Iterator[str]:
-    """The assignments on arrays, the sine and the cosine of one angle in one call."""
+    """The assignments on arrays, the sines and the cosines of several angles in one call."""
+    together = _gathered(kernel)
     for name, value in kernel.statements:
-        function, argument = (
-            (value.function, value.argument) if isinstance(value, Call) else ("", Name(""))
-        )
-        pair = kernel.sines.get(argument, {})
+        function = value.function if isinstance(value, Call) else ""
+        pair = kernel.sines.get(value.argument, {}) if isinstance(value, Call) else {}
         if len(pair) < 2 or function not in pair:
             yield _BLOCK.text(name, value)
-        elif function == "sin" and isinstance(value, Call):
-            yield _BLOCK.call(f"{name}, {pair['cos']}", "_sin_cos", value)
+        elif name in together:
+            angles = together[name]
+            names = [kernel.sines[angle][part] for part in ("sin", "cos") for angle in angles]
+            given = [angle.text for angle in angles]
+            yield bracketed(4, f"{', '.join(names)} = _sin_cos(", given, ")")
         if function == "cos" and name in kernel.delicate:
-            yield bracketed(4, f"{name} = _sharp(", [name, argument.text], ")")
+            yield bracketed(4, f"{name} = _sharp(", [name, value.argument.text], ")")
+
+
+def _gathered(kernel: Kernel) -> dict[str, list[Name]]:
+    """Angles whose sines and cosines are taken in one call, by the name of their first sine.
+
+    Neighbours of one vector, as many as a line has room for; not with a cosine that divides,
+    which is taken anew.
+    """
+    vectors = {name: a.name for a in kernel.arguments for name in a.components}
+    found: dict[str, list[Name]] = {}
+    last, room = "", 0
+    for angle, pair in kernel.sines.items():
+        if len(pair) < 2:
+            continue
+        is_alone = angle.text not in vectors or pair["cos"] in kernel.delicate
+        vector = "" if is_alone else vectors[angle.text]
+        needed = len(", ".join(pair.values())) + len(", ")
+        if not vector or vector != last or needed > room:
+            first = min(pair.values(), key=[*kernel.calls].index)
+            found[first], room = [], WIDTH - len("     = _sin_cos(")
+        found[first].append(angle)
+        last, room = vector, room - needed
+    return found
 
 
 def _scalar_return(kernel: Kernel) -> str:
