@@ -32,8 +32,14 @@ COMMAND = "from rigidsym.commands.cli import main; main()"
 
 
 def interpreters() -> list[str]:
+    """Those that start; a shim of pyenv may name one that does not."""
     named = (shutil.which(f"python3.{minor}") for minor in range(11, 20))
-    return [path for path in named if path] or [sys.executable]
+    started = [path for path in named if path and _starts(path)]
+    return started or [sys.executable]
+
+
+def _starts(path: str) -> bool:
+    return subprocess.run([path, "-c", ""], capture_output=True, check=False).returncode == 0
 
 
 def requirements(*, lowest: bool) -> list[str]:

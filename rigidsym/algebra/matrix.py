@@ -131,9 +131,6 @@ class RingMatrix:
             return self.ring.dot(zip(first, cross(self.ring, second, third), strict=True))
         if len(self.rows) == 1:
             return self.rows[0][0]
-        if len(self.rows) == 2:
-            (a, b), (c, d) = self.rows
-            return self.ring.dot(((a, d),), minus=((b, c),))
         signed = ((-1) ** j * self._minor(0, j).det() for j in range(len(self.rows)))
         return self.ring.dot(zip(self.rows[0], signed, strict=True))
 

@@ -76,7 +76,7 @@ def signs_outside(node: sp.Expr) -> sp.Expr:
     if node.is_Mul:
         flipped = [part for part in parts if part.is_Add and all(map(is_negative, part.args))]
         kept = [-part if part in flipped else part for part in parts]
-        if flipped and len(parts) > 1:
+        if flipped:
             return sp.Mul(*kept) if len(flipped) % 2 == 0 else sp.Mul(-1, *kept)
     return node.func(*parts)
 
@@ -122,7 +122,7 @@ def listed_entries(
     """
     rows, columns = matrix.shape
     places = [(i, j) for i in range(rows) for j in range(columns)]
-    if rows == 1 or matrix != matrix.T:
+    if matrix != matrix.T:
         return [*zip(names, matrix, strict=True)]
     return [
         (equal(*dict.fromkeys((names[columns * i + j], names[columns * j + i]))), matrix[i, j])

@@ -300,3 +300,10 @@ class TestMatrix:
         vector = (self.s, self.c, self.ring.zero)
         longer = tuple(self.ring.reduce(self.s * entry) for entry in vector)
         assert not any(cross(self.ring, vector, longer))
+
+
+def test_a_ring_without_relations_leaves_its_elements_as_they_are():
+    ring = ring_of(x, y)
+    ring.set_relations([])
+    a, b = ring.polynomials.gens
+    assert ring.reduce(a**2 - b) == a**2 - b

@@ -91,6 +91,12 @@ def _outside(text: str, *signs: str) -> list[str]:
     return parts
 
 
+def _number(exponent: str) -> Value:
+    """A whole number, or one as 3/2."""
+    above, _, below = exponent.partition("/")
+    return mp.mpf(int(above)) / int(below) if below else int(above)
+
+
 def _read(side: str, known: Values) -> Value | None:
     try:
         return Formula(side, known).value()
@@ -146,7 +152,7 @@ class Formula:
         found = self._atom()
         while self._has("^"):
             exponent = "".join(self._group())
-            found = found.T if exponent == r"\mathsfT" else found ** int(exponent)
+            found = found.T if exponent == r"\mathsfT" else found ** _number(exponent)
         return found
 
     def _group(self) -> list[str]:
