@@ -68,6 +68,66 @@ static int may_overlap(const Rows *one, const npy_intp width, const Rows *other,
     return low[0] < high[1] && low[1] < high[0];
 }
 
+/* The memory of a large result, kept for the next of its size when nobody refers to it any more:
+   fresh pages cost as much time as filling them. Blocks of up to 32 MB malloc keeps itself; what is
+   kept here, the system may take back. */
+#if defined(__linux__) && defined(MADV_FREE)
+enum { LEAST_KEPT = 1 << 25, MOST_KEPT = 1 << 28, PAGE = 1 << 21 }; /* bytes */
+
+static struct {
+    void *data;
+    size_t bytes;
+} kept;
+
+static void keep(PyObject *owner)
+{
+    free(kept.data);
+    kept.data = PyCapsule_GetPointer(owner, NULL);
+    kept.bytes = (size_t)(uintptr_t)PyCapsule_GetContext(owner);
+    madvise(kept.data, kept.bytes, MADV_FREE);
+}
+
+static PyObject *new_large(const int axes, const npy_intp *shape, const int type, const size_t bytes)
+{
+    void *data = NULL;
+    if (kept.bytes == bytes) {
+        data = kept.data;
+        kept.data = NULL;
+        kept.bytes = 0;
+    } else if (posix_memalign(&data, PAGE, bytes)) {
+        return PyErr_NoMemory();
+    } else {
+        madvise(data, bytes, MADV_HUGEPAGE);
+    }
+    PyObject *owner = PyCapsule_New(data, NULL, keep);
+    if (owner == NULL) {
+        free(data);
+        return NULL;
+    }
+    PyCapsule_SetContext(owner, (void *)(uintptr_t)bytes);
+    PyObject *result = PyArray_SimpleNewFromData(axes, shape, type, data);
+    if (result == NULL || PyArray_SetBaseObject((PyArrayObject *)result, owner) < 0) {
+        Py_XDECREF(result);
+        Py_XDECREF(result == NULL ? owner : NULL);
+        return NULL;
+    }
+    return result;
+}
+#else
+enum { LEAST_KEPT = 1, MOST_KEPT = 0 };
+#define new_large(axes, shape, type, bytes) NULL
+#endif
+
+static PyObject *new_result(const int axes, const npy_intp *shape, const int type)
+{
+    const npy_intp each = type == NPY_FLOAT ? sizeof(float) : sizeof(double);
+    const npy_intp bytes = each * PyArray_MultiplyList(shape, axes);
+    if (bytes > LEAST_KEPT && bytes <= MOST_KEPT) {
+        return new_large(axes, shape, type, (size_t)bytes);
+    }
+    return PyArray_SimpleNew(axes, shape, type);
+}
+
 /* function(*arrays, out): the result, or None. */
 static PyObject *call_at_once(PyObject *self, PyObject *const *given, const Py_ssize_t many)
 {
@@ -106,7 +166,7 @@ static PyObject *call_at_once(PyObject *self, PyObject *const *given, const Py_s
     }
     PyObject *result = given[count];
     if (result == Py_None) {
-        result = PyArray_SimpleNew(axes, shape, type);
+        result = new_result(axes, shape, type);
         if (result == NULL) {
             return NULL;
         }

@@ -33,6 +33,7 @@ COMPILERS = [
     for name in ("gcc", "clang")
 ]
 CPU = Path("/proc/cpuinfo").read_text("utf-8") if Path("/proc/cpuinfo").is_file() else ""
+STREAMS = ("-mavx2", "-DSTREAMED=1") if "avx2" in CPU else ()  # past the caches from one row up
 ROTATIONS = ("ZXZ", "rotation_vector", "quaternion")
 NAME = "euler_zxz_intrinsic"
 
@@ -154,7 +155,7 @@ def test_sine_and_cosine_keep_two_eps_of_their_size_at_any_angle(sources, contra
 def test_sanitizers_find_nothing_at_any_size(tmp_path, compiler):
     rs.derive("ZXZ").kernels("c", conversions=True).write(tmp_path)
     (tmp_path / "main.c").write_text(MAIN, encoding="utf-8")
-    flags = ("-std=c99", "-g", "-O1", "-fsanitize=address,undefined,float-cast-overflow")
+    flags = ("-std=c99", "-g", "-O1", "-fsanitize=address,undefined,float-cast-overflow", *STREAMS)
     made = f"main_{compiler}"
     run(
         *(compiler, *flags, "-fno-sanitize-recover=all", f"{NAME}.c", "main.c"),
@@ -171,15 +172,16 @@ def test_sanitizers_find_nothing_at_any_size(tmp_path, compiler):
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)
-@pytest.mark.parametrize("shuffled", [True, False])
-def test_rows_stand_where_they_belong(sources, compiler, shuffled):
+@pytest.mark.parametrize("way", ["shuffled", "plain", *(["streamed"] if STREAMS else [])])
+def test_rows_stand_where_they_belong(sources, compiler, way):
     """Any count, from any place in a line of the cache, into rows side by side and apart."""
     text = (sources / f"{NAME}.c").read_text(encoding="utf-8")
     assert text.count("#define SHUFFLED\n") == 1
-    name = f"rows_{compiler}_{shuffled}"
-    kept = text if shuffled else text.replace("#define SHUFFLED\n", "")
+    name = f"rows_{compiler}_{way}"
+    kept = text.replace("#define SHUFFLED\n", "") if way == "plain" else text
     (sources / f"{name}.c").write_text(kept, encoding="utf-8")
-    flags = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off")
+    flags = ["-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off"]
+    flags += STREAMS if way == "streamed" else ()
     run(compiler, *flags, f"{name}.c", "-o", f"{name}.so", "-lm", cwd=sources)
     library = ctypes.CDLL(str(sources / f"{name}.so"))
     for dtype, suffix in ((np.float64, ""), (np.float32, "f")):
@@ -200,6 +202,14 @@ def test_rows_stand_where_they_belong(sources, compiler, shuffled):
                     assert np.array_equal(found[:count, :9], expected[start : start + count])
                     assert (found[count:] == 7).all()
                     assert (found[:, 9:] == 7).all()
+                for height in (count, 112, 113):
+                    columns = np.full((10, height), 7.0, dtype)
+                    given, filled = (ctypes.c_void_p(a.ctypes.data) for a in (q[start:], columns))
+                    steps, across = (map(ctypes.c_ssize_t, pair) for pair in ((3, 1), (1, height)))
+                    many(ctypes.c_size_t(count), given, *steps, filled, *across)
+                    assert np.array_equal(columns[:9, :count].T, expected[start : start + count])
+                    assert (columns[:9, count:] == 7).all()
+                    assert (columns[9] == 7).all()
 
 
 @pytest.mark.parametrize("flag", ["-msse2", *(["-mavx2"] if "avx2" in CPU else [])])
@@ -216,7 +226,9 @@ def test_a_tile_of_any_width_is_taken_and_given_back(sources, compiler, flag):
         )
         for n in widths:
             take = f"take_rows{suffix}({n}, from, tile);"
-            give = f"give_rows{suffix}({n}, tile, to);"
+            give = (
+                f"give_rows{suffix}({n}, tile, to, STREAMED < SIZE_MAX && (uintptr_t)to % 32 == 0);"
+            )
             text += f"\n    if (n == {n}) {{\n        {take}\n        {give}\n    }}"
         text += "\n}\n"
     name = f"tiles_{compiler}_{flag.strip('-')}"
@@ -488,6 +500,25 @@ def test_a_matrix_fills_an_out_of_any_strides(both, out):
     q = np.random.default_rng(4).uniform(-3, 3, (5, 3))
     assert compiled.rotation_matrix(q, out=out) is out
     np.testing.assert_array_equal(out, compiled.rotation_matrix(q))
+
+
+def test_the_memory_of_a_large_result_is_used_again_when_nobody_refers_to_it(both):
+    compiled, plain = both
+    q = np.random.default_rng(5).uniform(-3, 3, (480_000, 3))  # 35 MB of matrices
+    first, second = compiled.rotation_matrix(q), compiled.rotation_matrix(-q)
+    assert not np.shares_memory(first, second)
+    some, place = first[1000:1005], first.ctypes.data
+    del first
+    third = compiled.rotation_matrix(q[::-1])
+    assert not np.shares_memory(some, third)
+    np.testing.assert_allclose(some, plain.rotation_matrix(q[1000:1005]), atol=1e-15)
+    np.testing.assert_allclose(second[-3:], plain.rotation_matrix(-q[-3:]), atol=1e-15)
+    np.testing.assert_allclose(third[:3], plain.rotation_matrix(q[:-4:-1]), atol=1e-15)
+    del some
+    again = compiled.rotation_matrix(q)
+    assert again.ctypes.data == place or not sys.platform.startswith("linux")
+    assert again.flags.writeable
+    np.testing.assert_array_equal(again[::-1][:50], third[:50])
 
 
 def test_outs_are_refused_as_in_numpy(both):

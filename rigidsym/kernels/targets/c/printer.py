@@ -26,7 +26,8 @@ from rigidsym.system import resources
 _WORDS = (
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf NULL angle_of "
     "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE MOST SHUFFLED SHUFFLE "
-    "INLINED tile found rows count at i j HELPER CLONES CLONED shared expected apart"
+    "INLINED STREAMED STREAM STREAMf END_STREAM streams tile found rows count at i j HELPER CLONES "
+    "CLONED shared expected apart"
 )
 RESERVED = numpy.RESERVED | {
     *_WORDS.split(),
