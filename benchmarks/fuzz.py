@@ -20,9 +20,11 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from random import Random
 from time import process_time
+from typing import Any
 
 import click
 import numpy as np
@@ -153,6 +155,10 @@ def _prepare(folder: Path) -> None:
     matrices = kernels("ZXZ", only="rotation_matrix").rotation_matrix(angles).reshape(4, 9)
     table = np.hstack([angles, matrices])
     np.savetxt(folder / "log.csv", table, delimiter=",", header=",".join(COLUMNS), comments="")
+    notes = [f'{k},"calm, {k}",{a!r},{b!r},{c!r}' for k, (a, b, c) in enumerate(angles.tolist())]
+    notes[2] = "2,gusts,,NA,0.5"
+    head = "# flight 7\ntime [s],note,phi [deg],theta [mrad],psi"
+    (folder / "notes.csv").write_text("\n".join([head, *notes, ""]), "utf-8")
     np.save(folder / "angles.npy", angles)
     np.save(folder / "cloud.npy", np.abs(table[:, :4]))
     (folder / "part.stl").write_bytes(box())
@@ -222,6 +228,7 @@ def _data_file(rng: Random, folder: Path) -> tuple[str, Callable[[], object]]:
         (
             ("log.csv", identify_file),
             ("log.csv", _evaluate),
+            ("notes.csv", partial(_evaluate, **_choices(rng))),
             ("cloud.npy", inertia_of),
             ("angles.npy", _evaluate),
         )
@@ -231,9 +238,14 @@ def _data_file(rng: Random, folder: Path) -> tuple[str, Callable[[], object]]:
     return repr(path.read_bytes()[:2000]), lambda: str(work(path))
 
 
-def _evaluate(path: Path) -> object:
-    motion = derive("ZXZ", only="rotation_matrix")
-    return evaluation(motion, ("rotation_matrix",), path, path.with_name("result.npy")).run()
+def _choices(rng: Random) -> dict[str, Any]:
+    keep = rng.choice(((), ("time",), ("note", "time")))
+    return {"keep": keep, "missing": rng.choice(("error", "nan", "drop")), "ending": ".csv"}
+
+
+def _evaluate(path: Path, *, ending: str = ".npy", **choices: Any) -> object:
+    motion, result = derive("ZXZ", only="rotation_matrix"), path.with_name(f"result{ending}")
+    return evaluation(motion, ("rotation_matrix",), path, result, **choices).run()
 
 
 def _mesh(rng: Random, folder: Path) -> tuple[str, Callable[[], object]]:

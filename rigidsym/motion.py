@@ -265,7 +265,8 @@ def derive(
     rotation = rotation_from(model) if isinstance(model, str) else model
     if not isinstance(rotation, RotationModel):
         raise TypeError(
-            f"expected a rotation, such as 'ZXZ' or rs.EulerAngles('ZXZ'), got {model!r}"
+            "expected a rotation, such as 'ZXZ', rs.EulerAngles('ZXZ'), or rs.given(matrix, "
+            f"name='mine') for a matrix R(q); got {model!r}"
         )
     if not isinstance(body, Body | None):
         raise TypeError(f"expected a body, such as rs.solid('cone'), got {body!r}")

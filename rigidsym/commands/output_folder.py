@@ -73,7 +73,10 @@ def _report_other_files(output: Output, folder: Path) -> None:
         message(f"overwriting {folder}, which held a different rotation (use --out to keep both)")
     left = [*_kept(before.kernels, now.kernels, folder), *_kept(before.note, now.note, folder)]
     if left:
-        message(f"{folder} also holds older files that `check` does not see: {', '.join(left)}")
+        message(
+            f"{folder} keeps files made with other options, "
+            f"which `check` no longer compares: {', '.join(left)}"
+        )
 
 
 def _is_same(before: DerivationSpec, now: DerivationSpec) -> bool:
