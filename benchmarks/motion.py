@@ -16,6 +16,7 @@ import sympy as sp
 from sympy.physics.mechanics import LagrangesMethod, ReferenceFrame, dynamicsymbols, inertia
 
 import rigidsym as rs
+from benchmarks.ensembles import ensembles
 from benchmarks.measure import Settings, interleaved, progress
 from benchmarks.report import Cell, Column, Figure, Report, Table
 
@@ -26,8 +27,6 @@ MOST = {"symmetric": (0.3, 60), "asymmetric": (1.0, 180)}  # seconds, operations
 BRICK = {"A": 0.001894220, "B": 0.006211019, "C": 0.007194665}  # slug ft², NASA/TM-2015-218675
 TOP = {"A": 1.3, "C": 0.7, "g": 9.81, "l": 0.4, "m": 2.0}
 BODIES = 100_000
-STEPS = 1000  # of 0.05 s; the ensembles are timed with a part of the bodies and scaled
-PART = 1000
 
 
 def run(settings: Settings) -> Report:
@@ -55,12 +54,7 @@ def run(settings: Settings) -> Report:
             (Column("by"), Column("ns", ".0f")),
             tuple(right_hand_sides(repeats)),
         ),
-        Table(
-            f"{BODIES:,} free bodies for {STEPS:,} steps of 0.05 s, scaled from {PART:,}: seconds, "
-            "largest error of an orientation",
-            (Column("by"), Column("s", ".0f"), Column("error", ".1e")),
-            tuple(ensembles()),
-        ),
+        ensembles(settings.bodies, repeats),
     ]
     figures = [
         Figure(
@@ -244,96 +238,3 @@ def _heyoka(motion: rs.Motion, y: Any, parameters: Any) -> Callable[[], Any]:
     function = hy.cfunc(expressions, vars=[hy.expression(s.name) for s in symbols])
     columns = np.ascontiguousarray(y.T)
     return lambda: function(columns).T
-
-
-# ensembles
-
-MOMENTS = {"A": 1.0, "B": 1.5, "C": 2.1}
-
-
-def ensembles() -> Iterator[tuple[Cell, ...]]:
-    """Free bodies that turn at 1 rad/s about random axes; the preparation is not timed."""
-    progress("ensembles")
-    omega = np.random.default_rng(2).normal(size=(PART, 3))
-    omega /= np.linalg.norm(omega, axis=1)[:, None]
-    free = rs.derive("unit_quaternion", ["energy"], body=rs.principal_moments(A, B, C), potential=0)
-    start = {"w": 1, "x": 0, "y": 0, "z": 0}
-    exact = np.array(
-        [
-            free.simulate(
-                start | {"angular_velocity_body": each},
-                *(MOMENTS, 0.05 * STEPS),
-                method="exact",
-                samples=2,
-            ).q[-1]
-            for each in omega[:5]
-        ]
-    )
-    for name, action in (("rigidsym, simulate_many", _ours), *_heyokas()):
-        seconds, found = action(free, omega)
-        some = found[: len(exact)]
-        sign = np.sign(np.sum(some * exact, axis=1))[:, None]
-        yield name, seconds * BODIES / PART, float(2 * np.abs(sign * some - exact).max())
-    progress()
-
-
-def _ours(free: rs.Motion, omega: Any) -> tuple[float, Any]:
-    """Less the time of one step, in which the kernels are made."""
-    start = {"w": 1, "x": 0, "y": 0, "z": 0, "angular_velocity_body": omega}
-    spent = []
-    for count in (1, STEPS):
-        begun = perf_counter()
-        found = free.simulate_many(start, MOMENTS, 0.05 * count, samples=2, step=0.05)
-        spent.append(perf_counter() - begun)
-    return spent[1] - spent[0], found.states[-1, :, :4]
-
-
-def _heyokas() -> Iterator[tuple[str, Any]]:
-    if find_spec("heyoka") is None:
-        return
-    yield "heyoka, ensemble_propagate_for", _heyoka_ensemble
-    yield "heyoka, ensemble_propagate_for_batch", _heyoka_batches
-
-
-def _system() -> Any:
-    """Euler's equations and those of the quaternion, as heyoka takes them."""
-    import heyoka as hy
-
-    w, x, y, z, a, b, c = held = hy.make_vars("w", "x", "y", "z", "a", "b", "c")
-    first, second, third = MOMENTS.values()
-    slopes = [-x * a - y * b - z * c, w * a + y * c - z * b, w * b + z * a - x * c]
-    slopes = [slope / 2 for slope in (*slopes, w * c + x * b - y * a)]
-    slopes += [(second - third) / first * b * c, (third - first) / second * c * a]
-    return list(zip(held, [*slopes, (first - second) / third * a * b], strict=True))
-
-
-def _heyoka_ensemble(_: rs.Motion, omega: Any) -> tuple[float, Any]:
-    import heyoka as hy
-
-    made = hy.taylor_adaptive(_system(), [1.0] + [0.0] * 6)
-
-    def begun(each: Any, k: int) -> Any:
-        each.time, each.state[:] = 0.0, [1, 0, 0, 0, *omega[k]]
-        return each
-
-    start = perf_counter()
-    found = hy.ensemble_propagate_for(made, 0.05 * STEPS, len(omega), begun)
-    return perf_counter() - start, np.array([each[0].state[:4] for each in found])
-
-
-def _heyoka_batches(_: rs.Motion, omega: Any) -> tuple[float, Any]:
-    import heyoka as hy
-
-    size = hy.recommended_simd_size()
-    groups = omega[: len(omega) // size * size].reshape(-1, size, 3)
-    made = hy.taylor_adaptive_batch(_system(), np.full((7, size), 0.1))
-
-    def begun(each: Any, k: int) -> Any:
-        each.set_time(0.0)
-        each.state[:4], each.state[4:] = [[1.0], [0.0], [0.0], [0.0]], groups[k].T
-        return each
-
-    start = perf_counter()
-    found = hy.ensemble_propagate_for_batch(made, 0.05 * STEPS, len(groups), begun)
-    spent = (perf_counter() - start) * len(omega) / groups[..., 0].size
-    return spent, np.concatenate([each[0].state[:4].T for each in found])

@@ -100,6 +100,7 @@ def _settings(given: argparse.Namespace) -> Settings:
         repeats=given.repeats,
         size=given.size,
         samples=given.samples,
+        bodies=given.bodies,
         files=given.files,
         resume=given.resume,
         fresh=given.fresh,
@@ -117,6 +118,7 @@ def _parser() -> argparse.ArgumentParser:
         ("--repeats", None, "of each measurement, instead of its own number"),
         ("--size", usual.size, "orientations in a batch of the kernels"),
         ("--samples", usual.samples, "orientations of each kind whose errors are taken"),
+        ("--bodies", usual.bodies, "in the ensembles of motion; 100000 take minutes"),
         ("--files", usual.files, "inputs of each kind of fuzz, and kills"),
     ):
         parser.add_argument(option, type=_count, default=default, metavar="N", help=about)

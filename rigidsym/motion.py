@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +31,7 @@ from rigidsym.mechanics.quantities.mass import BODY_ALONE, INERTIA_QUANTITIES
 from rigidsym.models.forces import forces_on
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
+from rigidsym.system.cluster import on_cluster
 from rigidsym.system.limits import time_limit
 
 if TYPE_CHECKING:
@@ -159,14 +161,19 @@ class Motion(Derivation):
         initial: Mapping[str, Any],
         parameters: Mapping[str, Any],
         t_end: float,
+        *,
+        scheduler: str | None = None,
         **options: Any,
     ) -> Ensemble:
         """Many motions at once: values of `initial` and `parameters` may be arrays, (m,).
 
-        For the options see `rigidsym.simulation.ensemble.simulate_ensemble`.
+        `scheduler` is the address of a Dask cluster that computes them. For the options see
+        `rigidsym.simulation.ensemble.simulate_ensemble`.
         """
         from rigidsym.simulation.ensemble import simulate_ensemble
 
+        if scheduler is not None:
+            options["mapped"] = partial(on_cluster, scheduler)
         return simulate_ensemble(self, initial, parameters, t_end, **options)
 
     def page(

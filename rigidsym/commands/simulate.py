@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,6 +19,7 @@ from rigidsym.pipeline import motion_of, read
 from rigidsym.simulation.animation import WRITERS
 from rigidsym.simulation.plot import PICTURES, check_picture
 from rigidsym.simulation.solver import METHODS, OMEGA, no_rotation
+from rigidsym.system.files import whole_file
 from rigidsym.system.progress import bar
 
 if TYPE_CHECKING:
@@ -26,6 +27,23 @@ if TYPE_CHECKING:
     from rigidsym.simulation.trajectory import Trajectory
 
 _NUMBERS = {"type": NAMED_NUMBER, "multiple": True, "metavar": "NAME=NUMBER"}
+_ARCHIVE = ".npz"
+
+
+def _grid(context: click.Context, _: object, given: Sequence[str]) -> dict[str, Any]:
+    """Values by name, each axis of the grid as NAME=FROM:TO:COUNT."""
+    axes = {}
+    for text in given:
+        name, _, values = text.partition("=")
+        try:
+            first, last, count = values.split(":")
+            axes[name] = np.linspace(float(first), float(last), int(count))
+        except ValueError:
+            raise click.UsageError(
+                f"--grid {text}: expected NAME=FROM:TO:COUNT, as in theta=0.1:1.2:50", context
+            ) from None
+    points = np.meshgrid(*axes.values(), indexing="ij")
+    return {name: each.ravel() for name, each in zip(axes, points, strict=True)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +65,9 @@ class SimulationOptions:
         show_default=True,
         help="lie takes steps in the rotation group; exact is for free bodies.",
     )
-    samples: int = option("--samples", type=click.IntRange(2), default=1001, show_default=True)
+    samples: int | None = option(
+        "--samples", type=click.IntRange(2), help="Times.  [default: 1001; of an ensemble 101]"
+    )
     ensemble: int | None = option(
         "--ensemble", type=click.IntRange(1), help="Simulate this many motions at once."
     )
@@ -57,7 +77,17 @@ class SimulationOptions:
         help="With --ensemble: standard deviation of an initial value or a parameter.",
     )
     seed: int = option("--seed", type=int, default=0, show_default=True, help="Of --ensemble.")
-    out: Path | None = option("--out", type=FILE, help="CSV, NPY or Parquet file.")
+    grid: dict[str, Any] = option(
+        "--grid",
+        multiple=True,
+        callback=_grid,
+        metavar="NAME=FROM:TO:COUNT",
+        help="An ensemble over values of an initial value or a parameter; may be repeated.",
+    )
+    scheduler: str | None = option(
+        "--scheduler", metavar="ADDRESS", help="Compute the ensemble on a Dask cluster."
+    )
+    out: Path | None = option("--out", type=FILE, help="CSV, NPY, NPZ or Parquet file.")
     plot: Path | None = option("--plot", type=FILE, help="PNG, SVG or PDF picture.")
     animate: Path | None = option(
         "--animate", type=FILE, help="GIF, MP4 (needs ffmpeg), or an HTML page that plays."
@@ -77,21 +107,24 @@ def command(source: str, options: SimulationOptions) -> None:
     integral drifts.
     """
     if options.out is not None:
-        check_ending(options.out)
+        check_ending(options.out, _ARCHIVE)
     for path, endings in ((options.plot, PICTURES), (options.animate, (*WRITERS, ".html"))):
         if path is not None:
             check_picture(path, endings)
     motion = motion_of(read(source))
-    start = _start(motion, dict(options.initial))
-    if options.ensemble is not None:
-        _ensemble(motion, start, options)
+    if options.ensemble is not None or options.grid:
+        _ensemble(motion, options)
         return
+    for name in ("spread", "scheduler"):
+        if getattr(options, name):
+            raise click.UsageError(f"--{name} is for ensembles; add --ensemble or --grid")
+    start = _start(motion, dict(options.initial))
     with bar(motion.name) as progress:
         found = motion.simulate(
             start,
             dict(options.constants),
             options.t_end,
-            samples=options.samples,
+            samples=options.samples or 1001,
             method=options.method,
             progress=progress,
         )
@@ -117,38 +150,59 @@ def _animated(motion: Motion, found: Trajectory, options: SimulationOptions) -> 
     return path
 
 
-def _ensemble(motion: Motion, start: dict[str, Any], options: SimulationOptions) -> None:
-    """Motions from initial values and parameters with normally distributed deviations."""
+def _ensemble(motion: Motion, options: SimulationOptions) -> None:
+    """Motions over a grid, or with normally distributed initial values and parameters."""
     if options.plot is not None or options.animate is not None:
-        raise click.UsageError("--plot and --animate show one motion; leave --ensemble out")
+        raise click.UsageError("--plot and --animate show one motion; leave the ensemble out")
+    if options.method != METHODS[0]:
+        raise click.UsageError("an ensemble takes steps of fixed length; leave --method out")
+    if options.grid and options.ensemble is not None:
+        raise click.UsageError("--grid and --ensemble: expected one of them")
     generator = np.random.default_rng(options.seed)
-    given: tuple[dict[str, Any], dict[str, Any]] = (start, dict(options.constants))
+    initial: dict[str, Any] = dict(options.initial)
+    constants: dict[str, Any] = dict(options.constants)
+    names = {name for each in motion.arguments if each.name == "parameters" for name in each.names}
+    for name, values in options.grid.items():
+        (constants if name in names else initial)[name] = values
+    count = options.ensemble or len(next(iter(options.grid.values())))
     for name, deviation in options.spread:
-        place = next((values for values in given if name in values), None)
-        if place is None:
+        known = constants if name in names else initial
+        if name not in known:
             raise click.UsageError(f"--spread {name}: no value of it is given")
-        place[name] = generator.normal(place[name], deviation, options.ensemble)
-    if set(start).isdisjoint(name for name, _ in options.spread):
-        first = next(iter(start))
-        start[first] = np.full(options.ensemble or 1, start[first])
+        known[name] = generator.normal(known[name], deviation, count)
+    start = _start(motion, initial)
+    first = next(iter(start))
+    start[first] = np.broadcast_to(start[first], count)
     with bar(motion.name) as progress:
         found = motion.simulate_many(
-            *given, options.t_end, samples=options.samples, progress=progress
+            start,
+            constants,
+            options.t_end,
+            samples=options.samples or 101,
+            scheduler=options.scheduler,
+            progress=progress,
         )
     _reported(found, options.out)
 
 
 def _reported(found: Trajectory | Ensemble, out: Path | None) -> None:
     click.echo(found.report())
-    if out is not None:
-        columns = found.columns()
+    if out is None:
+        return
+    columns = found.columns()
+    if out.suffix == _ARCHIVE:
+        others = ("t", "states", "rotation_matrix")  # arrays of more axes than a table has
+        whole: dict[str, Any] = {n: getattr(found, n) for n in others if hasattr(found, n)}
+        with whole_file(out) as file:
+            np.savez(file, **columns | whole)
+    else:
         rows = np.column_stack([*columns.values()])
         with table_writer(out, tuple(columns), rows.dtype) as writer:
             writer.append(rows)
-        click.echo(out)
+    click.echo(out)
 
 
-def _start(motion: Motion, given: Mapping[str, float]) -> dict[str, Any]:
+def _start(motion: Motion, given: Mapping[str, Any]) -> dict[str, Any]:
     """The initial values, with 0 and no rotation for what is not given."""
     start: dict[str, Any] = dict(no_rotation(motion.model))
     if set(start).isdisjoint(given):
@@ -157,5 +211,6 @@ def _start(motion: Motion, given: Mapping[str, float]) -> dict[str, Any]:
         start = dict.fromkeys(start, 0.0) | dict(given)
     turning = [start.pop(f"{OMEGA}_{k}", None) for k in (1, 2, 3)]
     if any(value is not None for value in turning):
-        return start | {OMEGA: [value or 0.0 for value in turning]}
+        parts = np.broadcast_arrays(*(0.0 if value is None else value for value in turning))
+        return start | {OMEGA: np.stack(parts, axis=-1)}
     return dict.fromkeys(motion.argument("q_dot").names, 0.0) | start

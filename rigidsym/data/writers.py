@@ -33,11 +33,12 @@ class TableWriter(Protocol):
         """Write what the end of the file needs."""
 
 
-def check_ending(path: Path) -> None:
-    """Raise RequestError for a file that no writer writes, naming the endings that are known."""
-    if path.suffix.lower() not in ENDINGS:
+def check_ending(path: Path, *others: str) -> None:
+    """Raise RequestError for an ending that is neither a writer's nor among the others."""
+    if path.suffix.lower() not in (*ENDINGS, *others):
         found = f"the ending {path.suffix}" if path.suffix else "no ending"
-        raise RequestError(f"{path} has {found}; a result ends in {', '.join(ENDINGS)}")
+        known = ", ".join((*ENDINGS, *others))
+        raise RequestError(f"{path} has {found}; a result ends in {known}")
 
 
 @contextmanager

@@ -1,26 +1,41 @@
-"""Many motions at once: one kernel call a stage, for all initial states and parameters."""
+"""Many motions at once, in blocks of states whose stages stay in the processor's cache.
+
+Large ensembles are computed in C if a compiler is installed, in threads or on a Dask cluster.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 
-from rigidsym.errors import MissingExtra, ModelError
+from rigidsym.errors import MissingExtra, MissingTool, ModelError
+from rigidsym.kernels.module import KernelModule, generate
+from rigidsym.kernels.targets.c.compiling import compiler
+from rigidsym.kernels.targets.c.stepper import CompiledSteps
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.simulation.problem import OMEGA, Problem
 from rigidsym.simulation.sampled_motion import Array, relative_changes
 from rigidsym.simulation.solver import with_motion
 
 _ANGLE = 0.05  # radians that the fastest body turns in a step
-_BLOCK = 1000  # motions whose stages stay in the cache
+_BLOCK = 512  # motions whose stages stay in the cache
+_WORTH_COMPILING = 1_000_000  # steps of a motion
+
+Block = tuple[Array, Array | None]  # initial states, and parameters of all or of each
+Mapped = Callable[
+    [Callable[[Block], Array], Iterable[int], Callable[[int], Block]], Iterable[tuple[int, Array]]
+]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Ensemble:
-    """m motions at n moments, of states with k components; SI units, angles in radians."""
+    """m motions at n times, of states with k components; SI units, angles in radians."""
 
     name: str  # of the derivation
     names: tuple[str, ...]  # of the components of the state
@@ -56,26 +71,26 @@ def simulate_ensemble(
     *,
     samples: int = 101,
     step: float | None = None,
+    target: str | None = None,
+    mapped: Mapped | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Ensemble:
     """Motions from t = 0 to `t_end` seconds, by steps of order 8 and of the same length for all.
 
     `initial` and `parameters` are those of `simulate`; each value may be an array, (m,), or for
     angular_velocity_body (m, 3). Without a `step` in seconds, the fastest body turns 0.05 rad in
-    one. The drift shows whether this was short enough. Raises ModelError as `simulate` does, and
-    for arrays whose lengths differ.
+    one. The drift shows whether this was short enough. `target` is that of the kernels, "numpy" or
+    "c"; without it, c for long work if there is a compiler. `mapped` applies a function to the
+    blocks elsewhere than in threads of this process. Raises ModelError as `simulate` does, and for
+    arrays whose lengths differ.
     """
     if not (np.isfinite(t_end) and t_end > 0):
         raise ModelError(f"the end time is {t_end}; expected a positive number of seconds")
-    try:
-        from scipy.integrate import DOP853
-    except ModuleNotFoundError as error:
-        raise MissingExtra("a simulation", "simulate") from error
     members = _members(initial, parameters)
     first = Problem(with_motion(derivation), *_of(0, initial, parameters))
-    constants = np.array(first.constants, float)
     start = first.state_of(initial)
     start = np.broadcast_to(start, (members, start.shape[-1]))
+    constants = np.array(first.constants, float)
     if first.constants and any(map(np.ndim, parameters.values())):
         names = first.names["parameters"]
         known = [np.broadcast_to(parameters.get(name, 1.0), members) for name in names]
@@ -83,17 +98,31 @@ def simulate_ensemble(
     times = np.linspace(0.0, t_end, samples)
     speed = float(np.linalg.norm(first.omega(start), axis=1).max()) or 1.0
     count = max(1, int(np.ceil(times[1] / (step or _ANGLE / speed))))
+    if target is None:
+        is_long = members * count * (samples - 1) >= _WORTH_COMPILING
+        target = "c" if is_long and _has_compiler() else "numpy"
+    slopes = replace(
+        first.derivation.select(()), functions=(first.derivation.step("state_derivative"),)
+    )
+    steps = Steps(kernels=generate(slopes, target), times=times, count=count)
     states = np.empty((samples, *start.shape))
     blocks = range(0, members, _BLOCK)
-    for done, at in enumerate(blocks):
-        these = slice(at, at + _BLOCK)
-        given = (constants if constants.ndim < 2 else constants[these],) if len(constants) else ()
-        method = _RungeKutta(DOP853, first.kernels.state_derivative, given)
-        states[0, these] = start[these]
-        for k in range(1, samples):
-            states[k, these] = method.moved(states[k - 1, these], times[k - 1], times[k], count)
-            if progress is not None:
-                progress((done + k / (samples - 1)) / len(blocks))
+
+    def block(at: int) -> Block:
+        own = constants if constants.ndim < 2 else constants[at : at + _BLOCK]
+        return start[at : at + _BLOCK], own if len(constants) else None
+
+    done = 0
+
+    def advanced() -> None:
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(min(1.0, done / (len(blocks) * (samples - 1))))
+
+    work = steps.of if mapped else partial(steps.of, advanced=advanced)
+    for at, found in (mapped or _in_threads)(work, blocks, block):
+        states[:, at : at + _BLOCK] = found
     momentum = np.linalg.norm(first.omega(states[0]) @ first.inertia, axis=1)
     changes = relative_changes(first.integrals(times[:, None], states, constants), momentum)
     return Ensemble(
@@ -103,6 +132,22 @@ def simulate_ensemble(
         states=states,
         drift={name: values.max(axis=0) for name, values in changes.items()},
     )
+
+
+def _has_compiler() -> bool:
+    try:
+        return bool(compiler())
+    except MissingTool:
+        return False
+
+
+def _in_threads(
+    function: Callable[[Block], Array], blocks: Iterable[int], block: Callable[[int], Block]
+) -> Iterator[tuple[int, Array]]:
+    """Each block with its result, in order."""
+    blocks = list(blocks)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        yield from zip(blocks, pool.map(function, map(block, blocks)), strict=True)
 
 
 def _members(*given: Mapping[str, Any]) -> int:
@@ -129,22 +174,57 @@ def _of(k: int, *given: Mapping[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
-class _RungeKutta:
-    """Steps of an explicit method with the tableau (A, B, C) of one of SciPy's."""
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Steps:
+    """How blocks of states move on: data, so that it can be sent to another machine."""
 
-    def __init__(self, method: Any, slopes: Callable[..., Array], given: tuple[Array, ...]) -> None:
-        count = method.n_stages
-        self.sums, self.nodes, self.weights = method.A[:count, :count], method.C[:count], method.B
-        self.slopes, self.given = slopes, given
+    kernels: KernelModule  # with state_derivative
+    times: Array  # (n,), s
+    count: int  # of steps from one time to the next
 
-    def moved(self, y: Array, start: float, end: float, count: int) -> Array:
-        """The states at `end`, after `count` steps."""
-        h = (end - start) / count
-        stages = np.empty((len(self.nodes), *y.shape))
+    def of(self, block: Block, advanced: Callable[[], None] = lambda: None) -> Array:
+        """The states at all times, (n, m, k)."""
+        start, parameters = block
+        states = np.empty((len(self.times), *start.shape))
+        states[0] = start
+        method = _method(self.kernels.name, self.kernels.target, tuple(self.kernels.files.items()))
+        for k, (t, end) in enumerate(zip(self.times[:-1], self.times[1:], strict=True)):
+            h = (end - t) / self.count
+            states[k + 1] = method.moved(states[k], t, h, self.count, parameters)
+            advanced()
+        return states
+
+
+@lru_cache(maxsize=8)
+def _method(name: str, target: str, files: tuple[tuple[str, str], ...]) -> Any:
+    """Steps of order 8 with the slopes of generated kernels."""
+    try:
+        from scipy.integrate import DOP853
+    except ModuleNotFoundError as error:
+        raise MissingExtra("a simulation", "simulate") from error
+    kernels = KernelModule(name=name, target=target, files=dict(files)).load()
+    n = DOP853.n_stages
+    made = CompiledSteps if target == "c" else RungeKutta
+    return made(kernels, DOP853.C[:n], DOP853.A[:n, :n], DOP853.B)
+
+
+class RungeKutta:
+    """Steps of an explicit method with these nodes, weights (n, n) and sums (n,)."""
+
+    def __init__(self, kernels: Any, nodes: Array, weights: Array, sums: Array) -> None:
+        self.slopes = kernels.state_derivative
+        self.nodes, self.weights, self.sums = nodes, weights, sums
+
+    def moved(self, y: Array, t: float, h: float, count: int, parameters: Array | None) -> Array:
+        """The states (m, k) after `count` steps of length h from the time t."""
+        stages, lost = np.empty((len(self.nodes), *y.shape)), np.zeros_like(y)
         flat = stages.reshape(len(stages), -1)
+        given = () if parameters is None else (parameters,)
         for step in range(count):
             for k, node in enumerate(self.nodes):
-                moved = y + h * (self.sums[k, :k] @ flat[:k]).reshape(y.shape)
-                stages[k] = self.slopes(start + (step + node) * h, moved, *self.given)
-            y = y + h * (self.weights @ flat).reshape(y.shape)
+                moved = y + h * (self.weights[k, :k] @ flat[:k]).reshape(y.shape)
+                stages[k] = self.slopes(t + (step + node) * h, moved, *given)
+            added = h * (self.sums @ flat).reshape(y.shape) + lost
+            before, y = y, y + added
+            lost = added - (y - before)  # by rounding (Kahan)
         return y

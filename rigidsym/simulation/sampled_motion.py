@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Samples:
-    """A motion at n moments, of k coordinates; SI units, angles in radians."""
+    """A motion at n times, of k coordinates; SI units, angles in radians."""
 
     name: str  # of the derivation
     coordinates: tuple[str, ...]
@@ -54,7 +54,7 @@ class Samples:
 
     def report(self) -> str:
         """How long it is, and the drift of each first integral."""
-        lines = [f"{self.name}: {len(self.t)} moments from 0 to {self.t[-1]:g} s"]
+        lines = [f"{self.name}: {len(self.t)} times from 0 to {self.t[-1]:g} s"]
         lines += [text for text in (*self.remarks, self.ended) if text]
         width = max(map(len, self.first_integrals), default=0)
         lines += [f"  {name:{width}}  drift {value:.1e}" for name, value in self.drift.items()]

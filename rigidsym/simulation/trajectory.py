@@ -12,7 +12,7 @@ from rigidsym.simulation.sampled_motion import Samples
 
 
 class Trajectory(Samples):
-    """A motion at n moments, of k coordinates; SI units, angles in radians."""
+    """A motion at n times, of k coordinates; SI units, angles in radians."""
 
     def plot(self, path: str | Path) -> Path:
         """Pictures of the motion: PNG, SVG or PDF by the ending. Needs Matplotlib."""

@@ -12,6 +12,7 @@ from helpers.command import call
 A, C = sp.symbols("A C")
 TOP = {"A": 1.3, "C": 0.7, "m": 2.0, "g": 9.81, "l": 0.4}
 START = {"phi": 0.0, "psi": 0.0, "phi_dot": 0.1, "theta_dot": 0.0, "psi_dot": 20.0}
+MOMENTS = (1, sp.Rational(3, 2), sp.Rational(21, 10))
 TILTS = np.array([0.4, 0.8, 1.2])
 
 
@@ -29,6 +30,87 @@ def test_an_ensemble_is_its_motions_one_by_one(top):
     for k in (0, 2):
         one = top.simulate(START | {"theta": TILTS[k]}, TOP | {"m": weights[k]}, 2.0, samples=11)
         assert np.abs(found.states[:, k, :3] - one.q).max() < 1e-8
+
+
+@pytest.mark.parametrize("weights", [2.0, np.linspace(1.0, 3.0, 700)], ids=["one", "of each"])
+def test_c_takes_the_steps_that_numpy_takes(top, weights):
+    """More motions than a block holds, with parameters of all or of each"""
+    start = START | {"theta": np.linspace(0.3, 1.2, 700)}
+    options = {"samples": 3, "step": 0.01}
+    shares = []
+    one, other = (
+        top.simulate_many(
+            start, TOP | {"m": weights}, 0.2, target=target, progress=shares.append, **options
+        )
+        for target in ("numpy", "c")
+    )
+    assert np.abs(one.states - other.states).max() < 1e-13 * np.abs(one.states).max()
+    assert shares[-1] == 1.0
+
+
+def test_a_body_without_parameters_takes_its_steps_in_c():
+    ball = rs.derive("z(phi)", body=rs.principal_moments(1, 1, 1), potential="-cos(phi)")
+    found = [
+        ball.simulate_many({"phi": TILTS, "phi_dot": 0}, {}, 1.0, target=target, samples=2)
+        for target in ("numpy", "c")
+    ]
+    assert np.abs(found[0].states - found[1].states).max() < 1e-14
+
+
+def test_rounding_does_not_add_up_over_a_thousand_steps():
+    free = rs.derive("unit_quaternion", body=rs.principal_moments(*MOMENTS), potential=0)
+    omega = np.random.default_rng(2).normal(size=(5, 3))
+    start = {"w": 1, "x": 0, "y": 0, "z": 0}
+    found = free.simulate_many(
+        start | {"angular_velocity_body": omega}, {}, 50.0, samples=2, step=0.05, target="numpy"
+    )
+    for end, each in zip(found.states[-1], omega, strict=True):
+        given = start | {"angular_velocity_body": each}
+        exact = free.simulate(given, {}, 50.0, method="exact", samples=2).angular_velocity_body[-1]
+        assert np.abs(end[4:] - exact).max() < 2e-14
+
+
+def test_a_cluster_gives_the_same_ensemble(top):
+    from distributed import LocalCluster
+
+    start = START | {"theta": np.linspace(0.3, 1.2, 600)}
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        found = top.simulate_many(start, TOP, 0.1, samples=2, scheduler=address)
+    assert np.array_equal(found.states, top.simulate_many(start, TOP, 0.1, samples=2).states)
+
+
+def test_the_command_simulates_a_grid_and_writes_every_kind_of_file(tmp_path):
+    sets = [f"--set={name}={value}" for name, value in TOP.items() if name != "m"]
+    grid = ["--grid=theta=0.2:1.2:5", "--grid=m=1:2:3", "--time=0.1", "--samples=3"]
+    given = ["simulate", "heavy_symmetric_top", *sets, *grid, "--initial=psi_dot=15"]
+    done = call(*given, "--out=grid.npz", cwd=tmp_path)
+    assert "15 motions from 0 to 0.1 s" in done.stdout
+    with np.load(tmp_path / "grid.npz") as found:
+        assert found["states"].shape == (3, 15, 6)
+        assert sorted(set(found["theta_start"])) == pytest.approx(np.linspace(0.2, 1.2, 5))
+    call(*given, "--out=grid.parquet", cwd=tmp_path)
+    from pyarrow import parquet
+
+    assert parquet.read_table(tmp_path / "grid.parquet")["theta_start"].to_pylist()[-1] == 1.2
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--grid=theta=0.2:1.2"], "expected NAME=FROM:TO:COUNT"),
+        (["--grid=theta=0:1:2", "--ensemble=3"], "--grid and --ensemble: expected one of them"),
+        (["--spread=theta=1"], "--spread is for ensembles; add --ensemble or --grid"),
+        (["--ensemble=3", "--spread=theta=1"], "--spread theta: no value of it is given"),
+        (["--ensemble=3", "--method=lie"], "an ensemble takes steps of fixed length"),
+        (["--ensemble=3", "--out=x.foo"], "a result ends in .npy, .csv, .txt, .parquet, .pq, .npz"),
+    ],
+)
+def test_what_an_ensemble_cannot_be_is_said(options, message, tmp_path):
+    wrong = call("simulate", "heavy_symmetric_top", *options, cwd=tmp_path, status=2)
+    assert message in wrong.stderr
 
 
 def test_arrays_of_different_lengths_are_refused(top):

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 
@@ -57,7 +57,7 @@ def build(source: Path, *, portable: bool = False) -> Path:
     handle, draft = tempfile.mkstemp(dir=folder, prefix=".", suffix=".so")
     os.close(handle)
     try:
-        _compile([str(path) for path in needed[:2]], draft, portable=portable)
+        compile_library(needed[:2], draft, portable=portable)
         Path(draft).chmod(0o755)
         os.replace(draft, library)
     finally:
@@ -65,20 +65,17 @@ def build(source: Path, *, portable: bool = False) -> Path:
     return needed[3]
 
 
-def load_built(name: str, files: Mapping[str, str]) -> ModuleType:
-    """The module of some files, compiled once a machine and kept in the user's cache folder."""
+def load_built(main: str, files: Mapping[str, str], make: Callable[[Path], object]) -> ModuleType:
+    """The module `main` of some files, compiled once a machine and kept in the user's cache folder.
+
+    `make` compiles what is in a folder.
+    """
     import numpy as np
 
     program = Path(compiler())
     machine = sysconfig.get_config_var("EXT_SUFFIX"), sys.version, _processor()
     depends = _FLAGS, _OF_THIS_PROCESSOR, str(program), program.stat().st_mtime_ns, *machine
-    return load(
-        f"{name}_c",
-        files,
-        lambda folder: build(folder / f"{name}.c"),
-        *depends,
-        np.__version__,
-    )
+    return load(main, files, make, *depends, np.__version__)
 
 
 def _processor() -> str:
@@ -101,11 +98,12 @@ def compiler() -> str:
     )
 
 
-def _compile(sources: list[str], library: str, *, portable: bool) -> None:
+def compile_library(sources: Sequence[Path], library: str, *, portable: bool = False) -> None:
+    """A shared library of C sources. Raises MissingTool and ToolFailed as `build` does."""
     import numpy as np
 
     folders = [sysconfig.get_paths()["include"], np.get_include()]
-    command = [compiler(), *_FLAGS, *(f"-I{folder}" for folder in folders), *sources]
+    command = [compiler(), *_FLAGS, *(f"-I{folder}" for folder in folders), *map(str, sources)]
     tail = ["-o", library, "-lm"]
     problem = _run([*command, *(_PORTABLE if portable else _OF_THIS_PROCESSOR), *tail])
     if problem:

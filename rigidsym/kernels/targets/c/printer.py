@@ -57,9 +57,9 @@ def render(program: Program, **options: Any) -> dict[str, str]:
 
 def load(name: str, files: Mapping[str, str]) -> ModuleType:
     """The Python module, compiled once a machine."""
-    from rigidsym.kernels.targets.c.compiling import load_built
+    from rigidsym.kernels.targets.c.compiling import build, load_built
 
-    return load_built(name, files)
+    return load_built(f"{name}_c", files, lambda folder: build(folder / f"{name}.c"))
 
 
 def _source(
