@@ -90,7 +90,7 @@ class SimulationOptions:
     out: Path | None = option("--out", type=FILE, help="CSV, NPY, NPZ or Parquet file.")
     plot: Path | None = option("--plot", type=FILE, help="PNG, SVG or PDF picture.")
     animate: Path | None = option(
-        "--animate", type=FILE, help="GIF, MP4 (needs ffmpeg), or an HTML page that plays."
+        "--animate", type=FILE, help="GIF, MP4 (extra video), or an HTML page that plays."
     )
 
 

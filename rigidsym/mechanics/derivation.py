@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, Self
 
@@ -146,7 +146,7 @@ class OfBody:
     arguments: Mapping[str, Argument]  # all of them, by name
     steps: Mapping[str, Found] = field(default_factory=dict)
     body: RigidBody | None = None
-    functions: Mapping[str, Step] = field(default_factory=dict)  # of the state, for kernels
+    functions: Mapping[str, Callable[[], Step]] = field(default_factory=dict)  # of the state
     first_integrals: tuple[FirstIntegral, ...] = ()
     consequences: tuple[Consequence, ...] = ()
     table: Mapping[str, Quantity] = field(default_factory=dict)  # of the quantities of motion
@@ -299,14 +299,16 @@ class Derivation:
     first_integrals: tuple[FirstIntegral, ...] = ()  # where equations of motion were asked for
     consequences: tuple[Consequence, ...] = ()  # of the equations of motion
     forces: Forces | None = None  # where equations of motion were asked for
-    functions: tuple[Step, ...] = ()  # for kernels only: they repeat what the note has in parts
+    functions: Mapping[str, Step] = field(default_factory=dict)  # for kernels: they repeat parts
 
     def step(self, quantity: str) -> Step:
         """The step that defines a quantity; raises QuantityError for one that is not here."""
-        every = {step.quantity.name: step for step in (*self.steps, *self.functions)}
-        if quantity in every:
-            return every[quantity]
-        names = list(every)
+        for step in self.steps:
+            if step.quantity.name == quantity:
+                return step
+        if quantity in self.functions:
+            return self.functions[quantity]
+        names = [*(step.quantity.name for step in self.steps), *self.functions]
         raise QuantityError(f"{self.name} has no quantity {quantity!r}; {offer(quantity, names)}")
 
     def select(self, names: Sequence[str]) -> Self:
@@ -363,10 +365,10 @@ class Derivation:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name in ("steps", "functions"):  # before there are any
             raise AttributeError(name)
-        for step in (*self.steps, *self.functions):
-            if step.quantity.name == name:
-                value = self.spelled(step.expression)
-                return value[0] if step.quantity.shape == "scalar" else value
+        if name in self.functions or any(step.quantity.name == name for step in self.steps):
+            step = self.step(name)
+            value = self.spelled(step.expression)
+            return value[0] if step.quantity.shape == "scalar" else value
         raise AttributeError(f"{type(self).__name__} {self.name!r} has no quantity {name!r}")
 
     def __dir__(self) -> list[str]:

@@ -12,9 +12,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from functools import partial
+from typing import Any, NamedTuple
 
 import sympy as sp
 
@@ -110,7 +111,9 @@ def derive(
         model=model,
         arguments=tuple(arguments.values()),
         steps=tuple(map(inputs.of, _numbered(found, {**_table(values), **of_body.table}))),
-        functions=tuple(map(inputs.of, of_body.functions.values())),
+        functions=_LazySteps(
+            {name: partial(inputs.of_made, make) for name, make in of_body.functions.items()}
+        ),
         singularities=singularities,
         body=of_body.body,
         forces=forces,
@@ -183,11 +186,35 @@ def _numbered(found: Mapping[str, Found], table: Mapping[str, Quantity]) -> Iter
         )
 
 
+class _LazySteps(Mapping[str, Step]):
+    """Steps by name, each derived when it is first asked for."""
+
+    def __init__(self, makers: Mapping[str, Callable[[], Step]]) -> None:
+        self._makers, self._made = makers, dict[str, Step]()
+
+    def __getitem__(self, name: str) -> Step:
+        if name not in self._made:
+            self._made[name] = self._makers[name]()
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._makers)
+
+    def __len__(self) -> int:
+        return len(self._makers)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return dict, (dict(self),)
+
+
 class _Inputs(NamedTuple):
     """What quantities may depend on besides the inputs that their table names."""
 
     constants: Collection[sp.Symbol]
     is_driven: bool  # whether the time may occur by itself
+
+    def of_made(self, make: Callable[[], Step]) -> Step:
+        return self.of(make())
 
     def of(self, step: Step) -> Step:
         """The step with the time and the parameters among its inputs if it depends on them."""

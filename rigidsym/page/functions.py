@@ -72,7 +72,7 @@ def functions_of(derivation: Derivation) -> Functions:
     whole |= {SHARE.name: SHARE} if places else {}
     more = (*_more(shown), *flow, *_of_body(derivation, places))
     steps = tuple(replace(step, number=0) for step in (*shown.steps, *more))
-    shown = replace(shown, arguments=tuple(whole.values()), steps=steps, functions=())
+    shown = replace(shown, arguments=tuple(whole.values()), steps=steps, functions={})
     program = lower(shown, javascript.RESERVED)
     compared = list(others(derivation.model))
     return Functions(
@@ -92,7 +92,7 @@ def _flow(derivation: Derivation) -> tuple[Step, ...]:
         return ()
     q, q_dot, y = (derivation.argument(name).symbols for name in ("q", "q_dot", "y"))
     is_plain = y == (*q, *q_dot)
-    return tuple(f for f in derivation.functions if is_plain and f.quantity.name in FLOW)
+    return tuple(f for n, f in derivation.functions.items() if is_plain and n in FLOW)
 
 
 def _of_body(derivation: Derivation, places: Mapping[str, sp.ImmutableMatrix]) -> Iterator[Step]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -26,15 +28,39 @@ def save_animation(
     """GIF or MP4 by the ending, in real time if it takes 4 to 12 seconds.
 
     Raises ModelError for another ending, MissingExtra without Matplotlib, and MissingTool for MP4
-    without ffmpeg.
+    without ffmpeg, which the extra `video` brings.
     """
     check_picture(path, WRITERS)
     writer = WRITERS[path.suffix]
     figure = figure_class()(figsize=(5, 5), layout="constrained")
+    from matplotlib import rc_context
     from matplotlib.animation import FuncAnimation, writers
 
-    if not writers.is_available(writer):
-        raise MissingTool(f"{path.suffix} needs {writer}, which is not installed; .gif does not")
+    with rc_context({"animation.ffmpeg_path": _ffmpeg()}):
+        if not writers.is_available(writer):
+            raise MissingTool(
+                f"{path.suffix} needs ffmpeg, which is not installed: pip install '.[video]' in "
+                "the clone, or apt install ffmpeg on Debian; .gif does not need it"
+            )
+        return _saved(path, motion, progress, figure, FuncAnimation)
+
+
+def _ffmpeg() -> str:
+    """The program, by its name if it is on the path, else the one of imageio-ffmpeg."""
+    if shutil.which("ffmpeg") is None and find_spec("imageio_ffmpeg") is not None:
+        from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-not-found]
+
+        return str(get_ffmpeg_exe())
+    return "ffmpeg"
+
+
+def _saved(
+    path: Path,
+    motion: Samples,
+    progress: Callable[[float], None] | None,
+    figure: Any,
+    animation: Any,
+) -> Path:
     seconds = float(np.clip(motion.t[-1], *_LENGTHS))
     places = np.linspace(0, len(motion.t) - 1, round(seconds * _FRAMES_PER_SECOND))
     shown = np.unique(places.round().astype(int))
@@ -55,10 +81,10 @@ def save_animation(
         if progress is not None:
             progress((k + 1) / count)
 
-    made = FuncAnimation(figure, frame, frames=shown.tolist())
+    made = animation(figure, frame, frames=shown.tolist())
     path.parent.mkdir(parents=True, exist_ok=True)
     fps: Any = len(shown) / seconds  # Matplotlib takes fractions, its types say whole numbers
-    made.save(path, writer=writer, fps=fps, dpi=90, progress_callback=advanced)
+    made.save(path, writer=WRITERS[path.suffix], fps=fps, dpi=90, progress_callback=advanced)
     return path
 
 

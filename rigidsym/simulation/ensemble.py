@@ -101,9 +101,8 @@ def simulate_ensemble(
     if target is None:
         is_long = members * count * (samples - 1) >= _WORTH_COMPILING
         target = "c" if is_long and _has_compiler() else "numpy"
-    slopes = replace(
-        first.derivation.select(()), functions=(first.derivation.step("state_derivative"),)
-    )
+    name = "state_derivative"
+    slopes = replace(first.derivation.select(()), functions={name: first.derivation.step(name)})
     steps = Steps(kernels=generate(slopes, target), times=times, count=count)
     states = np.empty((samples, *start.shape))
     blocks = range(0, members, _BLOCK)

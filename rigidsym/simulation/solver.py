@@ -86,7 +86,7 @@ def with_motion(derivation: Derivation) -> Derivation:
             f"{derivation.name} has no equations of motion; expected a body and a potential, "
             "as in rs.derive(..., body=..., potential=...)"
         )
-    names = {step.quantity.name for step in (*derivation.steps, *derivation.functions)}
+    names = {step.quantity.name for step in derivation.steps} | {*derivation.functions}
     if derivation.forces is None or not names.issuperset((*_NEEDED, "state_derivative")):
         forces = derivation.forces or Forces()
         only = [*_NEEDED, *FLOW_QUANTITIES, "torque_body"]

@@ -19,7 +19,7 @@ class Trajectory(Samples):
         return save_plot(Path(path), self)
 
     def animate(self, path: str | Path, progress: Callable[[float], None] | None = None) -> Path:
-        """An animation of the motion: GIF, or MP4 if ffmpeg is installed. Needs Matplotlib."""
+        """An animation: GIF with Matplotlib, or MP4 with ffmpeg too (the extra `video`)."""
         return save_animation(Path(path), self, progress)
 
     def _repr_pretty_(self, printer: Any, _: bool) -> None:

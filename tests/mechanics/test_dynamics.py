@@ -182,6 +182,19 @@ def flowing() -> rs.Motion:
     return top(potential="m*(g - a*omega**2*cos(omega*t))*l*cos(theta)", only=only)
 
 
+def test_the_jacobian_is_only_derived_if_something_asks_for_it(monkeypatch):
+    from rigidsym.mechanics.dynamics.flow import Flow
+
+    def refused(_):
+        raise AssertionError("derived")
+
+    monkeypatch.setattr(Flow, "_state_jacobian", property(refused))
+    pendulum = rs.derive("x(theta)", body=rs.principal_moments(A, B, C), potential="-k*cos(theta)")
+    assert pendulum.state_derivative.shape == (2, 1)
+    with pytest.raises(AssertionError, match="derived"):
+        _ = pendulum.state_jacobian
+
+
 def test_the_jacobian_of_the_state_derivative_is_the_derivative():
     motion = flowing()
     values, step = values_for(motion), mp.mpf(10) ** -20

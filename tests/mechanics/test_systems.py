@@ -126,6 +126,12 @@ def test_the_rolling_disc_has_the_accelerations_of_kanes_method():
     assert [integral.name for integral in motion.first_integrals] == ["energy"]
 
 
+def test_the_note_of_a_top_writes_the_rate_of_the_matrix_by_the_chain_rule():
+    """The state holds the coordinates a second time; they stay the coordinates"""
+    latex = shipped("heavy_symmetric_top").note(with_kernels=False).latex()
+    assert r"\frac{\partial \mathbf{R}}{\partial \theta}" in latex
+
+
 def test_a_note_tells_no_mass_that_no_equation_holds():
     assert "has the mass" not in shipped("rolling_disc").note(with_kernels=False).markdown()
 

@@ -11,6 +11,7 @@ import sympy as sp
 import rigidsym as rs
 from helpers.command import call
 from rigidsym.pipeline import motion_of, read
+from rigidsym.simulation import animation
 
 A, B, C = sp.symbols("A B C")
 TOP = {"A": 1.3, "C": 0.7, "m": 2.0, "g": 9.81, "l": 0.4}
@@ -203,3 +204,19 @@ def test_the_command_writes_a_table_and_a_picture(tmp_path):
     assert "free.avi: expected a file that ends in .gif, .mp4, .html" in wrong.stderr
     wrong = call("simulate", "heavy_symmetric_top", "--set", "A", cwd=tmp_path, status=2)
     assert "expected NAME=NUMBER" in wrong.stderr
+
+
+def test_a_film_is_written_with_the_ffmpeg_of_the_extra(tmp_path):
+    pytest.importorskip("imageio_ffmpeg")
+    found = free().simulate(REST | {"theta": 1, "psi_dot": 3}, {"A": 1, "C": 0.5}, 1.0, samples=5)
+    film = found.animate(tmp_path / "free.mp4").read_bytes()
+    assert film[4:8] == b"ftyp"
+
+
+def test_a_film_without_ffmpeg_is_refused_and_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setattr(animation, "_ffmpeg", lambda: "no-such-program")
+    found = free().simulate(REST | {"theta": 1, "psi_dot": 3}, {"A": 1, "C": 0.5}, 1.0, samples=5)
+    with pytest.raises(rs.RigidsymError, match=r"ffmpeg, .*'\.\[video\]'") as caught:
+        found.animate(tmp_path / "free.mp4")
+    assert caught.value.exit_code == 4
+    assert not (tmp_path / "free.mp4").exists()

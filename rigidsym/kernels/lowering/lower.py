@@ -58,7 +58,7 @@ def lower(
     """
     kernels = _Lowering(derivation, Names(reserved))
     # a tensor given in numbers takes no arguments, and is no function
-    steps = (*derivation.steps, *derivation.functions)
+    steps = (*derivation.steps, *derivation.functions.values())
     found = tuple(kernels.of_step(step) for step in steps if step.quantity.inputs)
     found += tuple(kernels.margin())
     found += tuple(map(kernels.of_derivative, derivatives))

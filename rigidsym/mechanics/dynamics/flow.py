@@ -6,8 +6,8 @@ function F of the state is ∇F·f + ∂F/∂t, reduced in the ring: F is a firs
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
 from math import prod
 from typing import NamedTuple
 
@@ -149,20 +149,37 @@ class Flow:
         proof = self.prove.vanishes(residual, claims.is_constant(symbol), divided_by=divisor)
         return FirstIntegral(name=name, symbol=symbol, expression=value, proof=proof)
 
-    def functions(self) -> Mapping[str, Step]:
-        """The derivative of the state, its Jacobian and the first integrals, by name."""
-        slopes = [e for b in self.blocks for e in self.present.matrix(b.numerators, b.divisor)]
-        symbols = self.arguments["y"].symbols
-        values = {
-            "state_derivative": sp.ImmutableMatrix(slopes),
-            "state_jacobian": sp.ImmutableMatrix([_slopes(s, symbols, symbols) for s in slopes]),
-            "first_integrals": sp.ImmutableMatrix([i.expression for i in self.first_integrals]),
-        }
+    def functions(self) -> Mapping[str, Callable[[], Step]]:
+        """The derivative of the state, its Jacobian and the first integrals, each when needed."""
         return {
-            name: Step(number=0, quantity=quantity, expression=values[name], because="", proofs=())
-            for name, quantity in claims.FLOW_QUANTITIES.items()
-            if len(values[name])
+            name: partial(self._function, name)
+            for name in claims.FLOW_QUANTITIES
+            if name != "first_integrals" or self.first_integrals
         }
+
+    def _function(self, name: str) -> Step:
+        return Step(
+            number=0,
+            quantity=claims.FLOW_QUANTITIES[name],
+            expression=getattr(self, f"_{name}"),
+            because="",
+            proofs=(),
+        )
+
+    @cached_property
+    def _state_derivative(self) -> sp.ImmutableMatrix:
+        return sp.ImmutableMatrix(
+            [e for b in self.blocks for e in self.present.matrix(b.numerators, b.divisor)]
+        )
+
+    @property
+    def _state_jacobian(self) -> sp.ImmutableMatrix:
+        symbols = self.arguments["y"].symbols
+        return sp.ImmutableMatrix([_slopes(s, symbols, symbols) for s in self._state_derivative])
+
+    @property
+    def _first_integrals(self) -> sp.ImmutableMatrix:
+        return sp.ImmutableMatrix([i.expression for i in self.first_integrals])
 
     def angular_acceleration_from_torque(self) -> Found:
         """I′⁻¹ (N′ − Ω′ × I′ Ω′) for free Ω′ and N′, in a ring of their own."""

@@ -45,7 +45,8 @@ def _letters(
         names.update(zip(argument.symbols, argument.notation, strict=True))
         order, first = _ORDERS.get(argument.name, _GIVEN_RATE), _BEFORE.get(argument.name, 0)
         if argument.name != _CONSTANT:
-            places.update((s, (order, first + k)) for k, s in enumerate(argument.symbols))
+            found = {s: (order, first + k) for k, s in enumerate(argument.symbols)}
+            places = found | places  # the state y holds coordinates that have their order already
     return Letters(notation=notation, length=length, names=names, places=places)
 
 
