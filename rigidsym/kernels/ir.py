@@ -116,6 +116,8 @@ Expression = Name | Number | Negative | Sum | Product | Call | Guarded | Compare
 
 def parts(expression: Expression) -> tuple[Expression, ...]:
     """The expressions that one node is made of."""
+    if isinstance(expression, Name | Number):  # most are
+        return ()
     match expression:
         case Negative(operand):
             return (operand,)
@@ -152,9 +154,11 @@ def rebuilt(change: Callable[[Expression], Expression], expression: Expression) 
 
 def walk(expression: Expression) -> Iterator[Expression]:
     """The expression and all that it is made of, the whole before its parts."""
-    yield expression
-    for part in parts(expression):
-        yield from walk(part)
+    left = [expression]
+    while left:
+        node = left.pop()
+        yield node
+        left += reversed(parts(node))
 
 
 def names_in(expression: Expression) -> Iterator[str]:
