@@ -53,7 +53,16 @@ def environment(folder: Path, python: str, packages: list[str]) -> str:
     """The interpreter of a new virtual environment; raises RuntimeError if pip fails."""
     subprocess.run([python, "-m", "venv", folder], check=True)
     inside = str(folder / "bin" / "python")
-    pip = [inside, "-m", "pip", "install", "--quiet", "--upgrade", "--only-binary=:all:", *packages]
+    pip = [
+        inside,
+        "-m",
+        "pip",
+        "install",
+        "--quiet",
+        "--no-compile",
+        "--only-binary=:all:",
+        *packages,
+    ]
     done = subprocess.run(pip, capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"{' '.join(packages)}: {done.stderr.strip().splitlines()[-1]}")

@@ -329,3 +329,80 @@ def test_codec_is_shared_between_equal_requests():
     assert {g.expression for g in second.ring.generators} == {
         g.expression for g in first.ring.generators
     }
+
+
+RINGS: list[tuple[list[sp.Expr], dict[str, object]]] = [
+    ([expression], {})
+    for expression in (
+        sp.Integer(2) * m,
+        m / 2,
+        sp.pi * k + x,
+        sqrt(6) + sqrt(12) * x,
+        2 ** Rational(1, 4) + sqrt(2) * m,
+        2 ** Rational(1, 4) + 3 ** Rational(1, 6) + sqrt(3),
+        10 ** Rational(-3, 2),
+        sp.I * x,
+        1 / (1 + x**2),
+        m / x**2,
+        sqrt(1 + x**2) + 1 / sqrt(x**2 + y**2),
+        (x + y) ** Rational(-3, 2),
+        tan(a) + sec(2 * a),
+        cot(a) * csc(b),
+        sin(2 * a) * cos(a / 3) + cos(b / 2),
+        sin(-3 * a) + cos(a - 2 * b),
+        sin(a + pi / 4) + cos(b - pi / 3),
+        sin(pi / 5 + k),
+        cos(m * a) + sin(k),
+        sin(a * b) + sin(a**2),
+        sin(a / x) + cos(sqrt(x)),
+        sin(sp.exp(x)),
+        sp.exp(x) + sp.Abs(y) + TIME,
+        sp.cosh(x) ** 2,
+        x**m + m**x,
+        a.diff(TIME) * b.diff(TIME, 2),
+        sin(a.diff(TIME)),
+    )
+]
+RINGS += [
+    ([sin(a) * x], {"order": 0}),
+    ([sin(a) * x / y], {"order": 1}),
+    ([sp.exp(sin(a))], {"order": 2}),
+    ([x, y], {"constraints": [x**2 + y**2 - 1]}),
+    ([x, m], {"constraints": [2 * x - m, m**2 - 3], "order": 1}),
+    ([sin(a), x], {"constraints": [x - sin(a)]}),
+]
+
+
+def ring_in_words(expressions: list[sp.Expr], options: dict[str, object]) -> list[str]:
+    """The generators of a ring, its relations and derivatives, and the expressions in it."""
+    try:
+        codec = codec_for(expressions, **options)
+        encoded = [codec.encode_quotient(expression) for expression in expressions]
+    except AlgebraError as error:
+        return [str(error)]
+    ring = codec.ring
+    names = [gen.expression for gen in ring.generators]
+    return [
+        f"generators over {ring.polynomials.domain}: {', '.join(map(str, names))}",
+        f"opaque: {', '.join(str(gen.expression) for gen in ring.generators if gen.opaque)}",
+        *(f"0 = {relation}" for relation in ring.relations),
+        *(f"d/dt {names[g]} = {codec.decode(rate)}" for g, rate in ring.derivatives.items()),
+        *(f"{codec.decode(e.numerator)} over {codec.decode(e.denominator)}" for e in encoded),
+        f"angles: {codec.angle_pairs}",
+    ]
+
+
+def test_rings_are_as_they_were(golden):
+    lines = []
+    for expressions, options in RINGS:
+        lines.append(f"{expressions} {options or ''}".strip())
+        lines += [f"    {line}" for line in ring_in_words(expressions, options)]
+    golden("notes/rings.txt", "\n".join(lines) + "\n")
+
+
+def test_roots_of_one_number_know_of_each_other():
+    codec = codec_for([2 ** Rational(1, 4), sqrt(2)])
+    deep, shallow = (codec.encode(root) for root in (2 ** Rational(1, 4), sqrt(2)))
+    assert codec.ring.is_zero(deep**2 - shallow)
+    assert codec.ring.is_zero(deep**4 - 2)
+    assert not codec.ring.is_zero(deep**2 + shallow)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from random import Random
+
 import pytest
 import sympy as sp
 from hypothesis import given, settings, strategies as st
@@ -11,7 +13,7 @@ from helpers.witness import TOLERANCE, mp, number, paths, values_along
 from rigidsym.algebra import present
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.present import Presenter, presenter_for
+from rigidsym.algebra.present import Presenter, Rationals, halved, presenter_for
 from rigidsym.algebra.ring import Quotient
 from rigidsym.errors import AlgebraError
 from rigidsym.models.so3 import time_function
@@ -222,3 +224,84 @@ def test_a_factor_lost_on_the_way_is_seen(monkeypatch):
 def test_angle_sums_are_folded(expression, expected):
     codec = codec_for([expression])
     assert presenter_for(codec).element(codec.encode(expression)) == expected
+
+
+def random_polynomial(rng: Random, names: list[sp.Expr], terms: int) -> sp.Expr:
+    return sp.Add(
+        *(
+            Rational(rng.choice((1, 1, 2, -1, -1, -3, 4)), rng.choice((1, 1, 1, 2, 3)))
+            * sp.Mul(
+                *(rng.choice(names) ** rng.choice((1, 1, 2, 3)) for _ in range(rng.randint(0, 3)))
+            )
+            for _ in range(terms)
+        )
+    )
+
+
+RINGS = {
+    "circles": codec_for([*GENERATORS, Rational(1, 2)]),
+    "whole numbers": CODEC,
+    "angles": codec_for([sin(a + b), cos(2 * a), m, Rational(1, 2)]),
+    "quaternion": codec_for([w, x, y, z, m], constraints=[UNIT]),
+    "inverse": codec_for([x, y, z, m, ONE_OVER, Rational(1, 2)]),
+    "inverse and root": codec_for([x, y, sqrt(1 + x**2), 1 / (1 + x**2), 1 / (x + y)]),
+}
+
+
+def forms_in(name: str) -> list[str]:
+    """Random elements and quotients, with their forms."""
+    codec, rng = RINGS[name], Random(name)
+    names = [gen.expression for gen in codec.ring.generators]
+    found = []
+    for k in range(24):
+        above = codec.encode_quotient(random_polynomial(rng, names, 1 + k % 6))
+        below = codec.encode_quotient(
+            random_polynomial(rng, names, 1 + k % 3) if k % 2 else sp.S.One
+        )
+        if not below.numerator:
+            continue
+        value = above * below.inverse()
+        form = Presenter(codec).quotient(value)
+        found.append(f"{codec.decode(value.numerator)} over {codec.decode(value.denominator)}")
+        found.append(f"    {form}")
+    if len(codec.angle_pairs) == 2:
+        one, two = (sp.Integer(1), *(gen.args[0] for gen in names if gen.func is sin))[1:]
+        for part in (
+            cos(one - two),
+            2 * m * sin(one + two) + 3 * cos(one),
+            sin(one + two) * cos(one),
+        ):
+            value = codec.encode(part)
+            found += [f"{part}", f"    {Presenter(codec).element(value)}"]
+    return found
+
+
+def test_forms_are_as_they_were(golden):
+    """Which of several equal forms is chosen."""
+    lines = [line for name in RINGS for line in (name, *forms_in(name))]
+    golden("notes/textbook_forms.txt", "\n".join(lines) + "\n")
+
+
+@pytest.mark.parametrize(
+    ("entry", "expected"),
+    [
+        (sin(a) / (1 - cos(a)), cot(a / 2)),
+        (sin(a) / (1 + cos(a)), tan(a / 2)),
+        (m * sin(a) / (2 - 2 * cos(a)), m * cot(a / 2) / 2),
+        (1 / (2 + cos(a)), 1 / (2 + cos(a))),
+        ((1 - cos(a)) * m, (1 - cos(a)) * m),
+    ],
+    ids=str,
+)
+def test_half_an_angle_is_taken_only_where_a_divisor_vanishes(entry, expected):
+    assert halved([entry], [sin(a), cos(a), m]) == [expected]
+
+
+def test_rational_functions_cancel_and_are_written_again():
+    field = Rationals([1 / (x + y), 1 / (x - y), m])
+    one, two = field.read(1 / (x + y)), field.read(1 / (x - y))
+    assert sp.cancel(field.write(field.total([one, two])) - 2 * x / (x**2 - y**2)) == 0
+    assert field.write(field.total([one, field.negative(one)])) == 0
+    assert Rationals.over(field.codec).read((x**2 - y**2) / (x + y)).equals(field.read(x - y))
+    ((again,),) = field.read_matrix(sp.Matrix([[m / (x + y)]]))
+    assert field.write(again) == m / (x + y)

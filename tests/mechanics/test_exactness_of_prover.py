@@ -203,6 +203,7 @@ def test_values_of_products_are_those_of_their_entries(monkeypatch, case):
         with monkeypatch.context() as patch:
             patch.setattr(Witness, "_bounds", None)  # the fast numbers suffice
             assert not witness.disagrees(zero, {})
+            assert not witness.disagrees(matrix - RingMatrix(codec.ring, matrix.rows), {})
         with monkeypatch.context() as patch:
             patch.setattr(Witness, "_number", lambda *_: 1 << 240)  # and the intervals decide
             assert not witness.disagrees(RingMatrix.of(codec.ring, [[codec.ring.zero]]), {})
