@@ -20,7 +20,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from random import Random
 from time import process_time
@@ -224,11 +223,12 @@ def _expression(rng: Random, _folder: Path) -> tuple[str, Callable[[], object]]:
 
 
 def _data_file(rng: Random, folder: Path) -> tuple[str, Callable[[], object]]:
+    choices = _choices(rng)
     name, work = rng.choice(
         (
             ("log.csv", identify_file),
             ("log.csv", _evaluate),
-            ("notes.csv", partial(_evaluate, **_choices(rng))),
+            ("notes.csv", lambda path: _evaluate(path, **choices)),
             ("cloud.npy", inertia_of),
             ("angles.npy", _evaluate),
         )
