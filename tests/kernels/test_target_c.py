@@ -269,6 +269,8 @@ def test_a_portable_module_uses_wide_vectors_in_its_clones_only(tmp_path, monkey
     motion = rs.derive("z(phi) [1,2,2](theta) x(psi)", only=["rotation_matrix"])
     source = motion.kernels("c", conversions=True).write(tmp_path)
     run(compiler, *STRICT, "-DCLONES", "-fsyntax-only", source.name, cwd=tmp_path)
+    if compiler == "clang":
+        motion.kernels("c").write(tmp_path)  # gcc builds those of the conversions too
     made = call("build", "--portable", source.name, cwd=tmp_path).stdout.strip()
     assert made == f"{source.stem}_c.py"
     (library,) = tmp_path.glob("*.so")

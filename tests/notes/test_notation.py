@@ -11,6 +11,7 @@ from click.testing import CliRunner
 
 import rigidsym as rs
 from helpers.motions import derived
+from helpers.typesetting import bound_together
 from rigidsym import pipeline
 from rigidsym.commands import cli
 from rigidsym.errors import ModelError, SpecError
@@ -112,9 +113,9 @@ def test_lines_fit_the_terminal_in_every_notation(choices):
 @pytest.mark.usefixtures("tex")
 @pytest.mark.parametrize("choices", [OTHER, {"rates": "fraction"}, {"body": "superscript"}])
 def test_notes_compile_without_a_warning_in_every_notation(choices):
-    for sequence, passive in (("ZXZ", False), ("xyz", True)):
-        motion = derived(sequence, passive=passive).with_notation(**choices)
-        assert typeset(motion.note().latex()).warnings == ()
+    motions = (derived("ZXZ"), derived("xyz", passive=True))
+    notes = [motion.with_notation(**choices).note().latex() for motion in motions]
+    assert typeset(bound_together(notes)).warnings == ()
 
 
 def test_kernels_and_records_know_nothing_of_it():
