@@ -67,7 +67,7 @@ def _fill(result, block, arrays, shape, threads):
         with np.errstate(all="ignore"):
             for place in places:
                 vectors = [_columns(array[place], result.dtype) for array in wide]
-                _place(result[place], block(*vectors), shape, False)
+                _evaluate(result[place], block, vectors, shape, False)
 
     places = list(_places(leading, longest))
     if threads == 1:
@@ -128,7 +128,8 @@ def _pool():
 def _places(shape, longest):
     """Where the blocks are: indices into the leading axes, at most `longest` points each.
 
-    Blocks are equally long, so that none is short enough for another way to compute.
+    Blocks are equally long, so that none is short enough for another way to compute, and
+    begin with a whole vector.
     """
     first, row = shape[0], prod(shape[1:])
     if row > longest:
@@ -136,6 +137,7 @@ def _places(shape, longest):
             for place in _places(shape[1:], longest):
                 yield (k, *place)
     else:
-        blocks = -(-first // (longest // row))
-        for k in range(blocks):
-            yield (slice(k * first // blocks, (k + 1) * first // blocks),)
+        blocks, unit = -(-first // (longest // row)), _LANES if row == 1 else 1
+        edges = [k * first // blocks // unit * unit for k in range(blocks)]
+        for start, end in zip(edges, [*edges[1:], first]):
+            yield (slice(start, end),)

@@ -260,6 +260,20 @@ def test_neither_threads_nor_the_place_in_a_batch_change_a_bit_of_numba():
 
 
 @pytest.mark.skipif(bool(TARGETS["numba"].missing), reason=TARGETS["numba"].missing)
+@pytest.mark.parametrize("count", [7, 300, 100_001])
+def test_rows_of_any_number_are_computed_by_compiled_functions(count, monkeypatch):
+    functions = module("ZXZ", "numba")
+    q = np.random.default_rng(1).uniform(-3, 3, (count, 3))
+    expected = functions.angular_velocity_body(q, q)
+
+    def _angular_velocity_body(q, q_dot):
+        raise AssertionError("NumPy's function is called")
+
+    monkeypatch.setattr(functions, "_angular_velocity_body", _angular_velocity_body)
+    np.testing.assert_array_equal(functions.angular_velocity_body(q, q), expected)
+
+
+@pytest.mark.skipif(bool(TARGETS["numba"].missing), reason=TARGETS["numba"].missing)
 def test_functions_of_numba_are_called_in_compiled_functions():
     from numba import njit
 
