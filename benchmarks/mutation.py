@@ -319,6 +319,7 @@ def _figures(trials: Sequence[Trial]) -> Iterator[Figure]:
         )
 
 
+_POWERS = "powers = (p for p in angle.atoms(sp.Pow) if not (p.exp.is_Integer and p.exp > 0))"
 _POINTS = "which points are tried first"
 _EXPONENT = "base = self if exponent >= 0 else self.inverse()"
 EQUIVALENT: Mapping[tuple[str, str, str], str] = {  # function, change, line: why it changes nothing
@@ -355,6 +356,15 @@ EQUIVALENT: Mapping[tuple[str, str, str], str] = {  # function, change, line: wh
         for change in ("Eq -> NotEq", "And -> Or", "1 -> 2")
     },
     ("Witness.is_nonzero", "Or -> And", "if self._decides or element.is_ground:"): "a shortcut",
+    (
+        "GeneratorSet._add",
+        "GtE -> Gt",
+        "if len(self.kinds) >= _MOST_GENERATORS:",
+    ): "a bound on the search",
+    **{
+        ("is_uncertain", change, _POWERS): "SymPy has no powers with exponents 0 and 1"
+        for change in ("Gt -> GtE", "0 -> 1")
+    },
     ("Prover._pullback", "3 -> 4", "for order in range(3):"): "no claim has third derivatives",
     ("Ring.difference", "Or -> And", "if not second or first is second:"): "a shortcut",
     (
