@@ -16,6 +16,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import rigidsym as rs
 from helpers.motions import derived
 from helpers.witness import evaluate, mp
+from rigidsym.algebra.series import FIRST_SERIES, series_of
 from rigidsym.commands.cli import commands
 from rigidsym.errors import KernelError, QuantityError, SpecError
 from rigidsym.kernels.lowering.derivatives import read_request, read_requests
@@ -53,10 +54,10 @@ def arrays_for(name: str, quantity: str, leading: tuple[int, ...] = (), size: fl
     return found
 
 
-def numerical(name: str, quantity: str, vector: str, point: dict) -> tuple[list, np.ndarray]:
+def numerical(motion, quantity: str, vector: str, point: dict) -> tuple[list, np.ndarray]:
     """Value and Jacobian of the derivation's expression, by differences at 50 digits."""
-    symbols = {v: motion(name).argument(v).symbols for v in point}
-    expression = motion(name).step(quantity).expression
+    symbols = {v: motion.argument(v).symbols for v in point}
+    expression = motion.step(quantity).expression
 
     def at(step, place):
         known = {}
@@ -92,7 +93,7 @@ def test_jacobians_are_those_of_differences_at_50_digits(name, quantity, vector)
     value, jacobian = getattr(of(name, quantity, vector), f"{quantity}_jacobian_{vector}")(
         *point.values()
     )
-    expected, slopes = numerical(name, quantity, vector, point)
+    expected, slopes = numerical(motion(name), quantity, vector, point)
     shape = motion(name).step(quantity).shape
     assert (value.shape, jacobian.shape) == (shape, (*shape, len(point[vector])))
     assert_allclose(value.ravel(), np.array(expected, float), rtol=0, atol=1e-14)
@@ -108,6 +109,23 @@ def test_removable_singularities_stay_removable():
         assert_allclose(found, half_cross(point["q_dot"]), atol=2 * size + 1e-16)
 
 
+SWITCHES = [float(series_of(k).switch) ** 0.5 for k in range(FIRST_SERIES, FIRST_SERIES + 3)]
+
+
+@pytest.mark.parametrize(
+    "size", [1e-9, *(s * side for s in SWITCHES for side in (1 - 1e-9, 1 + 1e-9))]
+)
+def test_jacobians_are_right_on_both_sides_of_every_switch(size):
+    """Series stand in for quotients that cancel at small angles."""
+    for quantity in ("angular_velocity_body", "inverse_rate_matrix_body", "rotation_matrix"):
+        point = arrays_for("rotation_vector", quantity)
+        point["q"] *= size / np.linalg.norm(point["q"])
+        functions = of("rotation_vector", quantity, "q")
+        _, jacobian = getattr(functions, f"{quantity}_jacobian_q")(*point.values())
+        _, slopes = numerical(motion("rotation_vector"), quantity, "q", point)
+        assert_allclose(jacobian.reshape(slopes.shape), slopes, rtol=1e-12, atol=2e-14)
+
+
 def half_cross(v) -> np.ndarray:
     """d(−v × v̇/2)/dv: what Ω′ is to first order in v."""
     return 0.5 * np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
@@ -117,7 +135,7 @@ TOGETHER = ("angular_velocity_body", "angular_velocity_space", "rotation_matrix"
 
 
 @pytest.mark.parametrize("name", [*rs.EULER_SEQUENCES, *PARAMETRISATIONS, *ALONE])
-def test_products_of_several_quantities_agree_with_their_jacobians_in_one_module(name):
+def test_jacobians_and_products_of_several_quantities_are_right_in_one_module(name):
     motion = rs.derive(name, only=TOGETHER)
     asked = [f"{q} by q{kind}" for q in TOGETHER for kind in ("", " jvp", " vjp")]
     module = motion.kernels(derivatives=asked).load()
@@ -131,6 +149,8 @@ def test_products_of_several_quantities_agree_with_their_jacobians_in_one_module
         weights = random.normal(size=step.expression.shape[0] * step.expression.shape[1])
         value, jacobian = getattr(module, f"{quantity}_jacobian_q")(*inputs)
         rows = jacobian.reshape(-1, len(tangent))
+        point = dict(zip(step.quantity.inputs, inputs, strict=True))
+        assert_allclose(rows, numerical(motion, quantity, "q", point)[1], rtol=1e-12, atol=1e-12)
         for kind, vector, expected in (
             ("jvp", tangent, (rows @ tangent).reshape(value.shape)),
             ("vjp", weights, weights @ rows),
