@@ -361,6 +361,21 @@ EQUIVALENT: Mapping[tuple[str, str, str], str] = {  # function, change, line: wh
         "GtE -> Gt",
         "if len(self.kinds) >= _MOST_GENERATORS:",
     ): "a bound on the search",
+    (
+        "Codec._multiple",
+        "Gt -> GtE",
+        "if abs(times) > _HIGHEST_MULTIPLE:",
+    ): "a bound on the work",
+    (
+        "Codec._whole_power",
+        "0 -> 1",
+        "if exponent < 0 and 1 / base in self.ring.index:",
+    ): "SymPy has no powers with the exponent 0",
+    (
+        "Codec._product",
+        "0 -> 1",
+        "elif exponent.is_Integer and exponent > 0 and base in self.ring.index:",
+    ): "a factor to the power of one is found before",
     **{
         ("is_uncertain", change, _POWERS): "SymPy has no powers with exponents 0 and 1"
         for change in ("Gt -> GtE", "0 -> 1")
