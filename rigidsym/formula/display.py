@@ -85,6 +85,15 @@ class Display(NamedTuple):
         """Of a listing."""
         return len(self.rows.lines) if self.rows else 1
 
+    def breaks(self, equation: Equation, width: float) -> bool:
+        """Whether a value of the equation, or an entry, fits on no line."""
+        if equation.matrix is None and equation.scalar is None:
+            return False
+        lines = min(len(equation.sides), 2)
+        if equation.matrix is not None:
+            lines = len(listed_entries(equation.entries, equation.matrix))
+        return self.lines > lines or self.width > width
+
 
 def display(
     equation: Equation, letters: Letters, width: float, pen: SheetPen | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Bracket, Formula, Rate
+from rigidsym.formula.tree import TRANSPOSE, Bracket, Formula, Power, Rate, row
 
 
 def rate_of(matrix: Formula) -> Formula:
@@ -15,15 +15,15 @@ def rate_of_whole(product: Formula) -> Formula:
 
 
 def transpose_of(matrix: Formula) -> Formula:
-    return formula(r"#1^{\mathsf T}", matrix)
+    return Power(matrix, TRANSPOSE)
 
 
 def spin_of(matrix: Formula) -> Formula:
-    return formula("#1#2", rate_of(matrix), transpose_of(matrix))
+    return row(rate_of(matrix), transpose_of(matrix))
 
 
 def orthogonal(matrix: Formula) -> Formula:
-    return formula(r"#1#2 = \mathbf{1}", matrix, transpose_of(matrix))
+    return inverse_of(matrix, transpose_of(matrix))
 
 
 def proper(matrix: Formula) -> Formula:

@@ -20,7 +20,7 @@ import sympy as sp
 from rigidsym.formula.abbreviations import Namer, Part
 from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.scalars import formula_of, listed_entries
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
@@ -63,17 +63,19 @@ class Fitter:
     def fitted(self, equation: Equation, step: Step) -> Iterator[NoteBlock]:
         """An equation; where it would be long, in short, or its parts with their names first."""
         equation = as_vectors(equation, step, self.letters)
-        short = in_short(step, self.derivation, self.letters) if self._breaks(equation) else None
+        breaks = display(equation, self.letters, PAGE).breaks(equation, PAGE)
+        short = in_short(step, self.derivation, self.letters) if breaks else None
         if short is not None and self.derivation.model.vector and _is_of_motion(step):
             yield _without_entries(equation, short)
             return
         form = self._shortest(equation)
-        lines = sum(map(self._lines, self._blocks(form)))
-        is_rotation = step.quantity.name == "rotation_matrix"
-        if short is not None and lines > (_MOST_OF_ROTATION if is_rotation else _MOST_LINES):
-            self._namer.forget()
-            yield from _said(equation, short, lines)
-            return
+        if short is not None:
+            lines = sum(map(self._lines, self._blocks(form)))
+            is_rotation = step.quantity.name == "rotation_matrix"
+            if lines > (_MOST_OF_ROTATION if is_rotation else _MOST_LINES):
+                self._namer.forget()
+                yield from _said(equation, short, lines)
+                return
         yield from self._blocks(form)
         if equation.number:  # it can be referred to
             for name, _ in form.parts:
@@ -95,8 +97,9 @@ class Fitter:
     def _shortest(self, equation: Equation) -> _Form:
         """With names for its parts, where that is better than without."""
         plain = _Form(equation)
-        breaks = self._breaks(equation)
-        if not breaks and not display(equation, self.letters, PAGE).done:
+        shown = display(equation, self.letters, PAGE)
+        breaks = shown.breaks(equation, PAGE)
+        if not breaks and not shown.done:
             return plain
         named = self._named(equation)
         is_better = self._is_shorter if breaks else self._is_more_of_a_matrix
@@ -104,17 +107,6 @@ class Fitter:
             return named
         self._namer.forget()
         return plain
-
-    def _breaks(self, equation: Equation) -> bool:
-        """Whether a value, or an entry, fits on no line."""
-        if equation.matrix is None and equation.scalar is None:
-            return False
-        shown = display(equation, self.letters, PAGE)
-        matrix = equation.matrix
-        lines = min(len(equation.sides), 2)
-        if matrix is not None:
-            lines = len(listed_entries(equation.entries, matrix))
-        return shown.lines > lines or shown.width > PAGE
 
     def _named(self, equation: Equation) -> _Form:
         scalar = equation.scalar
@@ -133,7 +125,7 @@ class Fitter:
         before = self._lines(plain.equation)
         if shown.done == "abbreviated":  # names and shorthand are much to ask of a reader
             return 2 * lines < before
-        return lines < before + (0 if self._breaks(named.equation) else 2)
+        return lines < before + (0 if shown.breaks(named.equation, PAGE) else 2)
 
     def _is_more_of_a_matrix(self, named: _Form, plain: _Form) -> bool:
         """Whether a matrix that is too wide for one fits with names for its parts."""
