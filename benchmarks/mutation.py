@@ -380,6 +380,28 @@ EQUIVALENT: Mapping[tuple[str, str, str], str] = {  # function, change, line: wh
         ("is_uncertain", change, _POWERS): "SymPy has no powers with exponents 0 and 1"
         for change in ("Gt -> GtE", "0 -> 1")
     },
+    ("_leading_number", "Lt -> LtE", "return -size if lowest < 0 else size"): "it is never zero",
+    ("Presenter._cancelled", "Gt -> GtE", "if len(below) > _SHORT_SUM:"): "a bound on the work",
+    (
+        "Presenter._ratios",
+        "Gt -> GtE",
+        "above = sine if powers[sine] > 0 else cosine",
+    ): "neither power is zero here",
+    (
+        "Presenter._ratios",
+        "0 -> 1",
+        "if powers[sine] * powers[cosine] < 0:",
+    ): "a tangent to the power of zero is one",
+    (
+        "Presenter._over_one",
+        "Gt -> GtE",
+        "if len(above) > 1:",
+    ): "the same form twice",
+    (
+        "Presenter.matrix",
+        "False -> True",
+        "known = sp.ImmutableMatrix(*matrix.shape, entries, copy=False)  # the list is ours",
+    ): "a copy more",
     ("Prover._pullback", "3 -> 4", "for order in range(3):"): "no claim has third derivatives",
     ("Ring.difference", "Or -> And", "if not second or first is second:"): "a shortcut",
     (

@@ -55,6 +55,8 @@ FOLDED = [
     (sin(a) / cos(a), tan(a)),
     (m * cos(a) / sin(a), m * cot(a)),
     (sin(a) ** 2 / cos(a) ** 2, tan(a) ** 2),
+    (sin(a) ** 2 / cos(a), sin(a) * tan(a)),
+    (m * cos(a) / sin(a) ** 3, m * cot(a) / sin(a) ** 2),
     ((1 - cos(a) ** 2) / sin(a), sin(a)),
     (cos(a) / (1 - sin(a) ** 2), 1 / cos(a)),
     ((1 - cos(a) ** 2) * sin(b) / (sin(a) * cos(b)), sin(a) * tan(b)),
