@@ -380,6 +380,21 @@ EQUIVALENT: Mapping[tuple[str, str, str], str] = {  # function, change, line: wh
         ("is_uncertain", change, _POWERS): "SymPy has no powers with exponents 0 and 1"
         for change in ("Gt -> GtE", "0 -> 1")
     },
+    (
+        "folded",
+        "Gt -> GtE",
+        "present = {place for place, power in enumerate(highest) if power > 0}",
+    ): "a rule more, which finds nothing",
+    (
+        "_best_factor",
+        "1 -> 2",
+        "powers.setdefault((place, 1 if power > 0 else -1), []).append(abs(power))",
+    ): "only its sign is asked for",
+    (
+        "_neighbours",
+        "any -> all",
+        "if any(highest[k] < power for k, power in needed):",
+    ): "each monomial is asked the same",
     ("_leading_number", "Lt -> LtE", "return -size if lowest < 0 else size"): "it is never zero",
     ("Presenter._cancelled", "Gt -> GtE", "if len(below) > _SHORT_SUM:"): "a bound on the work",
     (

@@ -219,6 +219,10 @@ def test_a_factor_lost_on_the_way_is_seen(monkeypatch):
         (sin(a) * cos(b) + cos(a) * sin(b), sin(a + b)),
         (sin(a) * cos(b) - cos(a) * sin(b), sin(a - b)),
         (2 * x * (cos(a) * cos(b) - sin(a) * sin(b)), 2 * x * cos(a + b)),
+        (
+            x * cos(a) ** 2 * cos(b) ** 2 - x * cos(a) * cos(b) * sin(a) * sin(b),
+            x * cos(a) * cos(b) * cos(a + b),
+        ),
         (cos(a) * cos(b) - 2 * sin(a) * sin(b), cos(a) * cos(b) - 2 * sin(a) * sin(b)),
     ],
     ids=str,
