@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import click
 
 from rigidsym.commands.command import command as make, option, with_options
 from rigidsym.commands.options import FolderOptions, KernelOptions, RotationOptions
 from rigidsym.commands.output_folder import with_existing_files, write
+from rigidsym.errors import CheckError
 from rigidsym.kernels.targets.c.compiling import build
+from rigidsym.kernels.targets.c.function import Contents
 from rigidsym.pipeline import integrated, output_of, read
 
 
@@ -45,6 +48,12 @@ def _built(source: str, options: BuildOptions) -> Iterator[Path]:
         return
     spec = options.selected(integrated(read(source, **options.of_rotation())))
     for single in spec.singles():
+        asked: Mapping[str, Any] = single.target_options.get("c", {})
+        if not Contents(**asked).is_module:
+            raise CheckError(
+                f"{source}: a Python module needs C with arrays and both precisions, and "
+                "[output.c] or --lean leaves some of it out; rigidsym derive writes the source"
+            )
         output = output_of(with_existing_files(replace(single, kernels=("c",)), options.out))
         write(output, options.out, force=options.force)
         source_file = options.out / single.name / f"{single.name}.c"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import re
 import subprocess
+from collections import Counter, defaultdict
 from itertools import product
 
 import numpy as np
@@ -14,6 +15,7 @@ import rigidsym as rs
 from helpers.command import call
 from helpers.target_modules import STRICT
 from rigidsym.errors import CheckError, KernelError, SpecError
+from rigidsym.models.body import general_inertia
 from rigidsym.pipeline import read_spec
 
 LEAN = {"precision": "double", "arrays": False, "libm": True}
@@ -63,14 +65,38 @@ def test_the_generated_test_finds_a_wrong_function(module, folder):
 
 def test_functions_are_short_and_need_little_stack(module, folder):
     _, kernels, _ = module
-    bodies = re.findall(r"^(?:static |void ).*?^}", kernels.source, re.MULTILINE | re.DOTALL)
+    assert_short_and_small(kernels, folder)
+
+
+def assert_short_and_small(kernels, folder):
+    bodies = re.findall(r"^(?:static |PART |void ).*?^}", kernels.source, re.MULTILINE | re.DOTALL)
     assert max(body.count("\n") + 1 for body in bodies) <= MOST_LINES
     run("gcc", "-std=c99", "-Os", "-fstack-usage", "-c", kernels.main, cwd=folder)
     rows = (line.split("\t") for line in (folder / f"{kernels.name}.su").read_text().splitlines())
-    used = {place.rpartition(":")[2]: int(size) for place, size, _ in rows}
-    public = [size for name, size in used.items() if "_part" not in name]
-    parts = [size for name, size in used.items() if "_part" in name]
-    assert max(public) + max(parts, default=0) + used.get("entire", 0) <= MOST_STACK
+    used: defaultdict[str, Counter[str]] = defaultdict(Counter)
+    for place, size, _ in rows:  # a function, the largest of its stages, the largest of their parts
+        name, level = re.fullmatch(r".*:(.*?)((?:_stage|_part|$).*)", place).groups()
+        used[name][level[:5]] = max(used[name][level[:5]], int(size))
+    most = max(sizes.total() for name, sizes in used.items() if name != "entire")
+    assert most + used["entire"].total() <= MOST_STACK
+
+
+def test_a_function_of_many_values_is_computed_in_stages_of_little_memory(tmp_path):
+    """The derivative of the motion of a body with all six entries of inertia, in a field."""
+    potential = "m*g*(a*sin(theta)*sin(psi) + b*sin(theta)*cos(psi) + c*cos(theta))"
+    motion = rs.derive(
+        rs.EulerAngles("ZXZ", angles=("phi", "theta", "psi")),
+        "state_jacobian",
+        body=general_inertia(),
+        potential=potential,
+    )
+    kernels = motion.kernels("c", **LEAN)
+    kernels.write(tmp_path)
+    assert "_stage2(" in kernels.source
+    assert_short_and_small(kernels, tmp_path)
+    sources = (kernels.main, f"{kernels.name}_test.c")
+    run("gcc", *STRICT, "-O1", *sources, "-o", "jacobian", "-lm", cwd=tmp_path)
+    assert run("./jacobian", cwd=tmp_path) == ""
 
 
 def test_results_are_those_of_the_numpy_module(module, folder):
@@ -148,8 +174,9 @@ def test_a_file_and_the_command_line_ask_for_it(tmp_path):
         texts = {(tmp_path / out / f"{name}{ending}").read_text() for out in "ab"}
         assert len(texts) == 1
     assert "changed" not in call("check", "a", cwd=tmp_path).stdout
-    refused = call("build", "euler_zyx_intrinsic.toml", "--out", "a", cwd=tmp_path, status=2)
+    refused = call("build", "euler_zyx_intrinsic.toml", "--out", "c", cwd=tmp_path, status=2)
     assert "with arrays and both precisions" in refused.stderr
+    assert not (tmp_path / "c").exists()  # nothing is written first
 
 
 @pytest.mark.parametrize(

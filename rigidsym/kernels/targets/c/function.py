@@ -30,6 +30,11 @@ class Contents:
     arrays: bool = True
     libm: bool = False
 
+    @property
+    def is_module(self) -> bool:
+        """Whether a Python module can be made of it."""
+        return self.arrays and self.precision == "both"
+
 
 @dataclass(frozen=True, slots=True)
 class CStatement:

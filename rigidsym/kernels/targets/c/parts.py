@@ -12,38 +12,140 @@ from collections.abc import Iterator, Sequence
 from rigidsym.kernels.ir import Kernel
 from rigidsym.kernels.targets.c.function import CStatement, Function, listed
 
-_MOST = 60  # lines of a part
+_MOST = 60  # lines of a function
 _FRAME = 6  # of them for the head and the braces, besides one an argument
+_PLACES = 80  # of `shared`, in 640 bytes
 
 
 def parts_of(function: Function) -> Iterator[str]:
-    """The parts, static, and the function itself, which calls them; it alone if it is short."""
+    """The parts and the function itself, which calls them; it alone if it is short.
+
+    If the values in between need too much memory, it calls stages, each with values of its own,
+    which compute some entries of the result from the arguments.
+    """
     kernel = function.kernel
     steps = _results_early(function.steps(), kernel)
-    cuts = list(_cuts(steps, kernel))
-    kept = _Kept(steps, cuts, kernel)
-    real, suffix = function.precision.real, function.precision.suffix
     unused = (a.name for a in kernel.arguments if kernel.used.isdisjoint(a.components))
     calls = [f"    (void){name};" for name in unused]
-    if len(cuts) == 1:
-        yield _text(function.signature, [*calls, *kept.lines(0, real)])
+    if _length(steps, range(len(steps)), {}) <= _room(kernel):
+        kept = _Kept(steps, [range(len(steps))], kernel)
+        yield _text(function.signature, [*calls, *kept.lines(0, function.precision.real)])
         return
-    calls += [f"    {real} shared[{kept.size}];"] if kept.size else []
-    for place in range(len(cuts)):
-        name = f"{function.name}_part{place + 1}{suffix}"
-        lines = kept.lines(place, real)
-        text = "\n".join(lines)
-        arrays = {a.name: f"const {real} {{}}[{len(a.components)}]" for a in kernel.arguments}
-        arrays["shared"] = f"{'' if kept.stored[place] else 'const '}{real} {{}}[{kept.size}]"
-        arrays["out"] = f"{real} {{}}[{len(kernel.outputs)}]"
-        given = [n for n in arrays if re.search(rf"\b{n}\[", text)]
-        yield _text(listed(0, f"static void {name}(", [arrays[n].format(n) for n in given]), lines)
-        calls.append(listed(4, f"{name}(", given) + ";")
+    stages, first = list(_stages(steps, function)), 1
+    for number, stage in enumerate(stages, start=1):
+        yield from stage.parts(first)
+        lines = stage.calls(first)
+        first += len(stage.cuts)
+        if len(stages) == 1:
+            calls += lines
+        else:
+            name = f"{function.name}_stage{number}{function.precision.suffix}"
+            yield _declared(function, name, lines)
+            calls += _called(function, name, lines, shares=False)
     yield _text(function.signature, calls)
+
+
+def _stages(steps: Sequence[CStatement], function: Function) -> Iterator[_Stage]:
+    """As many entries of the result at a time as the memory and the lines allow."""
+    order = _DepthFirst(steps)
+    results = [k for k, step in enumerate(steps) if not step.defines]
+    first, last = 0, _Stage(function, order.of(results[:1]))
+    for k in range(1, len(results)):
+        longer = _Stage(function, order.of(results[first : k + 1]))
+        if not longer.is_small:
+            yield last
+            first, longer = k, _Stage(function, order.of([results[k]]))
+        last = longer
+    yield last
+
+
+class _DepthFirst:
+    """An order in which few values wait: what needs the most places is computed first."""
+
+    def __init__(self, steps: Sequence[CStatement]) -> None:
+        self._steps = steps
+        makers = {name: k for k, step in enumerate(steps) for name in step.defines}
+        self._before: list[list[int]] = []
+        places: list[int] = []  # that a step and all before it need (Sethi and Ullman)
+        for step in steps:
+            before = {makers[name] for name in step.uses if name in makers}
+            self._before.append(sorted(before, key=lambda k: (-places[k], k)))
+            needed = (places[k] + j for j, k in enumerate(self._before[-1]))
+            places.append(max(needed, default=1))
+
+    def of(self, results: Sequence[int]) -> list[CStatement]:
+        """The steps of some results, one result after the other."""
+        order: dict[int, None] = {}
+        waiting = list(reversed(results))
+        while waiting:
+            missing = [k for k in self._before[waiting[-1]] if k not in order]
+            if missing:
+                waiting.append(missing[0])
+            else:
+                order[waiting.pop()] = None
+        return [self._steps[k] for k in order]
+
+
+class _Stage:
+    """Steps in parts, and the array `shared` between them."""
+
+    def __init__(self, function: Function, steps: Sequence[CStatement]) -> None:
+        self._function = function
+        self.cuts = list(_cuts(steps, function.kernel))
+        self._kept = _Kept(steps, self.cuts, function.kernel)
+
+    @property
+    def is_small(self) -> bool:
+        return self._kept.size <= _PLACES and len(self.calls(1)) <= _MOST - _FRAME
+
+    def parts(self, first: int) -> Iterator[str]:
+        size, real = self._kept.size, self._function.precision.real
+        for place, name in enumerate(self._names(first)):
+            constant = "" if self._kept.stored[place] else "const "
+            shared = f"{constant}{real} shared[{size}]"
+            yield _declared(self._function, name, self._lines(place), shared)
+
+    def calls(self, first: int) -> list[str]:
+        """The lines that call the parts."""
+        size, real = self._kept.size, self._function.precision.real
+        called = (
+            _called(self._function, name, self._lines(place), shares=True)
+            for place, name in enumerate(self._names(first))
+        )
+        declared = [f"    {real} shared[{size}];"] if size else []
+        return [*declared, *(line for lines in called for line in lines)]
+
+    def _names(self, first: int) -> Iterator[str]:
+        suffix = self._function.precision.suffix
+        return (f"{self._function.name}_part{first + k}{suffix}" for k in range(len(self.cuts)))
+
+    def _lines(self, place: int) -> list[str]:
+        return self._kept.lines(place, self._function.precision.real)
 
 
 def _text(head: str, lines: Sequence[str]) -> str:
     return "\n".join([head, "{", *lines, "}"])
+
+
+def _declared(function: Function, name: str, lines: Sequence[str], shared: str = "") -> str:
+    """A function of the arrays that its lines name, for those of this file only."""
+    real, arguments = function.precision.real, function.kernel.arguments
+    arrays = {a.name: f"const {real} {a.name}[{len(a.components)}]" for a in arguments}
+    arrays |= {"shared": shared, "out": f"{real} out[{len(function.kernel.outputs)}]"}
+    given = [arrays[n] for n in _arrays(function, lines) if arrays[n]]
+    return _text(listed(0, f"PART void {name}(", given), lines)
+
+
+def _called(function: Function, name: str, lines: Sequence[str], *, shares: bool) -> list[str]:
+    given = [n for n in _arrays(function, lines) if shares or n != "shared"]
+    return f"{listed(4, f'{name}(', given)};".split("\n")
+
+
+def _arrays(function: Function, lines: Sequence[str]) -> list[str]:
+    words = set(re.findall(r"\w+", "\n".join(lines)))
+    return [
+        n for n in (*(a.name for a in function.kernel.arguments), "shared", "out") if n in words
+    ]
 
 
 def _results_early(steps: Iterator[CStatement], kernel: Kernel) -> list[CStatement]:
@@ -62,7 +164,7 @@ def _results_early(steps: Iterator[CStatement], kernel: Kernel) -> list[CStateme
 
 def _cuts(steps: Sequence[CStatement], kernel: Kernel) -> Iterator[range]:
     """Ranges of steps, each as long as its lines allow."""
-    first, room = 0, _MOST - _FRAME - len(kernel.arguments)
+    first, room = 0, _room(kernel)
     last = {name: k for k, step in enumerate(steps) for name in step.uses}
     while first < len(steps):
         end = first + 1
@@ -70,6 +172,10 @@ def _cuts(steps: Sequence[CStatement], kernel: Kernel) -> Iterator[range]:
             end += 1
         yield range(first, end)
         first = end
+
+
+def _room(kernel: Kernel) -> int:
+    return _MOST - _FRAME - len(kernel.arguments)
 
 
 def _length(steps: Sequence[CStatement], cut: range, last: dict[str, int]) -> int:

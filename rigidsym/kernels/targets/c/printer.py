@@ -27,7 +27,7 @@ _WORDS = (
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf NULL angle_of "
     "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE MOST SHUFFLED SHUFFLE "
     "INLINED STREAMED STREAM STREAMf END_STREAM streams tile found rows count at i j HELPER CLONES "
-    "CLONED shared expected apart"
+    "CLONED PART shared expected apart"
 )
 RESERVED = numpy.RESERVED | {
     *_WORDS.split(),
@@ -47,11 +47,10 @@ def render(program: Program, **options: Any) -> dict[str, str]:
         for p in PRECISIONS
         if contents.precision in ("both", p.real)
     ]
-    is_module = contents.arrays and contents.precision == "both"
     return {
         f"{program.name}.c": _source(program, kernels, functions),
         f"{program.name}.h": _header(program, functions),
-        **(module_files(program, kernels) if is_module else _test(program, functions)),
+        **(module_files(program, kernels) if contents.is_module else _test(program, functions)),
     }
 
 
@@ -68,6 +67,10 @@ def _source(
     called, last = functions_of(kernels), last_order(kernels)
     contents = functions[0][0].contents
     groups = (g for k in kernels for g in (k.outputs, *(a.components for a in k.arguments)))
+    written = [
+        [f.pieces() if contents.arrays else {"parts": list(parts_of(f))} for f in made]
+        for made in functions
+    ]
     return _template("c/source.c.jinja").render(
         title=_safe(program.title),
         name=program.name,
@@ -80,14 +83,10 @@ def _source(
         has_series=last >= 0,
         orders=max(2, last) + 1,
         precisions=[
-            {
-                **made[0].precision.filled(last),
-                "functions": [
-                    f.pieces() if contents.arrays else {"parts": list(parts_of(f))} for f in made
-                ],
-            }
-            for made in functions
+            {**made[0].precision.filled(last), "functions": texts}
+            for made, texts in zip(functions, written, strict=True)
         ],
+        has_parts=any(len(text.get("parts", ())) > 1 for texts in written for text in texts),
         two_over_pi=_words(),
         half_pi=repr(pi / 2),
         widths=sorted(set(map(len, groups))),
