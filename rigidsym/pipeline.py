@@ -18,7 +18,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
-from rigidsym.errors import BodyError, ModelError, RequestError, SpecError
+from rigidsym.errors import BodyError, ModelError, RequestError, SpecError, offer
 from rigidsym.kernels.lowering.derivatives import read_request
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.mechanics.derivation import Proof
@@ -92,10 +92,19 @@ def read(source: str, **options: Any) -> DerivationSpec:
     try:
         return spec_for(source, **options)
     except ModelError as error:
-        if not source.isidentifier():
+        if not source.isidentifier() or (options and _is_rotation(source)):
             raise
-        files = f"NAME.toml or one of {', '.join(shipped)}"
-        raise ModelError(f"{error}\nor a derivation file, {files}") from None
+        hint = f"or a derivation file, NAME.toml or a shipped one; {offer(source, shipped)}"
+        raise ModelError(f"{error}\n{hint}") from None
+
+
+def _is_rotation(source: str) -> bool:
+    """Whether a name is that of a rotation, so that an error is one of its options."""
+    try:
+        spec_for(source)
+    except ModelError:
+        return False
+    return True
 
 
 def read_file(file: str) -> DerivationSpec:

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import sympy as sp
 
-from rigidsym.errors import QuantityError
+from rigidsym.errors import QuantityError, offer
 from rigidsym.mechanics.derivation import (
     OF_RATES,
     Definition,
@@ -147,12 +147,14 @@ def _resting_on(
 
 
 def _check_names(only: Collection[str], *, has_body: bool, has_forces: bool) -> None:
-    of_body = (BODY_ALONE, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if has_body else ()
-    of_motion = (*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES) if has_forces else ()
-    known = (*QUANTITY_NAMES, *of_body, *of_motion)
-    unknown = ", ".join(name for name in only if name not in known)
-    if unknown:
-        raise QuantityError(f"no quantity {unknown}; there are {', '.join(known)}")
+    of_body = (BODY_ALONE, *INERTIA_QUANTITIES, *ENERGY_QUANTITIES)
+    of_motion = (*DYNAMICS_QUANTITIES, *EULER_QUANTITIES, *FLOW_QUANTITIES)
+    known = (*QUANTITY_NAMES, *(of_body if has_body else ()), *(of_motion if has_forces else ()))
+    for name in only:
+        if name not in known:
+            lacking = "a body" if name in of_body else "a body and forces or a potential"
+            why = f"it needs {lacking}" if name in (*of_body, *of_motion) else offer(name, known)
+            raise QuantityError(f"no quantity {name}; {why}")
 
 
 def _table(values: Values) -> dict[str, Quantity]:

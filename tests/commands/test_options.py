@@ -133,6 +133,22 @@ def test_an_unknown_quantity_is_answered_with_the_nearest():
     assert len(str(run("derive", "ZXZ", "--only", "weight").exception)) < 150
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("derive", "ZXZ", "--angles", "a,b"), "three different names, got a, b"),
+        (("derive", "ZXZ", "--only", "mass"), "no quantity mass; it needs a body"),
+        (("derive", "ZXZ", "--only", "hamiltonian"), "it needs a body and forces or a potential"),
+        (("page", "yaw"), "or a derivation file, NAME.toml or a shipped one; "),
+    ],
+)
+def test_a_message_says_what_is_wrong_and_no_more(words, said):
+    message = str(run(*words).exception)
+    assert said in message
+    assert len(message) < 300
+    assert ("derivation file" in message) == (words[1] == "yaw")
+
+
 def test_the_syntax_of_the_option_is_named_for_the_option():
     said = str(run("derive", "ZXZ", "--derivative", BODY).exception)
     assert said == f"--derivative {BODY}: expected QUANTITY:VECTOR, such as {BODY}:q"

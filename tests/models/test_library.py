@@ -182,7 +182,7 @@ def test_derive_reads_text_as_the_command_line_does():
 
 @pytest.mark.parametrize("model", [3, None, ("Z", "X", "Z")])
 def test_what_is_no_model_is_said_in_one_line(model):
-    with pytest.raises(TypeError, match=r"expected a rotation, such as 'ZXZ' or .*, got "):
+    with pytest.raises(TypeError, match=r"expected a rotation, such as 'ZXZ', .*; got "):
         derive(model)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -447,6 +448,11 @@ def test_long_chunks_with_gaps_go_through_pyarrow(tmp_path, monkeypatch):
     assert table.shape == (100, 3)
     assert np.isnan(table[:, 1]).all()
     np.testing.assert_array_equal(table[:, 2] - table[:, 0], 0.5)
+
+
+def test_a_device_or_a_pipe_is_no_plain_file():
+    with pytest.raises(DataError, match="/dev/null: no plain file; `eval` reads a stream from -"):
+        reader_of(Path("/dev/null"))
 
 
 def test_a_file_that_is_no_table_is_not_quoted(motion, tmp_path):
