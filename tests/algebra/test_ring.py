@@ -307,3 +307,8 @@ def test_a_ring_without_relations_leaves_its_elements_as_they_are():
     ring.set_relations([])
     a, b = ring.polynomials.gens
     assert ring.reduce(a**2 - b) == a**2 - b
+
+
+def test_every_term_of_a_relation_but_its_number_can_be_replaced():
+    ring = circle()
+    assert {term for term, *_ in ring.relation_terms} == {(2, 0, 0, 0), (0, 2, 0, 0)}
