@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache, reduce
 from math import gcd, lcm
-from operator import add
+from operator import add, sub
 from typing import Any
 
 import sympy as sp
@@ -98,7 +98,9 @@ class Presenter:
             plain, *others = (self._terms(above), *self._over_one(above))
             return min(plain, *others, key=_length) if others else plain
         ((divisor, scale),) = below.items()
-        return self._terms({_divide(m, divisor): c for m, c in above.items()}, _fraction(scale))
+        return self._terms(
+            {tuple(map(sub, m, divisor)): c for m, c in above.items()}, _fraction(scale)
+        )
 
     def _cancelled(self, above: PolyElement, below: PolyElement) -> tuple[PolyElement, PolyElement]:
         """Both without their common factors; many entries are divided by one short sum."""
@@ -222,9 +224,6 @@ class Rationals:
     def total(self, parts: Iterable[Quotient]) -> Quotient:
         return Quotient.sum(self.ring, parts)
 
-    def negative(self, value: Quotient) -> Quotient:
-        return Quotient(self.ring, -value.numerator, value.denominator)
-
 
 def halved(
     entries: Sequence[sp.Expr], given: Iterable[sp.Expr], constraints: Sequence[sp.Expr] = ()
@@ -278,10 +277,6 @@ class _Weights(dict[int, int]):
 
 def _length(expression: sp.Expr) -> int:
     return int(sp.count_ops(expression))
-
-
-def _divide(monomial: Monomial, divisor: Monomial) -> Monomial:
-    return tuple(a - b for a, b in zip(monomial, divisor, strict=True))
 
 
 def _leading_number(element: PolyElement) -> Fraction:

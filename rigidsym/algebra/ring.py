@@ -217,6 +217,12 @@ class Quotient:
         dot = self.ring.dot
         return Quotient(self.ring, dot(((a[0], b[1]), (b[0], a[1]))), dot(((a[1], b[1]),)))
 
+    def __neg__(self) -> Quotient:
+        return Quotient(self.ring, -self.numerator, self.denominator)
+
+    def __sub__(self, other: Quotient) -> Quotient:
+        return self + -other
+
     def __mul__(self, other: Quotient) -> Quotient:
         dot = self.ring.dot
         below, other_below = self.denominator, other.denominator

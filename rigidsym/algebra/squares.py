@@ -104,13 +104,9 @@ def _monomials(present: Presenter, element: PolyElement) -> Scaled:
     """The terms as they are, but for the factor that all of them share."""
     terms = [present.codec.decode(element.ring.term_new(m, c)) for m, c in element.items()]
     number = reduce(sp.gcd, (abs(term.as_coeff_Mul()[0]) for term in terms))
-    powers = reduce(_common_monomial, element)
+    powers = reduce(lambda one, other: tuple(map(min, one, other)), element)
     shared = present.codec.decode(element.ring.term_new(powers, 1))
     return number, sp.Mul(shared, sp.Add(*(term / shared / number for term in terms)))
-
-
-def _common_monomial(first: tuple[int, ...], second: tuple[int, ...]) -> tuple[int, ...]:
-    return tuple(map(min, first, second))
 
 
 def _rates(present: Presenter) -> list[int]:
@@ -139,7 +135,7 @@ def _completed(present: Presenter, total: PolyElement, place: int) -> Iterator[S
     slope = present.quotient(Quotient(ring, ring.reduce(twice), ring.reduce(number)))
     # n (r + b)² = n r² + 2 n b r + (2 n b)²/(4 n)
     square = Quotient(ring, ring.dot([(twice, twice)]), 2 * number)
-    rest = Quotient.whole(ring, ring.reduce(_without(total, place))) + _minus(square)
+    rest = Quotient.whole(ring, ring.reduce(_without(total, place))) - square
     head = n * (ring.generators[place].expression + slope) ** 2
     if rest.denominator.is_ground:
         number_below = sp.Rational(*map(int, _ratio(rest.denominator)))
@@ -151,10 +147,6 @@ def _completed(present: Presenter, total: PolyElement, place: int) -> Iterator[S
 def _without(element: PolyElement, place: int) -> PolyElement:
     """The terms that do not hold a generator."""
     return element.ring.from_dict({m: c for m, c in element.items() if not m[place]})
-
-
-def _minus(value: Quotient) -> Quotient:
-    return Quotient(value.ring, -value.numerator, value.denominator)
 
 
 def _ratio(ground: PolyElement) -> tuple[int, int]:

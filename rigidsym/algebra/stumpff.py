@@ -8,7 +8,6 @@ and must be equal there.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -150,7 +149,7 @@ class Rewriter:
             else:
                 rest += before * self._n(-2 * power)
         terms.append(((), ring.reduce(rest)))
-        if any(self._is_singular(before) for _, before in terms):
+        if any(m[place] for _, before in terms for m in before for place in self._norm.powers):
             return None
         return sp.Add(
             *(
@@ -169,9 +168,6 @@ class Rewriter:
         """The ratio r to a power, as a coefficient."""
         ratio = self._norm.ratio**power
         return self.codec.ring.polynomials.domain(int(ratio.p), int(ratio.q))
-
-    def _is_singular(self, element: PolyElement) -> bool:
-        return any(monomial[place] for monomial in element for place in self._norm.powers)
 
     def _parts(self, element: PolyElement) -> Parts | None:
         """Split by powers of cos rn = c₀, sin rn = rn c₁, 1/n²; None for an odd power of n."""
@@ -200,8 +196,8 @@ def _lowered(parts: Mapping[tuple[Orders, int], PolyElement], square: Any) -> Pa
             _gather(done, (orders, power), before)
             continue
         first, *others = orders
-        start = taylor(first)[0]
-        _gather(waiting, (tuple(others), power), before * _coefficient(before, start))
+        start = before.ring.domain(*taylor(first)[0].as_integer_ratio())
+        _gather(waiting, (tuple(others), power), before * start)
         raised = tuple(sorted((*others, first + 2)))
         _gather(waiting, (raised, power - 1), -before * square)
     return done
@@ -209,7 +205,3 @@ def _lowered(parts: Mapping[tuple[Orders, int], PolyElement], square: Any) -> Pa
 
 def _gather(parts: Parts, key: tuple[Orders, int], before: PolyElement) -> None:
     parts[key] = parts[key] + before if key in parts else before
-
-
-def _coefficient(element: PolyElement, value: Fraction) -> Any:
-    return element.ring.domain(value.numerator, value.denominator)

@@ -188,7 +188,7 @@ def _angle_key(angle: sp.Expr, letters: Letters) -> Key:
 @lru_cache(maxsize=1 << 15)  # a sum asks for the keys of what its own terms hold, at every depth
 def _term_key(term: sp.Expr, letters: Letters) -> Key:
     factors = [factor for factor in sp.Mul.make_args(term) if not factor.is_Number]
-    has_bracket = any(_is_sum(factor) for factor in factors)
+    has_bracket = any(power_of(factor)[0].is_Add for factor in factors)
     rates = _rates(term, letters)
     keys = [_factor_key(factor, letters) for factor in ordered_factors(factors, letters)]
     return (has_bracket, rates, len(factors), keys)
@@ -206,7 +206,3 @@ def _rates(term: sp.Expr, letters: Letters) -> list[Place]:
             inside = _rates(ordered_terms(base.args, letters)[0], letters)
             found += inside * (int(exponent) if exponent.is_Integer and exponent > 0 else 1)
     return sorted(found)
-
-
-def _is_sum(factor: sp.Expr) -> bool:
-    return bool(power_of(factor)[0].is_Add)

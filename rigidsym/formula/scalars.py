@@ -175,7 +175,7 @@ class _ScalarWalk:
             return row(MINUS, self._term(-node))
         coefficient, rest = node.as_coeff_Mul()
         factors = ordered_factors(sp.Mul.make_args(rest), self.letters)
-        below = [_inverted(factor) for factor in factors if _is_reciprocal(factor)]
+        below = [sp.Pow(f.base, -f.exp) for f in factors if _is_reciprocal(f)]
         above = [factor for factor in factors if not _is_reciprocal(factor)]
         if below or (len(above) == 1 and self._goes_above(above[0])):
             return self._quotient(_scaled(coefficient.p, above), _scaled(coefficient.q, below))
@@ -260,10 +260,6 @@ def _scaled(number: sp.Expr, factors: Sequence[sp.Expr]) -> list[sp.Expr]:
 
 def _is_reciprocal(node: sp.Expr) -> bool:
     return bool(node.is_Pow and node.exp.is_Rational and node.exp.is_negative)
-
-
-def _inverted(node: sp.Pow) -> sp.Expr:
-    return sp.Pow(node.base, -node.exp)
 
 
 def _is_name(node: sp.Expr) -> bool:

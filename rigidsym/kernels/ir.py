@@ -116,9 +116,9 @@ Expression = Name | Number | Negative | Sum | Product | Call | Guarded | Compare
 
 def parts(expression: Expression) -> tuple[Expression, ...]:
     """The expressions that one node is made of."""
-    if isinstance(expression, Name | Number):  # most are
-        return ()
     match expression:
+        case Name() | Number():  # most are
+            return ()
         case Negative(operand):
             return (operand,)
         case Sum(terms):
@@ -133,7 +133,6 @@ def parts(expression: Expression) -> tuple[Expression, ...]:
             return (condition, then, otherwise)
         case Guarded(value, scale):
             return (value,) if scale is None else (value, scale)
-    return ()
 
 
 def rebuilt(change: Callable[[Expression], Expression], expression: Expression) -> Expression:

@@ -8,12 +8,13 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from rigidsym.errors import ExpressionError, Fault, MissingExtra, RigidsymError, SpecError, offer
 from rigidsym.spec.faults import Faults, Source, described, dotted, shortened
 from rigidsym.spec.toml_lines import Path, locate
 
+T = TypeVar("T")
 MOST_CHARACTERS = 50_000
 _LONGEST_LINE = 1000  # tomllib's time grows with the square of the dots in a key
 _PLACE = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
@@ -57,17 +58,21 @@ class Table:
                 self.fault(f"unknown key; {(hints or {}).get(key) or offer(key, known)}", key)
 
     def text(self, key: str) -> str | None:
-        value = self.value(key)
-        if value is None or isinstance(value, str):
-            return value
-        self.mistyped(value, "a text in quotes", key)
-        return None
+        return self._of_kind(key, str, "a text in quotes")
 
     def number(self, key: str) -> float | None:
+        return self._of_kind(key, (int, float), "a number")
+
+    def flag(self, key: str) -> bool | None:
+        return self._of_kind(key, bool, "true or false")
+
+    def _of_kind(self, key: str, kind: type[T] | tuple[type[T], ...], expected: str) -> T | None:
+        """The value of a key; true and false are no numbers."""
         value = self.value(key)
-        if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
+        if isinstance(value, kind) and isinstance(value, bool) == (kind is bool):
             return value
-        self.mistyped(value, "a number", key)
+        if value is not None:
+            self.mistyped(value, expected, key)
         return None
 
     def choice(self, key: str, known: Sequence[str]) -> str | None:
@@ -76,13 +81,6 @@ class Table:
         if text is None or text in known:
             return text
         self.fault(f"unknown name {shortened(text)}; {offer(text, known)}", key)
-        return None
-
-    def flag(self, key: str) -> bool | None:
-        value = self.value(key)
-        if value is None or isinstance(value, bool):
-            return value
-        self.mistyped(value, "true or false", key)
         return None
 
     def table(self, key: str) -> Table | None:

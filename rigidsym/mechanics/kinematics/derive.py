@@ -13,7 +13,7 @@ from functools import cached_property
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.matrix import RingMatrix, hat
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.tree import Bracket, Formula, Rate, equal, row
 from rigidsym.mechanics.derivation import Found, Proof, VectorForm
 from rigidsym.mechanics.kinematics.vector_forms import applied_form, matrix_form, vector_form
 from rigidsym.mechanics.kinematics.workspace import Values
@@ -63,7 +63,7 @@ class Kinematics(ABC):
     def laws(self) -> Mapping[str, Sequence[Law]]:
         """What is to be proved of each quantity."""
         symbol, spin = self.symbol, claims.spin_of(self.symbol)
-        whole_rate = claims.rate_of_whole(claims.spin_of(ROTATION))
+        whole_rate = Rate(Bracket(claims.spin_of(ROTATION)))
         skew = [("skew", claims.skew(spin))]
         if self.model.passive:
             skew.append(("passive_operator", claims.is_operator(BODY.omega, spin, "-")))
@@ -84,7 +84,7 @@ class Kinematics(ABC):
         for name, frame in FRAMES.items():
             inverse = self.inverse_symbol(frame)
             of_frames |= {
-                f"rate_matrix_{name}": claims.maps_rates(frame.matrix, RATES, frame.omega),
+                f"rate_matrix_{name}": equal(row(frame.matrix, RATES), frame.omega),
                 f"inverse_rate_matrix_{name}": claims.inverse_of(frame.matrix, inverse),
                 f"rates_from_angular_velocity_{name}": claims.solves(
                     frame.matrix, inverse, frame.omega

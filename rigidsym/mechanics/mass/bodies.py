@@ -103,11 +103,11 @@ def _central(moments: Moments) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
     second = field.read_matrix(moments.second)
 
     def about_centre(i: int, j: int) -> Quotient:
-        return second[i][j] + field.negative(first[i] * first[j] * inverse)
+        return second[i][j] - first[i] * first[j] * inverse
 
     def entry(i: int, j: int) -> sp.Expr:
         if i != j:
-            return field.write(field.negative(about_centre(i, j)))
+            return field.write(-about_centre(i, j))
         return field.write(field.total(about_centre(k, k) for k in range(3) if k != i))
 
     centre = sp.ImmutableMatrix([field.write(part * inverse) for part in first])

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import TRANSPOSE, Bracket, Formula, Power, Rate, row
+from rigidsym.formula.tree import TRANSPOSE, Formula, Power, Rate, row
 
 
 def rate_of(matrix: Formula) -> Formula:
     return Rate(matrix)
-
-
-def rate_of_whole(product: Formula) -> Formula:
-    return Rate(Bracket(product))
 
 
 def transpose_of(matrix: Formula) -> Formula:
@@ -52,10 +48,6 @@ def is_operator(vector: Formula, matrix: Formula, sign: str = "") -> Formula:
 
 def rotates(rotation: Formula, body: Formula, space: Formula) -> Formula:
     return formula(r"#3 = #1\,#2", rotation, body, space)
-
-
-def maps_rates(matrix: Formula, rates: Formula, omega: Formula) -> Formula:
-    return formula(r"#1\,#2 = #3", matrix, rates, omega)
 
 
 def inverse_of(matrix: Formula, inverse: Formula) -> Formula:
