@@ -50,7 +50,8 @@ from rigidsym.motion import Motion, derive
 
 BITS = {64: 52, 32: 23}  # of a float, in all: eps is two to minus this
 CHAINS = ("z(phi) [1,2,2](theta)", "z(2*phi-psi) x(theta)", "z(phi) x(theta/2) z(psi)")
-PUBLISHED = {"rigidBody1": 2.95e-13, "rigidBody2": 3.61e-11}  # by FPTaylor
+# By FPTaylor: benchmarks/real2float/results.txt, config-b, in github.com/soarlab/FPTaylor (efbbc83)
+PUBLISHED = {"rigidBody1": 2.95e-13, "rigidBody2": 3.61e-11}
 RANGE = 15.0  # of their inputs, which are rounded
 _SCALES = {str(2**k) for k in range(8)} | {float(0.5**k).hex() for k in range(8)}  # exact factors
 _AND = " /\\ "

@@ -48,9 +48,10 @@ class Finding:
 
     path: Path
     problem: str = ""  # "" if it is as derived
+    note: str = ""
 
     def __str__(self) -> str:
-        return f"{self.path}: {self.problem or 'up to date'}"
+        return f"{self.path}: {self.problem or 'up to date'}{self.note}"
 
 
 def _records(path: Path) -> list[Path]:
@@ -82,12 +83,15 @@ def _compare(record: Path) -> Iterator[Finding]:
 
 
 def _certified(path: Path, record: Path) -> Finding:
-    """What the independent checker says of a certificate."""
+    """What the independent checker says of a certificate, and what it does not cover."""
+    content = content_of(record)
     try:
-        verify(content_of(record), content_of(path))
+        proved = verify(content, content_of(path))
     except BROKEN as error:
         return Finding(path=path, problem=f"refused: {error}")
-    return Finding(path=path)
+    rest = [q["name"] for q in content["quantities"] if q["name"] not in proved]
+    note = f"\n  proved: {', '.join(proved)}\n  not covered: {', '.join(rest) or 'nothing'}"
+    return Finding(path=path, note=note)
 
 
 def finding_of(path: Path, expected: str) -> Finding:

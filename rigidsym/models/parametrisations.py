@@ -29,6 +29,8 @@ _SCHAUB = Citation(
 )
 _GOLDSTEIN = Citation(text="H. Goldstein, Classical Mechanics (1950), section 4-5")
 _SCALAR = {False: "scalar first", True: "scalar last"}
+_QUATERNION = "unit_quaternion({0}, {1}, {2}, {3})"
+_SQUARE = "{0}**2 + {1}**2 + {2}**2"
 _COSINES = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
 
 
@@ -54,6 +56,7 @@ def Quaternion(
             "every multiple of it is the same rotation.",
         ),
         matrix=model.matrix / (condition + 1),
+        definition=model.definition.removeprefix("unit_"),
         constraints=(),
     )
 
@@ -80,6 +83,7 @@ def UnitQuaternion(
         _SHUSTER,
         passive=passive,
         constraints=(w**2 + _square(vector) - 1,),
+        definition="unit_quaternion({3}, {0}, {1}, {2})" if scalar_last else _QUATERNION,
         vector=tuple(vector),
     )
 
@@ -103,6 +107,7 @@ def CayleyKlein(
         _GOLDSTEIN,
         passive=passive,
         constraints=(_square((a, b, c, d)) - 1,),
+        definition="unit_quaternion({0}, {3}, {2}, {1})",
         vector=(d, c, b),
     )
 
@@ -124,6 +129,7 @@ def AxisAngle(
         _SHUSTER,
         passive=passive,
         constraints=(_square(axis) - 1,),
+        definition="axis_angle({0}, {1}, {2}, {3})",
         units=("", "", "", "rad"),
         vector=tuple(axis),
     )
@@ -147,6 +153,7 @@ def RotationVector(
         sp.eye(3) + sp.sin(angle) / angle * skew + (1 - sp.cos(angle)) / square * skew * skew,
         _SHUSTER,
         passive=passive,
+        definition="axis_angle({0}/N, {1}/N, {2}/N, N)".replace("N", f"sqrt({_SQUARE})"),
         units=("rad",) * 3,
         vector=vector,
     )
@@ -170,6 +177,7 @@ def GibbsVector(
         sp.eye(3) + 2 / (1 + _square(vector)) * (skew + skew * skew),
         _SHUSTER,
         passive=passive,
+        definition="quaternion(1, {0}, {1}, {2})",
         vector=vector,
     )
 
@@ -194,6 +202,7 @@ def ModifiedRodrigues(
         sp.eye(3) + (8 * skew * skew + 4 * (1 - square) * skew) / (1 + square) ** 2,
         _SCHAUB,
         passive=passive,
+        definition="modified_rodrigues(1, {0}, {1}, {2})",
         vector=vector,
     )
 
@@ -247,8 +256,10 @@ def _model(
     *,
     passive: bool,
     units: tuple[str, ...] = (),
+    definition: str = "",
     **options: Any,
 ) -> RotationModel:
+    """`definition` is a text with {0}, {1}, ... in place of the names of the coordinates."""
     return RotationModel(
         name=name + ("_passive" if passive else ""),
         title=title + (", passive" if passive else ""),
@@ -256,6 +267,7 @@ def _model(
         coordinates=coordinates,
         matrix=sp.ImmutableMatrix(matrix),
         source=source,
+        definition=definition.format(*(q.func.__name__ for q in coordinates)),
         units=units or ("",) * len(coordinates),
         passive=passive,
         **options,

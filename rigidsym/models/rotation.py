@@ -127,6 +127,7 @@ class RotationModel:
     matrix: sp.ImmutableMatrix  # R, (3, 3)
     source: Citation
     turns: tuple[Turn, ...] = ()  # if R is a product of turns: left to right as multiplied
+    definition: str = ""  # without turns, R as certificates name it: "quaternion(w, x, y, z)"
     constraints: tuple[sp.Expr, ...] = ()  # each vanishes for all time
     units: tuple[str, ...] = ()  # of the coordinates; radians by default
     passive: bool = False

@@ -8,6 +8,8 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
+from rigidsym.errors import ExpressionError
+from rigidsym.tools.compare.language import read_formula
 
 CASES = [
     ("ZXZ", "rotation_matrix"),
@@ -196,3 +198,12 @@ def test_a_long_wrong_entry_is_not_searched_for_ever():
     formula[0, 0] += sum(sp.sin(k * sp.Symbol("psi")) for k in range(1, 80))
     (repair,) = rs.compare(formula, "ZXZ", "rate_matrix_body").repairs
     assert (repair.kind, repair.place) == ("entry", (1, 1))
+
+
+def test_a_forgotten_operator_is_named_with_its_neighbours():
+    with pytest.raises(ExpressionError) as caught:
+        read_formula("Rz(q1) Ry(q2)")
+    assert "operator such as * between 'Rz(q1)' and 'Ry'" in str(caught.value)
+    assert caught.value.column == 8
+    with pytest.raises(ExpressionError, match="unexpected"):
+        read_formula("phi + * psi")

@@ -6,7 +6,7 @@ Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +28,7 @@ from rigidsym.version import OWNERSHIP, __version__
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
     from rigidsym.models.body import RigidBody
+    from rigidsym.models.rotation import RotationModel, Turn
 
 SCHEMA = "rigidsym.derivation"
 SCHEMA_VERSION = 2
@@ -54,6 +55,7 @@ def record(
         "presentation": "passive" if derivation.model.passive else "active",
         "convention": list(derivation.model.convention),
         "source": str(derivation.model.source),
+        "rotation": _rotation(derivation.model, names),
         "is_proved": derivation.is_proved and (not conversions or conversions.is_proved),
         "request": dict(request),
         **({"theory": _theory(derivation)} if derivation.theory else {}),
@@ -75,6 +77,32 @@ def record(
         **({"body": _body(derivation.body, names)} if derivation.body else {}),
         **({"conversions": _conversions(conversions, names)} if conversions else {}),
     }
+
+
+def _rotation(model: RotationModel, names: Names) -> dict[str, Any]:
+    """R as a certificate's checker builds it: turns from left to right, or nine entries."""
+    matrix, conditions = model.matrix, list(model.constraints)
+    if model.pullback:
+        products = matrix * matrix.T - sp.eye(3)
+        conditions = [products[i, j] for i in range(3) for j in range(i + 1)] + [matrix.det() - 1]
+    texts = [text for turn in model.turns for text in _turn(turn, names)]
+    found = texts or ([model.definition] if model.definition else [])
+    return {
+        **({"turns": found} if found else {"matrix": _entries(matrix, names, is_vector=False)}),
+        "conditions": [_plain(condition, names) for condition in conditions],
+    }
+
+
+def _turn(turn: Turn, names: Names) -> Iterator[str]:
+    """One turn, or two about the same axis where a number is part of the angle."""
+    constant, moving = sp.expand(turn.angle).as_coeff_add()
+    constant += sum(term for term in moving if term.is_number)
+    angle = _plain(turn.angle - constant, names)
+    axis = ", ".join(_plain(part, names) for part in turn.direction)
+    if turn.angle != constant:
+        yield f"axis_angle({axis}, {angle})" if turn.components else f"{turn.axis}({angle})"
+    if constant:
+        yield f"constant_turn({axis}, {sp.cos(constant)}, {sp.sin(constant)})"
 
 
 def _body(body: RigidBody, names: Names) -> dict[str, Any]:

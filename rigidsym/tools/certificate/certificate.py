@@ -7,15 +7,19 @@ multiples of the relations, which `checker`, Coq and Lean can then verify withou
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from rigidsym.errors import CheckError
-from rigidsym.tools.certificate.checker import BROKEN, Equation, Language, Poly, claims
-from rigidsym.tools.certificate.cofactors import Division
+from rigidsym.tools.certificate.checker import BROKEN, Language, Poly, stated
+from rigidsym.tools.certificate.cofactors import Division, UnfinishedError
+from rigidsym.tools.certificate.point import point_of
 
-SCHEMA = "rigidsym.certificate"
+SCHEMA, SCHEMA_VERSION = "rigidsym.certificate", 2
+Equation = tuple[Poly, Poly]
 Terms = Sequence[Sequence[str | int]]  # coefficients, each with the places of its names
 
 
@@ -36,6 +40,7 @@ class Certificate:
     parts: Mapping[str, int]  # φ: n, where cosines and sines are those of φ/n
     names: Sequence[str]
     relations: Sequence[Terms]
+    point: Mapping[str, int]  # where all relations hold, modulo PRIME
     claims: Mapping[str, Sequence[ProvedEquation]]
     uncovered: Sequence[str]  # quantities about which the checker states nothing
 
@@ -43,11 +48,12 @@ class Certificate:
     def json(self) -> str:
         content = {
             "schema": SCHEMA,
-            "schema_version": 1,
+            "schema_version": SCHEMA_VERSION,
             "name": self.name,
             "parts": dict(self.parts),
             "names": list(self.names),
             "relations": self.relations,
+            "point": dict(self.point),
             "claims": {
                 name: [entry.cofactors for entry in entries]
                 for name, entries in self.claims.items()
@@ -58,39 +64,55 @@ class Certificate:
 
 
 def certificate_of(record: Mapping[str, Any]) -> Certificate:
-    """Raises CheckError for a claim without cofactors, and for what the checker cannot read."""
+    """Raises CheckError for a claim without cofactors, and for a rotation that cannot be read."""
     try:
-        known, found = _claims(record)
+        known, found, uncovered = _claims(record)
+        relations = [relation for relation in known.relations.values() if relation.terms]
+        point = point_of(known)
     except BROKEN as error:
         raise CheckError(f"{record['name']}: no certificate, since {error}") from error
-    relations = list(known.relations.values())
-    residuals = {name: [one - two for one, two in entries] for name, entries in found.items()}
+    residuals = {name: [one + two * -1 for one, two in entries] for name, entries in found.items()}
     division = Division(relations, [poly for entries in residuals.values() for poly in entries])
 
-    def proved(name: str, equation: Equation, residual: Poly) -> ProvedEquation:
-        try:
+    def proved(name: str) -> Iterator[ProvedEquation]:
+        for (left, right), residual in zip(found[name], residuals[name], strict=True):
             cofactors = division.cofactors(residual)
+            terms = {place: division.terms(cofactor) for place, cofactor in cofactors.items()}
+            yield ProvedEquation(left=left, right=right, cofactors=terms)
+
+    claims: dict[str, Sequence[ProvedEquation]] = {}
+    for name in found:
+        try:
+            claims[name] = list(proved(name))
+        except UnfinishedError:
+            uncovered.append(name)
         except CheckError as error:
             raise CheckError(f"{record['name']}: {name}: {error}") from error
-        terms = {place: division.terms(cofactor) for place, cofactor in cofactors.items()}
-        return ProvedEquation(left=equation[0], right=equation[1], cofactors=terms)
-
     return Certificate(
         name=record["name"],
         parts=known.parts,
         names=division.names,
         relations=[division.terms(division.element(relation)) for relation in relations],
-        claims={
-            name: [proved(name, *pair) for pair in zip(found[name], residuals[name], strict=True)]
-            for name in found
-        },
-        uncovered=[q["name"] for q in record["quantities"] if q["name"] not in found],
+        point=point,
+        claims=claims,
+        uncovered=uncovered,
     )
 
 
-def _claims(record: Mapping[str, Any]) -> tuple[Language, dict[str, list[Equation]]]:
-    """The claims, in cosines and sines of the parts of angles that all of them need."""
-    first = Language(record, {})
-    dict(claims(record, first))
-    known = Language(record, first.parts)
-    return known, dict(claims(record, known))
+def _claims(record: Mapping[str, Any]) -> tuple[Language, dict[str, list[Equation]], list[str]]:
+    """The claims, and the names of quantities that the checker does not know or cannot read."""
+    parts: dict[str, int] = {}
+    for name, denominator in re.findall(r"(\w+)/(\d+)", json.dumps(record["rotation"])):
+        parts[name] = math.lcm(parts.get(name, 1), int(denominator))
+    names = [quantity["name"] for quantity in record["quantities"]]
+    covered = [name for name in names if _is_stated(record, parts, name)]
+    known = Language(record, parts)
+    found = stated(record, known, covered)
+    return known, found, [name for name in names if name not in covered]
+
+
+def _is_stated(record: Mapping[str, Any], parts: Mapping[str, int], name: str) -> bool:
+    try:
+        return name in stated(record, Language(record, parts), [name])
+    except BROKEN:
+        return False

@@ -1,10 +1,10 @@
 """Checks certificates without the program that wrote them: `python checker.py FOLDER...`
 
-A record NAME.json holds printed expressions, and NAME.cert.json cofactors. Each claim is built here
-from its definition: R from its turns or its quaternion, d/dt by the chain rule, C(Ω) = dR/dt Rᵀ,
-C(Ω′) = Rᵀ dR/dt. It is that a polynomial vanishes, and that polynomial must be the sum of cofactors
-times relations: cos² + sin² = 1, the square of a root, a divisor times its inverse, and conditions
-that are stated. Nothing is used but whole numbers, fractions and the standard library of Python.
+A record NAME.json holds printed expressions, NAME.cert.json cofactors. Claims are built here from
+definitions: R from its turns, d/dt by the chain rule, C(Ω) = dR/dt Rᵀ, C(Ω′) = Rᵀ dR/dt, energies
+and momenta from Ω′ and the body. Each must be a sum of cofactors times relations: cos² + sin² = 1,
+the square of a root, a divisor times its inverse, stated conditions. A point modulo PRIME where all
+of them hold shows that they do not contradict one another and that no divisor is zero.
 """
 
 from __future__ import annotations
@@ -12,38 +12,25 @@ from __future__ import annotations
 import ast
 import json
 import math
-import re
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
-from functools import partial, reduce
 from pathlib import Path
 from typing import Any
 
-THREE = "({0}**2 + {1}**2 + {2}**2)"
-FOUR = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"
-FORMS = {  # a vector v and numbers c and s, in the coordinates: R = 1 + s C(v) + (1 - c) C(v)²
-    "quaternion": f"{{1}}; {{2}}; {{3}}; 1 - 2/{FOUR}; 2*{{0}}/{FOUR}",
-    "unit_quaternion": f"{{1}}; {{2}}; {{3}}; 1 - 2/{FOUR}; 2*{{0}}/{FOUR}",
-    "cayley_klein": f"{{3}}; {{2}}; {{1}}; 1 - 2/{FOUR}; 2*{{0}}/{FOUR}",
+FORMS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
+    "x": "1; 0; 0; cos({0}); sin({0})",
+    "y": "0; 1; 0; cos({0}); sin({0})",
+    "z": "0; 0; 1; cos({0}); sin({0})",
     "axis_angle": "{0}; {1}; {2}; cos({3}); sin({3})",
-    "rotation_vector": "{0}/L; {1}/L; {2}/L; cos(L); sin(L)".replace("L", f"sqrt{THREE}"),
-    "gibbs_vector": f"{{0}}; {{1}}; {{2}}; 1 - 2/(1 + {THREE}); 2/(1 + {THREE})",
-    "modified_rodrigues": f"2*{{0}}; 2*{{1}}; 2*{{2}}; 1 - 2/(1 + {THREE})**2;"
-    f"2*(1 - {THREE})/(1 + {THREE})**2",
+    "constant_turn": "{0}; {1}; {2}; {3}; {4}",
+    "unit_quaternion": "{1}; {2}; {3}; -1; 2*{0}",
+    "quaternion": "{1}; {2}; {3}; 1 - 2/N; 2*{0}/N",
+    "modified_rodrigues": "2*{1}; 2*{2}; 2*{3}; 1 - 2/N**2; 2*(2 - N)/N**2",  # {0} is 1
 }
-UNIT = {"unit_quaternion": 4, "cayley_klein": 4, "axis_angle": 3}  # coordinates of length one
-PRESETS = {  # turns from left to right; the record says whether Rᵀ is presented
-    **dict.fromkeys(("lecture_angles", "goldstein", "landau_lifshitz", "wertz", "bunge"), "ZXZ"),
-    **{"aerospace": "ZYX", "rpy": "xyz", "davenport": "z({0}) x({1}) [0,b,c]({2})"},
-}
-AXES = {"x": "1,0,0", "y": "0,1,0", "z": "0,0,1"}
-COSINES: dict[Any, str] = {0: "1", 2: "sqrt(3)/2", 3: "sqrt(2)/2", 4: "1/2", 6: "0"}  # of kπ/12
-TURN = r"\s*(?:\[([^][]+)\]|([xyz]))\s*\(([^()]+)\)\s*"
-
-
-class RefusedError(Exception):
-    """A claim that is not proved, or a record that this program cannot read."""
+SQUARE = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"  # N
+PRIME, MOST = 29682952539239999999, 99  # roots to 37 exist modulo PRIME; powers are below MOST
+BROKEN = (LookupError, ArithmeticError, AttributeError, TypeError, ValueError, SyntaxError)
 
 
 class Poly:
@@ -53,24 +40,17 @@ class Poly:
         self.terms = {m: c for m, c in terms.items() if c}
         self.names = {name for m in self.terms for name in m}
 
-    def __add__(self, other: Poly | int) -> Poly:
-        total = dict(self.terms)
-        for m, c in (other if isinstance(other, Poly) else Poly({(): other})).terms.items():
-            total[m] = total.get(m, 0) + c
-        return Poly(total)
+    def __add__(self, other: Poly) -> Poly:
+        monomials = {**self.terms, **other.terms}
+        return Poly({m: self.terms.get(m, 0) + other.terms.get(m, 0) for m in monomials})
 
     def __mul__(self, other: Poly | Fraction | int) -> Poly:
         total: dict[tuple[str, ...], Fraction | int] = {}
-        for m, c in self.terms.items():
-            for n, d in (other if isinstance(other, Poly) else Poly({(): other})).terms.items():
+        for n, d in (other.terms if isinstance(other, Poly) else {(): other}).items():
+            for m, c in self.terms.items():
                 both = tuple(sorted(m + n))
                 total[both] = total.get(both, 0) + c * d
         return Poly(total)
-
-    __radd__, __rmul__ = __add__, __mul__
-
-    def __sub__(self, other: Poly | int) -> Poly:
-        return self + -1 * other
 
     def __str__(self) -> str:
         return " + ".join("*".join((str(c), *m)) for m, c in sorted(self.terms.items())) or "0"
@@ -80,306 +60,225 @@ class Poly:
         return Poly({m[:place] + m[place + 1 :]: c for m, (place, c) in whole.items()})
 
 
-Matrix = list[list[Poly]]
-Equation = tuple[Poly, Poly]
-Change = Callable[[Poly], Poly]
-BROKEN = (RefusedError, LookupError, ArithmeticError, AttributeError, TypeError, ValueError)
+class Matrix:
+    """Rows of polynomials; a vector is a column, and a scalar one entry."""
+
+    def __init__(self, rows: Iterable[Iterable[Poly]]) -> None:
+        self.rows = [list(row) for row in rows]
+        self.entries = [entry for row in self.rows for entry in row]
+
+    @property
+    def T(self) -> Matrix:
+        return Matrix(zip(*self.rows, strict=True))
+
+    def map(self, change: Callable[[Poly], Poly]) -> Matrix:
+        return Matrix(map(change, row) for row in self.rows)
+
+    def __add__(self, other: Matrix) -> Matrix:
+        rows = zip(self.rows, other.rows, strict=True)
+        return Matrix([a + b for a, b in zip(*pair, strict=True)] for pair in rows)
+
+    def __mul__(self, factor: Poly | Fraction | int) -> Matrix:
+        return self.map(lambda entry: entry * factor)
+
+    def __matmul__(self, other: Matrix) -> Matrix:
+        pairs = [[zip(row, column, strict=True) for column in other.T.rows] for row in self.rows]
+        return Matrix([sum((a * b for a, b in pair), ZERO) for pair in row] for row in pairs)
+
+
+def letter(name: str) -> Poly:
+    return Poly({(name,): 1})
+
+
+def hat(vector: Matrix) -> Matrix:  # C(v), the operator v ×
+    x, y, z = vector.entries
+    return Matrix([[ZERO, z * -1, y], [z, ZERO, x * -1], [y * -1, x, ZERO]])
+
+
 ZERO, ONE = Poly({}), Poly({(): 1})
+UNITS = Matrix([ONE if j == k else ZERO for k in range(3)] for j in range(3))
 
 
 class Language:
-    """The names of a record, how they change in time, and the relations between them."""
+    """What the texts of a record say, how it changes, and the relations that this needs."""
 
     def __init__(self, record: Mapping[str, Any], parts: Mapping[str, int]) -> None:
-        groups = record["arguments"]
-        self.arguments = {g["name"]: [c["name"] for c in g["components"]] for g in groups}
-        names = [n for g in ("q", "q_dot", "q_ddot") for n in self.arguments[g]]
-        if len(set(names)) < len(names) or not all(map(str.isidentifier, names)):
-            raise RefusedError(f"the names {', '.join(names)} are not different names")
-        self.parts = dict(parts)  # of the angle φ, φ/n has a cosine and a sine
+        self.groups = {g["name"]: [c["name"] for c in g["components"]] for g in record["arguments"]}
+        self.columns = {g: Matrix([letter(n)] for n in ns) for g, ns in self.groups.items()}
+        self.parts = parts  # of the angle φ, φ/n has a cosine
         self.relations: dict[str, Poly] = {}
-        self.values = {n: Poly({(n,): 1}) for g in self.arguments.values() for n in ("pi", *g)}
-        self.rates = {n: (lambda: ZERO) for n in self.arguments.get("parameters", ())}
-        for one, two in (("q", "q_dot"), ("q_dot", "q_ddot")):
-            pairs = zip(*map(self.arguments.__getitem__, (one, two)), strict=True)
-            self.rates |= {name: partial(self.values.__getitem__, rate) for name, rate in pairs}
-        self.at = {name: 0.7 + 0.1 * place for place, name in enumerate(self.values)}  # a point
+        self.flow = dict.fromkeys(("pi", *self.groups.get("parameters", ())), ZERO)  # d/dt
+        for name in self.groups["q"]:
+            self.flow |= {name: letter(f"{name}_dot"), f"{name}_dot": letter(f"{name}_ddot")}
 
-    def read(self, text: str) -> Poly:
-        try:
-            return self._value(ast.parse(text.strip(), mode="eval").body)
-        except (SyntaxError, KeyError, RecursionError) as error:
-            raise RefusedError(f"cannot read {text!r}: {error}") from error
+    def matrix(self, given: Any) -> Matrix:
+        rows = given if isinstance(given, list) else [given]
+        return Matrix(map(self.read, row if isinstance(row, list) else [row]) for row in rows)
 
-    def _value(self, node: ast.expr) -> Poly:
-        match node:
-            case ast.Constant(value=int(value)):
-                return ONE * value
-            case ast.Name(id=name):
-                return self.values[name]
+    def read(self, given: str | ast.expr, power: int = 1) -> Poly:
+        """The power of what a text says; a product is raised factor by factor."""
+        match given:
+            case str():
+                return self.read(ast.parse(" ".join(given.split()), mode="eval").body)
+            case ast.BinOp(left=left, op=ast.Mult() | ast.Div() as op, right=right):
+                return self.read(left, power) * self.read(
+                    right, power * (-1) ** isinstance(op, ast.Div)
+                )
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
+                found = self.read(left) + self.read(right) * (-1) ** isinstance(op, ast.Sub)
+            case ast.BinOp(left=left, op=ast.Pow(), right=ast.Constant(value=int(times))):
+                if abs(times * power) > MOST:
+                    raise ValueError(f"cannot raise to the power {times}")
+                return self.read(left, times * power)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                return -1 * self._value(operand)
-            case ast.BinOp(left=left, op=ast.Pow(), right=right):
-                base, exponent = self._value(left), self._value(right)
-                power = Fraction(exponent.terms.get((), 0))
-                if exponent.names or power.denominator > 2 or abs(power) > 99:
-                    raise RefusedError(f"cannot raise to the power {exponent}")
-                base = self.root(base) if power.denominator == 2 else base
-                base = self.inverse(base) if power < 0 else base
-                return math.prod([base] * abs(power.numerator), start=ONE)
-            case ast.BinOp(left=left, op=ast.Div(), right=right):
-                return self._value(left) * self._inverse(right)
-            case ast.BinOp(left=left, op=op, right=right):
-                acts = {ast.Add: Poly.__add__, ast.Sub: Poly.__sub__, ast.Mult: Poly.__mul__}
-                return acts[type(op)](self._value(left), self._value(right))
+                found = self.read(operand) * -1
+            case ast.Constant(value=int(value)):
+                found = ONE * value
+            case ast.Name(id=name):
+                found = letter(name)
             case ast.Call(func=ast.Name(id="sqrt"), args=[argument]):
-                return self.root(self._value(argument))
+                found = self.root(self.read(argument))
             case ast.Call(func=ast.Name(id=name), args=[argument]):
-                c, s = self.turn(self._value(argument))
-                if name in ("tan", "cot"):
-                    return s * self.inverse(c) if name == "tan" else c * self.inverse(s)
-                return {"cos": c, "sin": s}[name]
-        raise RefusedError(f"cannot read {ast.unparse(node)!r}")
+                c, s = self.turn(self.read(argument))
+                one, other = {"cos": (c, ONE), "sin": (s, ONE), "tan": (s, c), "cot": (c, s)}[name]
+                found = one * self.inverse(other)
+            case _:
+                raise ValueError(f"cannot read {ast.unparse(given)!r}")
+        return math.prod([found if power > 0 else self.inverse(found)] * abs(power), start=ONE)
 
-    def _inverse(self, node: ast.expr) -> Poly:
-        match node:
-            case ast.BinOp(left=left, op=ast.Mult(), right=right):
-                return self._inverse(left) * self._inverse(right)
-            case ast.BinOp(left=base, op=ast.Pow(), right=ast.Constant(value=int(times))):
-                return math.prod([self._inverse(base)] * times, start=ONE)
-        return self.inverse(self._value(node))
-
-    def sample(self, value: Poly) -> float:
-        """Its value at a point that satisfies the relations."""
-        return sum(float(c) * math.prod(self.at[n] for n in m) for m, c in value.terms.items())
-
-    def new(self, name: str, at: float, relation: Change, rate: Change) -> Poly:
-        """A name x with relation(x) = 0 and dx/dt = rate(x), and its value at the point."""
-        self.at[name] = at
-        found = Poly({(name,): 1})
-        self.rates[name] = lambda: rate(found)
-        self.relations[str(relation(found))] = relation(found)
-        return found
+    def _new(self, x: Poly, relation: Poly, rate: Poly) -> Poly:
+        self.relations[str(relation)] = relation
+        self.flow |= dict.fromkeys(x.names, rate)
+        return x
 
     def inverse(self, value: Poly) -> Poly:
-        """1/value, which is taken not to be zero."""
-        if not value.terms:
-            raise RefusedError("an expression divides by zero")
-        size = 1 / Fraction(min(value.terms.items())[1])
+        """1/value, of which the point shows that it is not zero."""
         if not value.names:
-            return ONE * size
-        value, at = value * size, self.sample(value * size)
-        if f"sqrt({value})" in self.at:  # of which the inverse is simpler
-            return math.prod([self.inverse(self.root(value))] * 2, start=ONE * size)
-        if abs(at) < 1e-9:
-            raise RefusedError(f"{value} is a divisor, and vanishes")
-        rate = lambda x: -1 * x * x * self.rate(value)  # noqa: E731
-        return size * self.new(f"1/({value})", 1 / at, lambda x: x * value - 1, rate)
+            return ONE * (1 / Fraction(value.terms.get((), 0)))
+        if f"sqrt({value})" in self.flow:  # of which the inverse is simpler
+            return self.inverse(self.root(value)) * self.inverse(self.root(value))
+        x = letter(f"1/({value})")
+        return self._new(x, x * value + ONE * -1, x * x * self.rate(value) * -1)
 
     def root(self, value: Poly) -> Poly:
-        """The positive root; squares are taken out of numbers."""
-        outside = Fraction(1)
-        if not value.names:
-            size = Fraction(value.terms.get((), 0))
-            whole = size.numerator * size.denominator
-            square = max(k for k in range(1, math.isqrt(whole) + 1) if whole % k**2 == 0)
-            outside, value = Fraction(square, size.denominator), ONE * (whole // square**2)
-        if str(value) == "1":
-            return ONE * outside
-        rate = lambda x: self.rate(value) * self.inverse(2 * x)  # noqa: E731
-        return outside * self.new(
-            f"sqrt({value})", self.sample(value) ** 0.5, lambda x: x * x - value, rate
-        )
+        """The positive root; that of a whole number by the roots of its factors."""
+        whole = 0 if value.names else int(value.terms[()])
+        for k in range(2, min(whole, MOST)):
+            if whole % k == 0:
+                return self.root(ONE * k) * self.root(ONE * (whole // k))
+        x, y = letter(f"sqrt({value})"), letter(f"1/(1*sqrt({value}))")
+        self._new(x, x * x + value * -1, self.rate(value) * y * Fraction(1, 2))
+        self.inverse(x)  # which the rate needs
+        return x
 
     def turn(self, angle: Poly) -> tuple[Poly, Poly]:
         """The cosine and the sine of a sum of multiples of names, by the addition theorems."""
         c, s = ONE, ZERO
-        for name, times in angle.terms.items():
-            if len(name) != 1:
-                raise RefusedError(f"cannot take the cosine of {angle}")
-            one, other = self._turn(name[0], Fraction(times))
-            c, s = c * one - s * other, c * other + s * one
+        for (name,), times in angle.terms.items():
+            part = Fraction(1, self.parts.get(name, 1))
+            count, sign = int(times / part), 1 if times > 0 else -1
+            if count * part != times or abs(count) > MOST:
+                raise ValueError(f"cannot take the cosine of {angle}")
+            one, other = letter(f"cos({part}*{name})"), letter(f"sin({part}*{name})")
+            relation, rate = one * one + other * other + ONE * -1, self.flow[name] * part
+            self._new(one, relation, other * rate * -1)
+            self._new(other, relation, one * rate)
+            for _ in range(abs(count)):
+                c, s = c * one + s * other * -sign, c * other * sign + s * one
         return c, s
 
-    def _turn(self, name: str, times: Fraction) -> tuple[Poly, Poly]:
-        if name == "pi":
-            return self._cosine(times * 12), self._cosine(times * 12 - 6)
-        parts = self.parts[name] = math.lcm(self.parts.get(name, 1), times.denominator)
-        text = name if parts == 1 else f"{name}/{parts}"
-        c, s = (Poly({(f"{function}({text})",): 1}) for function in ("cos", "sin"))
-        relation = c * c + s * s - 1
-        self.relations[str(relation)] = relation
-        self.at[f"cos({text})"] = math.cos(self.at[name] / parts)
-        self.at[f"sin({text})"] = math.sin(self.at[name] / parts)
-        self.rates[f"cos({text})"] = lambda: s * self.rates[name]() * Fraction(-1, parts)
-        self.rates[f"sin({text})"] = lambda: c * self.rates[name]() * Fraction(1, parts)
-        found = ONE, ZERO
-        for _ in range(abs(int(times * parts))):
-            found = found[0] * c - found[1] * s, found[0] * s + found[1] * c
-        return found if times > 0 else (found[0], -1 * found[1])
-
-    def _cosine(self, twelfths: Fraction) -> Poly:
-        size = min(twelfths % 24, -twelfths % 24)
-        return self.read(COSINES[size] if size <= 6 else f"-({COSINES[12 - size]})")
-
     def rate(self, value: Poly) -> Poly:
-        """d/dt; raises KeyError for a name whose rate is not known."""
-        return sum((value.derivative(n) * self.rates[n]() for n in sorted(value.names)), ZERO)
+        """d/dt by the chain rule; raises KeyError for a letter whose rate is not known."""
+        return sum((value.derivative(n) * self.flow[n] for n in sorted(value.names)), ZERO)
 
-    def assume(self, value: Poly) -> None:
-        """Take an expression to vanish at all times, and with it its first two derivatives."""
-        for _ in range(3):
-            if value.terms:
-                self.relations[str(value)] = value
-            if not value.names <= self.rates.keys():
-                return
-            value = self.rate(value)
-
-    def assume_unit(self, vector: Sequence[Poly]) -> None:
-        length = sum(self.sample(part) ** 2 for part in vector) ** 0.5
-        self.at |= {name: self.at[name] / length for part in vector for name in part.names}
-        self.assume(dot(vector, vector) - 1)
-
-    def rotation(self, request: Mapping[str, Any]) -> Matrix:
-        """R, active, as the request defines it."""
-        q, name = self.arguments["q"], request.get("sequence", "")
-        q = [*q[-1:], *q[:-1]] if request.get("scalar_last") else q
-        if "matrix" in request or name == "direction_cosines":
-            entries = request.get("matrix") or [q[k : k + 3] for k in (0, 3, 6)]
-            matrix = [[self.read(entry) for entry in row] for row in entries]
-            for text in request.get("constraints") or ():
-                self.assume(self.read(text))
-            for one, two in orthogonal(matrix) if name else ():
-                self.assume(one - two)
-            return matrix
-        if name in UNIT:
-            self.assume_unit([self.values[part] for part in q[: UNIT[name]]])
-        if name in FORMS:
-            *v, cosine, sine = (self.read(part) for part in FORMS[name].format(*q).split(";"))
-            return turned(v, cosine, sine)
-        turns = self._turns(PRESETS.get(name, name).format(*q), request.get("angles") or q)
-        return reduce(product, turns)
-
-    def _turns(self, text: str, angles: Sequence[str]) -> Iterator[Matrix]:
-        text = text.translate(str.maketrans("123", "XYZ")) if text.isdigit() else text
-        if re.fullmatch("[xyz]{3}|[XYZ]{3}", text):  # about fixed axes, later turns stand left
-            pairs = [*zip(text.lower(), angles, strict=True)][:: -1 if text.islower() else 1]
-            text = " ".join(f"{axis}({angle})" for axis, angle in pairs)
-        if not re.fullmatch(f"({TURN})+", text):
-            raise RefusedError(f"cannot read the rotation {text!r}")
-        for vector, letter, angle in re.findall(TURN, text):
-            axis = [self.read(part) for part in (vector or AXES[letter]).split(",")]
-            if dot(axis, axis).names:  # letters in an axis make it a unit vector
-                self.assume_unit(axis)
-            length = ONE if dot(axis, axis).names else self.root(dot(axis, axis))
-            unit = [part * self.inverse(length) for part in axis]
-            yield turned(unit, *self.turn(self.read(angle)))
+    def rotation(self, given: Mapping[str, Any]) -> Matrix:
+        """R, active, as the product of its turns or by its entries, under stated conditions."""
+        for value in map(self.read, given["conditions"]):
+            rate = self.rate(value)  # it vanishes at all times
+            self.relations |= {str(each): each for each in (value, rate, self.rate(rate))}
+        found = self.matrix(given["matrix"]) if "matrix" in given else UNITS
+        for turn in given.get("turns", ()):
+            name, inside = turn.removesuffix(")").split("(", 1)
+            form = FORMS[name].replace("N", SQUARE).format(*(f"({p})" for p in inside.split(",")))
+            *v, c, s = map(self.read, form.split(";"))
+            axis = hat(Matrix([v]))
+            found = found @ (UNITS + axis * s + axis @ axis * (ONE + c * -1))
+        return found
 
 
-def dot(first: Sequence[Poly], second: Sequence[Poly]) -> Poly:
-    return sum((a * b for a, b in zip(first, second, strict=True)), ZERO)
-
-
-def product(first: Matrix, second: Matrix) -> Matrix:
-    return [[dot(row, column) for column in zip(*second, strict=True)] for row in first]
-
-
-def transposed(matrix: Matrix) -> Matrix:
-    return [list(column) for column in zip(*matrix, strict=True)]
-
-
-def hat(v: Sequence[Poly]) -> Matrix:
-    """C(v), the operator v ×."""
-    return [[ZERO, -1 * v[2], v[1]], [v[2], ZERO, -1 * v[0]], [-1 * v[1], v[0], ZERO]]
-
-
-def turned(axis: Sequence[Poly], cosine: Poly, sine: Poly) -> Matrix:
-    """1 + sin β C(e) + (1 − cos β) C(e)²."""
-    square = product(hat(axis), hat(axis))
-    rows = zip(UNITS, hat(axis), square, strict=True)
-    return [[a + sine * b + (ONE - cosine) * c for a, b, c in zip(*r, strict=True)] for r in rows]
-
-
-def orthogonal(m: Matrix) -> list[Equation]:
-    """M Mᵀ = 1 and det M = 1."""
-    volume = dot(m[0], [entry for (entry,) in product(hat(m[1]), transposed([m[2]]))])
-    return [*sides(product(m, transposed(m)), UNITS), (volume, ONE)]
-
-
-def sides(first: Matrix, second: Matrix) -> list[Equation]:
-    """The equations between the entries of two matrices."""
-    return [pair for rows in zip(first, second, strict=True) for pair in zip(*rows, strict=True)]
-
-
-UNITS = [[ONE if j == k else ZERO for k in range(3)] for j in range(3)]
-
-
-def claims(record: Mapping[str, Any], known: Language) -> Iterator[tuple[str, list[Equation]]]:
-    """What each printed quantity says, entry by entry."""
-    R = known.rotation(record["request"]["rotations"][0])
-    R_dot = [[*map(known.rate, row)] for row in R]
-    yield "R is a rotation", orthogonal(R)
-    spins = {"space": product(R_dot, transposed(R)), "body": product(transposed(R), R_dot)}
-    is_passive = record["presentation"] == "passive"
-    shown, shown_dot = map(transposed, (R, R_dot)) if is_passive else (R, R_dot)
-    shown_spin, q_dot = product(shown_dot, transposed(shown)), known.arguments["q_dot"]
-    for definition in record["definitions"]:
-        known.values[definition["name"]] = known.read(definition["expression"])
-    for quantity in record["quantities"]:
-        name = quantity["name"]
-        frame = "body" if name.endswith("body") else "space"
-        kind, spin = name.removesuffix(f"_{frame}"), spins[frame]
-        omega = [[spin[j][k]] for j, k in ((2, 1), (0, 2), (1, 0))]
-        right = {
-            "rotation_matrix": shown,
-            "rotation_rate": shown_dot,
-            "spin_matrix": shown_spin,
-            "angular_velocity": spin,
-            "rate_matrix": omega,
-            "inverse_rate_matrix": UNITS,
-            "rates_from_angular_velocity": [
-                [known.values[f"omega_{frame}_{k}"]] for k in (1, 2, 3)
-            ],
-            "angular_acceleration": [[*map(known.rate, row)] for row in spin if "accel" in kind],
+def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> dict[str, Any]:
+    """What each of the printed quantities x must satisfy, entry by entry."""
+    R = known.rotation(record["rotation"])
+    R_dot = R.map(known.rate)
+    shown, shown_dot = (R.T, R_dot.T) if record["presentation"] == "passive" else (R, R_dot)
+    spin = {"space": R_dot @ R.T, "body": R.T @ R_dot}
+    volume = Matrix([R.rows[0]]) @ hat(Matrix([R.rows[1]])) @ Matrix([R.rows[2]]).T
+    omega = {f: Matrix([[s.rows[2][1]], [s.rows[0][2]], [s.rows[1][0]]]) for f, s in spin.items()}
+    rates = known.groups["q_dot"]
+    W = {f: Matrix([e.derivative(n) for n in rates] for e in w.entries) for f, w in omega.items()}
+    claims: dict[str, Callable[[Matrix, str], tuple[Matrix, Matrix]]] = {
+        "rotation_matrix": lambda x, _: (x, shown),
+        "rotation_rate": lambda x, _: (x, shown_dot),
+        "spin_matrix": lambda x, _: (x, shown_dot @ shown.T),
+        "angular_velocity": lambda x, f: (hat(x), spin[f]),
+        "angular_acceleration": lambda x, f: (hat(x), spin[f].map(known.rate)),
+        "rate_matrix": lambda x, f: (x @ known.columns["q_dot"], omega[f]),
+        "inverse_rate_matrix": lambda x, f: (W[f] @ x, UNITS),
+        "rates_from_angular_velocity": lambda x, f: (W[f] @ x, known.columns[f"omega_{f}"]),
+    }
+    if "body" in record:
+        m, at, tensor = (known.matrix(record["body"][g]) for g in ("mass", "centre", "inertia"))
+        r, v, n, p = (known.columns[g] for g in ("centre", "centre_dot", "direction", "point"))
+        w, spun = omega["body"], tensor @ omega["body"]
+        about = tensor + hat(p + at * -1) @ hat(p + at * -1) * m.entries[0] * -1
+        claims |= {
+            "inertia_tensor": lambda x, _: (x, tensor),
+            "inertia_tensor_point": lambda x, _: (x, about),
+            "moment_of_inertia": lambda x, _: (x, n.T @ about @ n),
+            "inertia_tensor_space": lambda x, _: (x, R @ tensor @ R.T),
+            "translational_energy": lambda x, _: (x * 2, v.T @ v @ m),
+            "rotational_energy": lambda x, _: (x * 2, w.T @ spun),
+            "kinetic_energy": lambda x, _: (x * 2, v.T @ v @ m + w.T @ spun),
+            "angular_momentum_centre": lambda x, _: (x, hat(r) @ v @ m),
+            "angular_momentum_rotation_body": lambda x, _: (x, spun),
+            "angular_momentum_rotation": lambda x, _: (x, R @ spun),
+            "angular_momentum": lambda x, _: (x, hat(r) @ v @ m + R @ spun),
         }
-        if kind not in right:
-            continue
-        rows = (row if isinstance(row, list) else [row] for row in quantity["expression"])
-        left = [[*map(known.read, row)] for row in rows]
-        words = re.findall(r"\w+", " ".join(str(entry) for row in left for entry in row))
-        if kind == "rate_matrix" and not set(words).isdisjoint(q_dot):
-            raise RefusedError(f"{name} holds a rate")
-        if kind in ("angular_velocity", "angular_acceleration"):
-            left = hat(*transposed(left))
-        elif kind == "rate_matrix":
-            left = product(left, [[known.values[rate]] for rate in q_dot])
-        elif kind in ("inverse_rate_matrix", "rates_from_angular_velocity"):
-            left = product([[entry.derivative(rate) for rate in q_dot] for (entry,) in omega], left)
-        yield name, sides(left, right[kind])
+    lengths = zip((R @ R.T).entries, UNITS.entries, strict=True)
+    found = {"R is a rotation": [*lengths, (volume.entries[0], ONE)]}
+    for name, text in ((q["name"], q["expression"]) for q in record["quantities"]):
+        if name in names:
+            if name.startswith(("rate", "inverse")) and any(rate in str(text) for rate in rates):
+                raise ValueError(f"{name} holds a rate")
+            kind, _, frame = name.rpartition("_")
+            left, right = (claims.get(name) or claims[kind])(known.matrix(text), frame)
+            found[name] = [*found.get(name, ()), *zip(left.entries, right.entries, strict=True)]
+    return found
 
 
-def verify(record: Mapping[str, Any], certificate: Mapping[str, Any]) -> dict[str, list[Equation]]:
-    """The claims, all of them proved by the cofactors; raises RefusedError for one that is not."""
+def verify(record: Mapping[str, Any], certificate: Mapping[str, Any]) -> list[str]:
+    """The names of what is proved; raises ValueError for a claim whose cofactors do not."""
     known = Language(record, certificate["parts"])
-    found = dict(claims(record, known))
-    names = certificate["names"]
+    ids, at, given = (certificate[key] for key in ("names", "point", "claims"))
 
     def poly(terms: Sequence[Sequence[Any]]) -> Poly:
-        return Poly({tuple(sorted(names[k] for k in m)): Fraction(c) for c, *m in terms})
+        pairs = ((Fraction(*map(int, c.split("/"))), m) for c, *m in terms)
+        return Poly(
+            {tuple(sorted(ids[k] for k in m)): c for c, m in pairs if c.denominator % PRIME}
+        )
 
-    relations = [poly(terms) for terms in certificate["relations"]]
-    for relation in relations:
-        if str(relation) not in known.relations:
-            raise RefusedError(f"{relation} = 0 is no relation of this record")
-    for name, entries in found.items():
-        cofactors = certificate["claims"].get(name, [])
-        if len(cofactors) != len(entries):
-            raise RefusedError(f"{name}: {len(entries)} entries, cofactors for {len(cofactors)}")
-        for place, ((one, two), given) in enumerate(zip(entries, cofactors, strict=True), start=1):
-            terms = (poly(terms) * relations[int(k)] for k, terms in given.items())
-            if (one - two - sum(terms, ZERO)).terms:
-                raise RefusedError(f"{name}: its cofactors do not prove entry {place}")
-    return found
+    found = stated(record, known, given)
+    relations = [known.relations[str(poly(terms))] for terms in certificate["relations"]]
+    for text, r in known.relations.items():
+        terms = [(c.numerator * pow(c.denominator, -1, PRIME), m) for m, c in r.terms.items()]
+        if sum(math.prod((int(at[n]) for n in m), start=c) for c, m in terms) % PRIME:
+            raise ValueError(f"{text} does not vanish at the point")
+    for name, claims in found.items():
+        for place, ((one, two), cofactors) in enumerate(zip(claims, given[name], strict=True)):
+            products = (poly(terms) * relations[int(k)] for k, terms in cofactors.items())
+            if sum(products, one * -1 + two).terms:
+                raise ValueError(f"{name}: its cofactors do not prove entry {place + 1}")
+    return [*found]
 
 
 def main(folders: Sequence[str]) -> int:
@@ -388,8 +287,8 @@ def main(folders: Sequence[str]) -> int:
     for path in sorted(path for folder in folders for path in Path(folder).rglob("*.cert.json")):
         try:
             record = json.loads(path.with_name(path.name.replace(".cert", "")).read_text("utf-8"))
-            found = verify(record, json.loads(path.read_text("utf-8")))
-            print(f"{path}: proved: {', '.join(found)}")
+            certificate = json.loads(path.read_text("utf-8"))
+            print(f"{path}: proved: {', '.join(verify(record, certificate))}")
         except (*BROKEN, OSError) as error:
             problems += 1
             print(f"{path}: REFUSED: {error}")

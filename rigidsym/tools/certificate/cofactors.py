@@ -17,6 +17,10 @@ _KINDS = ("1/(", "sqrt(", "cos(", "sin(")  # the order of names; others come las
 _MOST_PAIRS = 40  # of a Gröbner basis
 
 
+class UnfinishedError(CheckError):
+    """The search for cofactors was given up."""
+
+
 class Division:
     """Division by the relations of one record, with its quotients.
 
@@ -122,7 +126,7 @@ def _completed(
             continue
         count += 1
         if count > _MOST_PAIRS:
-            raise CheckError("the conditions on the coordinates are too many for a certificate")
+            raise UnfinishedError("the conditions on the coordinates are too many")
         up = ring.term_new(ring.monomial_div(common, lead), 1 / one.LC)
         down = ring.term_new(ring.monomial_div(common, other), -1 / two.LC)
         quotients, rest = (up * one + down * two).div([element for element, _ in basis])

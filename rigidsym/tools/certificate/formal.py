@@ -26,7 +26,9 @@ def coq(certificate: Certificate) -> str:
     for name, entry in work.theorems():
         used = "".join(f" rewrite r{k}." for k in entry.cofactors)
         combination = work.combination(entry, "({})")
-        tactic = "field" if "/" in work.poly(entry.left - entry.right) + combination else "ring"
+        tactic = (
+            "field" if "/" in work.poly(entry.left + entry.right * -1) + combination else "ring"
+        )
         lines += [
             f"Theorem {name} : {work.poly(entry.left)} = {work.poly(entry.right)}.",
             "Proof.",
@@ -65,7 +67,10 @@ class _Theorems:
 
     def __init__(self, certificate: Certificate) -> None:
         self.certificate = certificate
-        self.letters = {name: _letter(name, place) for place, name in enumerate(certificate.names)}
+        equations = (entry for entries in certificate.claims.values() for entry in entries)
+        held = {name for entry in equations for name in entry.left.names | entry.right.names}
+        names = [*certificate.names, *sorted(held - {*certificate.names})]
+        self.letters = {name: _letter(name, place) for place, name in enumerate(names)}
         self.relations = list(map(self.terms, certificate.relations))
 
     def theorems(self) -> Iterator[tuple[str, ProvedEquation]]:
@@ -102,6 +107,9 @@ def _letter(name: str, place: int) -> str:
     for start, letter in _START.items():
         if name.startswith(start):
             inside = name.removeprefix(start).removesuffix(")")
-            plain = re.fullmatch(r"\w+(/\d+)?", inside) and letter.endswith("_")
-            return letter + (inside.replace("/", "_over_") if plain else f"_{place}")
+            plain = re.fullmatch(r"1(?:/(\d+))?\*(\w+)", inside)
+            if plain is None or not letter.endswith("_"):
+                return f"{letter}_{place}"
+            part, angle = plain.groups()
+            return letter + angle + (f"_over_{part}" if part else "")
     return f"v_{name}"

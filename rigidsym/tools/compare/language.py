@@ -48,11 +48,22 @@ def read_formula(
             tree = ast.parse(text.strip(), mode="eval")
         return _matrix(reader.value(tree.body))
     except SyntaxError as error:
-        raise ExpressionError(f"not a formula: {error.msg}", column=error.offset or 1) from None
+        raise _misread(text.strip(), error) from None
     except (ValueError, TypeError, IndexError, AttributeError) as error:  # sizes do not fit
         raise ExpressionError(f"not a formula: {error}") from None
     except (RecursionError, MemoryError):
         raise ExpressionError("operations are nested too deeply") from None
+
+
+def _misread(text: str, error: SyntaxError) -> ExpressionError:
+    """What was expected, and where."""
+    missing = re.search(r"[)\]]\s*(\w+)", text)
+    if missing:
+        expected = f"expected an operator such as * between {text[: missing.start(1)].strip()!r}"
+        return ExpressionError(f"{expected} and {missing[1]!r}", column=missing.start(1) + 1)
+    place = min(error.offset or 1, len(text))
+    near = f"unexpected {text[place - 1 : place + 9]!r}" if text else "an empty text"
+    return ExpressionError(f"{near}; expected a formula, as in -s*phi_dot + c/2", column=place)
 
 
 def _matrix(value: Any) -> sp.ImmutableMatrix:
