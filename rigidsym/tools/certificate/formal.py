@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 
 from rigidsym.tools.certificate.certificate import Certificate, ProvedEquation, Terms
 from rigidsym.tools.certificate.checker import Poly
@@ -12,7 +14,10 @@ _START = {"cos(": "cos_", "sin(": "sin_", "1/(": "inverse", "sqrt(": "root"}
 
 
 def coq(certificate: Certificate) -> str:
-    """A file for coqc: each equation by `field`, from the relations as hypotheses."""
+    """A file for coqc: each equation by `ring`, from the relations as hypotheses.
+
+    Equations are multiplied by the common denominator of their coefficients.
+    """
     work = _Theorems(certificate)
     lines = [
         f"(* {certificate.name}: what each printed quantity says, entry by entry. *)",
@@ -76,7 +81,7 @@ class _Theorems:
     def theorems(self) -> Iterator[tuple[str, ProvedEquation]]:
         for claim, entries in self.certificate.claims.items():
             for place, entry in enumerate(entries, start=1):
-                yield f"{claim.replace(' ', '_')}_{place}", entry
+                yield f"{claim.replace(' ', '_')}_{place}", _scaled(entry)
 
     def poly(self, poly: Poly) -> str:
         return self._sum([(str(c), *names) for names, c in sorted(poly.terms.items())])
@@ -101,6 +106,18 @@ class _Theorems:
             )
             or "0"
         )
+
+
+def _scaled(entry: ProvedEquation) -> ProvedEquation:
+    """The equation times the common denominator of its coefficients, for `ring`."""
+    terms = [term for cofactor in entry.cofactors.values() for term in cofactor]
+    numbers = [*entry.left.terms.values(), *entry.right.terms.values(), *(t[0] for t in terms)]
+    scale = math.lcm(*(Fraction(number).denominator for number in numbers))
+    cofactors = {
+        place: [[str(Fraction(c) * scale), *names] for c, *names in cofactor]
+        for place, cofactor in entry.cofactors.items()
+    }
+    return ProvedEquation(left=entry.left * scale, right=entry.right * scale, cofactors=cofactors)
 
 
 def _letter(name: str, place: int) -> str:
