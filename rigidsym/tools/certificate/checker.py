@@ -60,7 +60,7 @@ class Poly:
         return Poly({m[:place] + m[place + 1 :]: c for m, (place, c) in whole.items()})
 
 
-class Matrix:
+class Array:
     """Rows of polynomials; a vector is a column, and a scalar one entry."""
 
     def __init__(self, rows: Iterable[Iterable[Poly]]) -> None:
@@ -68,35 +68,35 @@ class Matrix:
         self.entries = [entry for row in self.rows for entry in row]
 
     @property
-    def T(self) -> Matrix:
-        return Matrix(zip(*self.rows, strict=True))
+    def T(self) -> Array:
+        return Array(zip(*self.rows, strict=True))
 
-    def map(self, change: Callable[[Poly], Poly]) -> Matrix:
-        return Matrix(map(change, row) for row in self.rows)
+    def map(self, change: Callable[[Poly], Poly]) -> Array:
+        return Array(map(change, row) for row in self.rows)
 
-    def __add__(self, other: Matrix) -> Matrix:
+    def __add__(self, other: Array) -> Array:
         rows = zip(self.rows, other.rows, strict=True)
-        return Matrix([a + b for a, b in zip(*pair, strict=True)] for pair in rows)
+        return Array([a + b for a, b in zip(*pair, strict=True)] for pair in rows)
 
-    def __mul__(self, factor: Poly | Fraction | int) -> Matrix:
+    def __mul__(self, factor: Poly | Fraction | int) -> Array:
         return self.map(lambda entry: entry * factor)
 
-    def __matmul__(self, other: Matrix) -> Matrix:
+    def __matmul__(self, other: Array) -> Array:
         pairs = [[zip(row, column, strict=True) for column in other.T.rows] for row in self.rows]
-        return Matrix([sum((a * b for a, b in pair), ZERO) for pair in row] for row in pairs)
+        return Array([sum((a * b for a, b in pair), ZERO) for pair in row] for row in pairs)
 
 
 def letter(name: str) -> Poly:
     return Poly({(name,): 1})
 
 
-def hat(vector: Matrix) -> Matrix:  # C(v), the operator v ×
+def hat(vector: Array) -> Array:  # C(v), the operator v ×
     x, y, z = vector.entries
-    return Matrix([[ZERO, z * -1, y], [z, ZERO, x * -1], [y * -1, x, ZERO]])
+    return Array([[ZERO, z * -1, y], [z, ZERO, x * -1], [y * -1, x, ZERO]])
 
 
 ZERO, ONE = Poly({}), Poly({(): 1})
-UNITS = Matrix([ONE if j == k else ZERO for k in range(3)] for j in range(3))
+UNITS = Array([ONE if j == k else ZERO for k in range(3)] for j in range(3))
 
 
 class Language:
@@ -104,16 +104,16 @@ class Language:
 
     def __init__(self, record: Mapping[str, Any], parts: Mapping[str, int]) -> None:
         self.groups = {g["name"]: [c["name"] for c in g["components"]] for g in record["arguments"]}
-        self.columns = {g: Matrix([letter(n)] for n in ns) for g, ns in self.groups.items()}
+        self.columns = {g: Array([letter(n)] for n in ns) for g, ns in self.groups.items()}
         self.parts = parts  # of the angle φ, φ/n has a cosine
         self.relations: dict[str, Poly] = {}
         self.flow = dict.fromkeys(("pi", *self.groups.get("parameters", ())), ZERO)  # d/dt
         for name in self.groups["q"]:
             self.flow |= {name: letter(f"{name}_dot"), f"{name}_dot": letter(f"{name}_ddot")}
 
-    def matrix(self, given: Any) -> Matrix:
+    def matrix(self, given: Any) -> Array:
         rows = given if isinstance(given, list) else [given]
-        return Matrix(map(self.read, row if isinstance(row, list) else [row]) for row in rows)
+        return Array(map(self.read, row if isinstance(row, list) else [row]) for row in rows)
 
     def read(self, given: str | ast.expr, power: int = 1) -> Poly:
         """The power of what a text says; a product is raised factor by factor."""
@@ -191,7 +191,7 @@ class Language:
         """d/dt by the chain rule; raises KeyError for a letter whose rate is not known."""
         return sum((value.derivative(n) * self.flow[n] for n in sorted(value.names)), ZERO)
 
-    def rotation(self, given: Mapping[str, Any]) -> Matrix:
+    def rotation(self, given: Mapping[str, Any]) -> Array:
         """R, active, as the product of its turns or by its entries, under stated conditions."""
         for value in map(self.read, given["conditions"]):
             rate = self.rate(value)  # it vanishes at all times
@@ -201,7 +201,7 @@ class Language:
             name, inside = turn.removesuffix(")").split("(", 1)
             form = FORMS[name].replace("N", SQUARE).format(*(f"({p})" for p in inside.split(",")))
             *v, c, s = map(self.read, form.split(";"))
-            axis = hat(Matrix([v]))
+            axis = hat(Array([v]))
             found = found @ (UNITS + axis * s + axis @ axis * (ONE + c * -1))
         return found
 
@@ -212,11 +212,11 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
     R_dot = R.map(known.rate)
     shown, shown_dot = (R.T, R_dot.T) if record["presentation"] == "passive" else (R, R_dot)
     spin = {"space": R_dot @ R.T, "body": R.T @ R_dot}
-    volume = Matrix([R.rows[0]]) @ hat(Matrix([R.rows[1]])) @ Matrix([R.rows[2]]).T
-    omega = {f: Matrix([[s.rows[2][1]], [s.rows[0][2]], [s.rows[1][0]]]) for f, s in spin.items()}
+    volume = Array([R.rows[0]]) @ hat(Array([R.rows[1]])) @ Array([R.rows[2]]).T
+    omega = {f: Array([[s.rows[2][1]], [s.rows[0][2]], [s.rows[1][0]]]) for f, s in spin.items()}
     rates = known.groups["q_dot"]
-    W = {f: Matrix([e.derivative(n) for n in rates] for e in w.entries) for f, w in omega.items()}
-    claims: dict[str, Callable[[Matrix, str], tuple[Matrix, Matrix]]] = {
+    W = {f: Array([e.derivative(n) for n in rates] for e in w.entries) for f, w in omega.items()}
+    claims: dict[str, Callable[[Array, str], tuple[Array, Array]]] = {
         "rotation_matrix": lambda x, _: (x, shown),
         "rotation_rate": lambda x, _: (x, shown_dot),
         "spin_matrix": lambda x, _: (x, shown_dot @ shown.T),

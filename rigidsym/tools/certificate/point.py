@@ -12,8 +12,8 @@ from rigidsym.tools.certificate.checker import (
     ONE,
     PRIME,
     UNITS,
+    Array,
     Language,
-    Matrix,
     Poly,
     hat,
 )
@@ -51,7 +51,7 @@ def _satisfied(relation: Poly, known: Language, at: dict[str, int], draw: Random
 def _orthogonal(known: Language) -> dict[str, int]:
     """Nine entries of a rotation, and of dR/dt = R C(Ω′) and its derivative."""
     v, omega, alpha = (
-        hat(Matrix([ONE * k] for k in entries)) for entries in ((1, 2, 3), (2, 3, 5), (7, 1, 4))
+        hat(Array([ONE * k] for k in entries)) for entries in ((1, 2, 3), (2, 3, 5), (7, 1, 4))
     )
     R = UNITS + (v + v @ v) * Fraction(2, 15)  # of the quaternion 1 + (1, 2, 3)
     return {
