@@ -104,7 +104,6 @@ class Language:
 
     def __init__(self, record: Mapping[str, Any], parts: Mapping[str, int]) -> None:
         self.groups = {g["name"]: [c["name"] for c in g["components"]] for g in record["arguments"]}
-        self.columns = {g: Array([letter(n)] for n in ns) for g, ns in self.groups.items()}
         self.parts = parts  # of the angle φ, φ/n has a cosine
         self.relations: dict[str, Poly] = {}
         self.flow = dict.fromkeys(("pi", *self.groups.get("parameters", ())), ZERO)  # d/dt
@@ -214,7 +213,8 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
     spin = {"space": R_dot @ R.T, "body": R.T @ R_dot}
     volume = Array([R.rows[0]]) @ hat(Array([R.rows[1]])) @ Array([R.rows[2]]).T
     omega = {f: Array([[s.rows[2][1]], [s.rows[0][2]], [s.rows[1][0]]]) for f, s in spin.items()}
-    rates = known.groups["q_dot"]
+    rates = [f"{name}_dot" for name in known.groups["q"]]
+    given = {f: known.matrix([f"omega_{f}_{k}" for k in (1, 2, 3)]) for f in spin}
     W = {f: Array([e.derivative(n) for n in rates] for e in w.entries) for f, w in omega.items()}
     claims: dict[str, Callable[[Array, str], tuple[Array, Array]]] = {
         "rotation_matrix": lambda x, _: (x, shown),
@@ -222,13 +222,14 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
         "spin_matrix": lambda x, _: (x, shown_dot @ shown.T),
         "angular_velocity": lambda x, f: (hat(x), spin[f]),
         "angular_acceleration": lambda x, f: (hat(x), spin[f].map(known.rate)),
-        "rate_matrix": lambda x, f: (x @ known.columns["q_dot"], omega[f]),
+        "rate_matrix": lambda x, f: (x @ known.matrix(rates), omega[f]),
         "inverse_rate_matrix": lambda x, f: (W[f] @ x, UNITS),
-        "rates_from_angular_velocity": lambda x, f: (W[f] @ x, known.columns[f"omega_{f}"]),
+        "rates_from_angular_velocity": lambda x, f: (W[f] @ x, given[f]),
     }
     if "body" in record:
         m, at, tensor = (known.matrix(record["body"][g]) for g in ("mass", "centre", "inertia"))
-        r, v, n, p = (known.columns[g] for g in ("centre", "centre_dot", "direction", "point"))
+        texts = "X Y Z", "X_dot Y_dot Z_dot", "n_x n_y n_z", "p_x p_y p_z"
+        r, v, n, p = (known.matrix(text.split()) for text in texts)
         w, spun = omega["body"], tensor @ omega["body"]
         about = tensor + hat(p + at * -1) @ hat(p + at * -1) * m.entries[0] * -1
         claims |= {
@@ -288,7 +289,7 @@ def main(folders: Sequence[str]) -> int:
         try:
             record = json.loads(path.with_name(path.name.replace(".cert", "")).read_text("utf-8"))
             certificate = json.loads(path.read_text("utf-8"))
-            print(f"{path}: proved: {', '.join(verify(record, certificate))}")
+            print(f"{path}: proved for R by {record['rotation']}: {verify(record, certificate)}")
         except (*BROKEN, OSError) as error:
             problems += 1
             print(f"{path}: REFUSED: {error}")
