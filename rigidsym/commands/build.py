@@ -51,8 +51,8 @@ def _built(source: str, options: BuildOptions) -> Iterator[Path]:
         asked: Mapping[str, Any] = single.target_options.get("c", {})
         if not Contents(**asked).is_module:
             raise CheckError(
-                f"{source}: a Python module needs C with arrays and both precisions, and "
-                "[output.c] or --lean leaves some of it out; rigidsym derive writes the source"
+                f"{source}: a Python module needs C with arrays and both precisions, which "
+                "[output.c] leaves out; rigidsym run writes the source"
             )
         output = output_of(with_existing_files(replace(single, kernels=("c",)), options.out))
         write(output, options.out, force=options.force)

@@ -51,7 +51,8 @@ class _Guard:
         self.assignments: list[Assignment] = []
         self._names = names
         self._values: dict[str, Expression] = {}
-        self._known: dict[Expression, Expression] = {}
+        self._known: dict[Expression, Expression] = {}  # divisors
+        self._made: dict[Expression, Name] = {}  # sizes and limits
 
     def assign(self, name: str, value: Expression) -> Name:
         self.assignments.append(Assignment(name, value))
@@ -157,7 +158,9 @@ class _Guard:
         return expression if isinstance(expression, Name) else self._new(expression)
 
     def _new(self, value: Expression) -> Name:
-        return self.assign(self._names.numbered("x"), value)
+        if value not in self._made:
+            self._made[value] = self.assign(self._names.numbered("x"), value)
+        return self._made[value]
 
     def _or_nan(self, divisor: Expression, scale: Name | Number | None, power: int = 1) -> Name:
         value = self._named(divisor)
