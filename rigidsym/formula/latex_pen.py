@@ -133,7 +133,7 @@ class LatexPen(SheetPen):
         return _environment("gathered", self.joined(lines, is_high))
 
     def joined(self, lines: Sequence[str] | map[str], is_high: bool) -> str:
-        return self.row_end.format(7 if is_high else 2).join(lines)
+        return self.row_end.format(4 if is_high else 2).join(lines)
 
 
 class MarkdownPen(LatexPen):

@@ -25,7 +25,8 @@ _DIGITS = str.maketrans("123", "XYZ")
 _ZXZ_SOURCE = lecture("17", "section 3.2")
 _SOURCE = Citation(
     text="J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation "
-    "Vectors (2006), section 5"
+    "Vectors (2006)",
+    section="section 5",
 )
 
 

@@ -238,6 +238,29 @@ def test_the_moment_about_a_line_is_a_sum_of_squared_distances():
     assert near(dot(e, world().I * e), moment)
 
 
+def test_the_intermediate_lines_are_true_of_the_cloud():
+    """The lines between the numbers, each typed here again and summed over the particles."""
+    w, half = world(), mp.mpf(1) / 2
+    moving = [w.v_C + v for v in w.x_dot]
+    squares = w.sum([dot(w.v_C, w.v_C) + 2 * dot(v, w.v_C) + dot(v, v) for v in w.x_dot])
+    energies = [half * w.sum([dot(v, v) for v in moving]), half * squares]
+    energies += [half * w.M * dot(w.v_C, w.v_C) + dot(w.v_C, w.sum(w.x_dot)) + w.turning]
+    assert all(near(energy, w.energy) for energy in energies)
+    entries = [w.omega[j] * w.omega[k] * w.I[j, k] for j in range(3) for k in range(3)]
+    assert near(half * sum(entries), w.turning)
+    pairs = list(zip(w.x, w.x_dot, strict=True))
+    products = w.sum([cross(w.r_C + x, w.v_C + v) for x, v in pairs])
+    parts = cross(w.r_C, w.M * w.v_C) + cross(w.r_C, w.sum(w.x_dot)) + cross(w.sum(w.x), w.v_C)
+    assert near(products, parts + w.momentum)
+    assert near(w.sum([dot(x, x) * w.omega - dot(x, w.omega) * x for x in w.x]), w.momentum)
+
+
+def test_every_line_between_the_numbers_has_a_proof_of_its_own():
+    between = [s for s in theory() if s.number is None]
+    assert {s.name for s in between} >= {"energy_expanded", "energy_as_a_form", "momentum_expanded"}
+    assert all(s.proofs and all(p.is_exact for p in s.proofs) for s in between)
+
+
 CLAIMS = [(s, name) for s in theory() for name, _ in s.claims]
 
 

@@ -77,6 +77,8 @@ class _Theory:
         own = [MASS, *_PLACE, *_rates(_PLACE)]
         nothing = {MASS * part: sp.S.Zero for part in own[1:]}
         self.sum = ParticleSums(self.codec, own, {MASS: _WHOLE, **nothing})
+        moments = {MASS * rate: sum_ for rate, sum_ in zip(own[4:], _V, strict=True)}
+        self.sum_of_any = ParticleSums(self.codec, own, {MASS: _WHOLE, **moments})  # Σ m ẋ = v
         pairs = zip(own[1:], [*_CENTRE, *_rates(_CENTRE)], strict=True)
         self.sum_of_places = ParticleSums(
             self.codec, own, {MASS: _WHOLE, **{MASS * part: _WHOLE * mean for part, mean in pairs}}
@@ -146,6 +148,61 @@ class _Theory:
         return RingMatrix.of(self.ring, [[self.codec.encode(e) for e in row] for row in rows])
 
 
+def _squares(t: _Theory) -> Residual:
+    """|ṙ + ẋ|² = |ṙ|² + 2 ẋ·ṙ + |ẋ|²."""
+    parts = t.square(t.r_dot) + 2 * t.dot(t.x_dot, t.r_dot) + t.square(t.x_dot)
+    return t.square(t.r_dot + t.x_dot) - parts
+
+
+def _mass_outside(t: _Theory) -> Residual:
+    """The sum of these squares, whatever Σ m ẋ is."""
+    of, m = t.sum_of_any.of, t.m
+    parts = of(m * t.square(t.r_dot)) + 2 * t.dot(t.r_dot, t.v) + of(m * t.square(t.x_dot))
+    return of(m * t.square(t.r_dot + t.x_dot)) - parts
+
+
+def _four_products(t: _Theory) -> Residual:
+    """(r + x) × (ṙ + ẋ) = r × ṙ + r × ẋ + x × ṙ + x × ẋ."""
+    products = [t.cross(a, b) for a in (t.r, t.x) for b in (t.r_dot, t.x_dot)]
+    first, second, third, fourth = products
+    return t.cross(t.r + t.x, t.r_dot + t.x_dot) - first - second - third - fourth
+
+
+def _centre_outside(t: _Theory) -> Residual:
+    """Σ m r × (ṙ + ẋ) = r × (M ṙ) + r × Σ m ẋ, whatever Σ m ẋ is."""
+    whole = t.sum_of_any.of_matrix(t.by_mass(t.cross(t.r, t.r_dot + t.x_dot)))
+    return whole - t.cross(t.r, t.r_dot).scale(t.M) - t.cross(t.r, t.v)
+
+
+def _crossed(t: _Theory) -> list[RingMatrix]:
+    """e_j × x for the three vectors of the basis."""
+    return [t.cross(t._column(row), t.x) for row in t._units]
+
+
+def _in_the_basis(t: _Theory) -> Residual:
+    first, second, third = (e.scale(t.omega[j, 0]) for j, e in enumerate(_crossed(t)))
+    return t.cross(t.omega, t.x) - first - second - third
+
+
+def _coefficients(t: _Theory) -> Residual:
+    crossed = list(enumerate(_crossed(t)))
+    terms = (t.omega[j, 0] * t.omega[k, 0] * t.dot(u, v) for j, u in crossed for k, v in crossed)
+    return t.square(t.cross(t.omega, t.x)) - t.ring.reduce(sum(terms, t.ring.zero))
+
+
+def _whole_vector(t: _Theory) -> Residual:
+    """Σ_j (Ω·R e_j) R e_j = Ω."""
+    turned = [t.R @ t._column(row) for row in t._units]
+    first, second, third = (e.scale(t.dot(t.omega, e)) for e in turned)
+    return first + second + third - t.omega
+
+
+def _double_product(t: _Theory) -> Residual:
+    """x × (Ω × x) = |x|² Ω − (x·Ω) x."""
+    right = t.omega.scale(t.square(t.x)) - t.x.scale(t.dot(t.x, t.omega))
+    return t.cross(t.x, t.cross(t.omega, t.x)) - right
+
+
 def _energy_splits(t: _Theory) -> Residual:
     whole = t.sum.of(t.m * t.square(t.r_dot + t.x_dot))
     return whole - t.ring.reduce(t.M * t.square(t.r_dot)) - t.sum.of(t.m * t.square(t.x_dot))
@@ -206,11 +263,16 @@ _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
     "no_moment": lambda t: t.sum_of_places.of_matrix(t.by_mass(t.x - t.r)),
     "no_momentum": lambda t: t.sum_of_places.of_matrix(t.by_mass(t.x_dot - t.r_dot)),
     "no_mixed_energy": lambda t: t.sum.of(t.m * t.dot(t.x_dot, t.r_dot)),
+    "squares": _squares,
+    "mass_outside": _mass_outside,
     "energy_splits": _energy_splits,
     "skew": lambda t: t.R_dot @ t.R.T + (t.R_dot @ t.R.T).T,
     "turning": lambda t: t.R_dot @ t.at_rest - t.cross(t.spin(), t.R @ t.at_rest),
+    "in_the_basis": _in_the_basis,
+    "coefficients": _coefficients,
     "energy_is_a_form": _energy_is_a_form,
     "symmetric": lambda t: t.inertia(t.x) - t.inertia(t.x).T,
+    "whole_vector": _whole_vector,
     "keeps_products": lambda t: t.dot(t.u, t.v) - t.dot(t.R @ t.u, t.R @ t.v),
     "goes_over": lambda t: t.dot(t.R.T @ t.u, t.v) - t.dot(t.u, t.R @ t.v),
     "components": lambda t: t.R.T @ t.omega - (t.omega.T @ t.R).T,
@@ -223,10 +285,13 @@ _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
     "about_a_line": _about_a_line,
     "stays_symmetric": lambda t: t.R.T @ t.I @ t.R - (t.R.T @ t.I @ t.R).T,
     "energy_in_principal_axes": _energy_in_principal_axes,
+    "four_products": _four_products,
+    "centre_outside": _centre_outside,
     "momentum_splits": _momentum_splits,
     "no_mixed_momentum": lambda t: t.sum.of_matrix(
         t.by_mass(t.cross(t.r, t.x_dot) + t.cross(t.x, t.r_dot))
     ),
+    "double_product": _double_product,
     "momentum_is_linear": _momentum_is_linear,
     "components_of_momentum": _components_of_momentum,
     "twice_the_energy": _twice_the_energy,

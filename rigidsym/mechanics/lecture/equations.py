@@ -20,19 +20,32 @@ _ITEM = re.compile(r"\n    (?=(?:=|\w+:) )(\S+) ")  # "=" or the name of a claim
 _EQUATIONS = r"""
 # The centre of mass and the kinetic energy
 1  centre_of_mass  1.1
-    A rigid body is a set of particles with masses $m_i$ at places $\mathbf{r}_i$,
+    A rigid body is a set of particles with masses $m_i$ at positions $\mathbf{r}_i$,
     $\sum_i m_i = M$. Their mean, weighted by the masses, is the centre of mass
     = \mathbf{r}_C
     = \frac{1}{M}\sum_i m_i\,\mathbf{r}_i
     no_moment: \sum_i m_i(\mathbf{r}_i - \mathbf{r}_C) = \mathbf{0}
     no_momentum: \sum_i m_i(\dot{\mathbf{r}}_i - \dot{\mathbf{r}}_C) = \mathbf{0}
 
+-  energy_expanded  1.1
+    Let $\mathbf{x}_i$ be the vector from the centre of mass to a particle, so that
+    $\mathbf{r}_i = \mathbf{r}_C + \mathbf{x}_i$. The kinetic energy of the body is
+    = E_K = \frac{1}{2}\sum_i m_i|\dot{\mathbf{r}}_i|^2
+    = \frac{1}{2}\sum_i m_i|\dot{\mathbf{r}}_C + \dot{\mathbf{x}}_i|^2
+    = \frac{1}{2}\sum_i m_i\bigl(|\dot{\mathbf{r}}_C|^2 +
+      2\dot{\mathbf{x}}_i\cdot\dot{\mathbf{r}}_C + |\dot{\mathbf{x}}_i|^2\bigr)
+    = \frac{1}{2}M|\dot{\mathbf{r}}_C|^2 + \dot{\mathbf{r}}_C\cdot\sum_i m_i\,\dot{\mathbf{x}}_i +
+      \frac{1}{2}\sum_i m_i|\dot{\mathbf{x}}_i|^2
+    squares: |\dot{\mathbf{r}}_C + \dot{\mathbf{x}}_i|^2 = |\dot{\mathbf{r}}_C|^2 +
+      2\dot{\mathbf{x}}_i\cdot\dot{\mathbf{r}}_C + |\dot{\mathbf{x}}_i|^2
+    mass_outside: \sum_i m_i|\dot{\mathbf{r}}_C + \dot{\mathbf{x}}_i|^2 = M|\dot{\mathbf{r}}_C|^2 +
+      2\dot{\mathbf{r}}_C\cdot\sum_i m_i\,\dot{\mathbf{x}}_i + \sum_i m_i|\dot{\mathbf{x}}_i|^2
+
 2  energy_splits  1.1
-    Seen from there a particle is at $\mathbf{x}_i$, where
-    $\mathbf{r}_i = \mathbf{r}_C + \mathbf{x}_i$. So $\sum_i m_i\,\mathbf{x}_i = \mathbf{0}$ at
-    all times, and $\sum_i m_i\,\dot{\mathbf{x}}_i = \mathbf{0}$: when the velocities are squared,
-    the cross term vanishes, and the energy splits into the energy of the total mass moving with
-    the centre of mass and the energy of the motion about it,
+    By (1) $\sum_i m_i\,\mathbf{x}_i = \mathbf{0}$ at all times, so that
+    $\sum_i m_i\,\dot{\mathbf{x}}_i = \mathbf{0}$ and the cross term vanishes. The energy splits
+    into the energy of the total mass moving with the centre of mass and the energy of the motion
+    about it,
     = E_K
     = E_C + E_R
     = \frac{1}{2}M|\dot{\mathbf{r}}_C|^2 + \frac{1}{2}\sum_i m_i|\dot{\mathbf{x}}_i|^2
@@ -52,11 +65,24 @@ _EQUATIONS = r"""
     turning: \frac{d\mathbf{R}}{dt}\mathbf{x}'_i =
       \boldsymbol{\Omega}\times\mathbf{R}\mathbf{x}'_i
 
+-  energy_as_a_form  1.2
+    With $\boldsymbol{\Omega} = \sum_j \Omega_j\mathbf{e}_j$ in any orthonormal basis, the energy
+    of the rotation is a quadratic form in the components of $\boldsymbol{\Omega}$,
+    = E_R = \frac{1}{2}\sum_i m_i(\boldsymbol{\Omega}\times\mathbf{x}_i)\cdot
+      (\boldsymbol{\Omega}\times\mathbf{x}_i)
+    = \frac{1}{2}\sum_i m_i\bigl(\sum_j\Omega_j\mathbf{e}_j\times\mathbf{x}_i\bigr)\cdot
+      \bigl(\sum_k\Omega_k\mathbf{e}_k\times\mathbf{x}_i\bigr)
+    = \frac{1}{2}\sum_{j,k}\Omega_j\Omega_k
+      \sum_i m_i(\mathbf{e}_j\times\mathbf{x}_i)\cdot(\mathbf{e}_k\times\mathbf{x}_i)
+    = \frac{1}{2}\boldsymbol{\Omega}^T\mathbf{I}\,\boldsymbol{\Omega}
+    in_the_basis: \boldsymbol{\Omega}\times\mathbf{x}_i =
+      \sum_j\Omega_j\mathbf{e}_j\times\mathbf{x}_i
+    coefficients: |\boldsymbol{\Omega}\times\mathbf{x}_i|^2 = \sum_{j,k}\Omega_j\Omega_k
+      (\mathbf{e}_j\times\mathbf{x}_i)\cdot(\mathbf{e}_k\times\mathbf{x}_i)
+
 4  inertia_of_particles  1.2
-    With $\boldsymbol{\Omega} = \sum_j \Omega_j\mathbf{e}_j$ in any orthonormal basis,
-    $E_R = \frac{1}{2}\sum_i m_i|\boldsymbol{\Omega}\times\mathbf{x}_i|^2$ is a quadratic form,
-    $E_R = \frac{1}{2}\boldsymbol{\Omega}^T\mathbf{I}\,\boldsymbol{\Omega}$. Its coefficients form
-    the inertia tensor, which depends on the mass distribution only through its second moments:
+    The coefficients form the inertia tensor. It depends on the mass distribution only through its
+    second moments, which is remarkable: moments of higher order might have mattered too.
     = I_{jk}
     = \sum_i m_i(\mathbf{e}_j\times\mathbf{x}_i)\cdot(\mathbf{e}_k\times\mathbf{x}_i)
     energy_is_a_form: \frac{1}{2}\sum_i m_i|\boldsymbol{\Omega}\times\mathbf{x}_i|^2 =
@@ -71,14 +97,22 @@ _EQUATIONS = r"""
     = \Omega'_j
     = \boldsymbol{\Omega}\cdot\mathbf{e}'_j
     = \boldsymbol{\Omega}\cdot\mathbf{R}\,\mathbf{e}_j
+    whole_vector: \sum_j(\boldsymbol{\Omega}\cdot\mathbf{R}\,\mathbf{e}_j)\mathbf{R}\,\mathbf{e}_j =
+      \boldsymbol{\Omega}
+
+-  products_of_turned_vectors  2.1
+    Rotations preserve scalar products, $\mathbf{u}\cdot\mathbf{v} =
+    \mathbf{R}\mathbf{u}\cdot\mathbf{R}\mathbf{v}$; moved from one factor to the other, a rotation
+    becomes its inverse,
+    = \mathbf{R}^{-1}\mathbf{u}\cdot\mathbf{v}
+    = \mathbf{u}\cdot\mathbf{R}\mathbf{v}
     keeps_products: \mathbf{u}\cdot\mathbf{v} = \mathbf{R}\mathbf{u}\cdot\mathbf{R}\mathbf{v}
+    goes_over: \mathbf{R}^{-1}\mathbf{u}\cdot\mathbf{v} = \mathbf{u}\cdot\mathbf{R}\mathbf{v}
 
 6  rotation_goes_over  2.1
-    Rotations preserve scalar products; moved from one factor to the other, a rotation becomes its
-    inverse:
+    Applied to (5), this gives
     = \Omega'_j
     = \mathbf{R}^{-1}\boldsymbol{\Omega}\cdot\mathbf{e}_j
-    goes_over: \mathbf{R}^{-1}\mathbf{u}\cdot\mathbf{v} = \mathbf{u}\cdot\mathbf{R}\mathbf{v}
     components: \boldsymbol{\Omega}\cdot\mathbf{R}\,\mathbf{e}_j =
       \mathbf{R}^{-1}\boldsymbol{\Omega}\cdot\mathbf{e}_j
 
@@ -100,7 +134,7 @@ _EQUATIONS = r"""
 
 9  inertia_turns  2.1
     The matrix in the middle is therefore the inertia tensor in the new basis. With the
-    places $\mathbf{x}'_i = \mathbf{R}^{-1}\mathbf{x}_i$ seen from there, (4) gives the same:
+    positions $\mathbf{x}'_i = \mathbf{R}^{-1}\mathbf{x}_i$ seen from there, (4) gives the same:
     = \mathbf{I}'
     = \mathbf{R}^T\mathbf{I}\,\mathbf{R}
     tensor_turns: \mathbf{R}^T\,\mathbf{I}(\mathbf{R}\mathbf{x}'_i)\,\mathbf{R} =
@@ -140,10 +174,23 @@ _EQUATIONS = r"""
       I'_{kk}\Omega_k^2
 
 # The angular momentum
+-  momentum_expanded  3.1
+    The angular momentum of the body is the sum over its particles. With
+    $\mathbf{r}_i = \mathbf{r}_C + \mathbf{x}_i$,
+    = \mathbf{L} = \sum_i\mathbf{r}_i\times(m_i\dot{\mathbf{r}}_i)
+    = \sum_i m_i(\mathbf{r}_C + \mathbf{x}_i)\times(\dot{\mathbf{r}}_C + \dot{\mathbf{x}}_i)
+    = \mathbf{r}_C\times(M\dot{\mathbf{r}}_C) +
+      \mathbf{r}_C\times\sum_i m_i\,\dot{\mathbf{x}}_i +
+      \sum_i m_i\,\mathbf{x}_i\times\dot{\mathbf{r}}_C +
+      \sum_i\mathbf{x}_i\times(m_i\dot{\mathbf{x}}_i)
+    four_products: (\mathbf{r}_C + \mathbf{x}_i)\times(\dot{\mathbf{r}}_C + \dot{\mathbf{x}}_i) =
+      \mathbf{r}_C\times\dot{\mathbf{r}}_C + \mathbf{r}_C\times\dot{\mathbf{x}}_i +
+      \mathbf{x}_i\times\dot{\mathbf{r}}_C + \mathbf{x}_i\times\dot{\mathbf{x}}_i
+    centre_outside: \sum_i m_i\,\mathbf{r}_C\times(\dot{\mathbf{r}}_C + \dot{\mathbf{x}}_i) =
+      \mathbf{r}_C\times(M\dot{\mathbf{r}}_C) + \mathbf{r}_C\times\sum_i m_i\,\dot{\mathbf{x}}_i
+
 11  momentum_splits  3.1
-    The angular momentum of the body is the sum of $\mathbf{r}_i\times(m_i\dot{\mathbf{r}}_i)$
-    over its particles. With $\mathbf{r}_i = \mathbf{r}_C + \mathbf{x}_i$ the cross terms vanish
-    again, and it has two parts,
+    The cross terms vanish again, and the angular momentum has two parts,
     = \mathbf{L}
     = \mathbf{L}_C + \mathbf{L}_R
     no_mixed_momentum: \sum_i m_i(\mathbf{r}_C\times\dot{\mathbf{x}}_i +
@@ -156,8 +203,17 @@ _EQUATIONS = r"""
     momentum_splits: \sum_i \mathbf{r}_i\times(m_i\dot{\mathbf{r}}_i) = \mathbf{L}_C +
       \mathbf{L}_R
 
-13  momentum_of_rotation  3.1
+-  momentum_by_the_tensor  3.1
     By (3) the second part is linear in the angular velocity, with the tensor of (4):
+    = \mathbf{L}_R = \sum_i m_i\,\mathbf{x}_i\times(\boldsymbol{\Omega}\times\mathbf{x}_i)
+    = \sum_i m_i\bigl(|\mathbf{x}_i|^2\boldsymbol{\Omega} -
+      (\mathbf{x}_i\cdot\boldsymbol{\Omega})\mathbf{x}_i\bigr), \qquad L_{R,j}
+    = \sum_k I_{jk}\Omega_k
+    double_product: \mathbf{x}_i\times(\boldsymbol{\Omega}\times\mathbf{x}_i) =
+      |\mathbf{x}_i|^2\boldsymbol{\Omega} - (\mathbf{x}_i\cdot\boldsymbol{\Omega})\mathbf{x}_i
+
+13  momentum_of_rotation  3.1
+    In other words,
     = \mathbf{L}_R
     = \mathbf{I}\,\boldsymbol{\Omega}
     momentum_is_linear: \sum_i m_i\,\mathbf{x}_i\times(\boldsymbol{\Omega}\times\mathbf{x}_i) =
@@ -184,10 +240,11 @@ _EQUATIONS = r"""
     operator: \mathbf{C}(\mathbf{u})\,\mathbf{v} = \mathbf{u}\times\mathbf{v}
 
 16  angular_velocity_of_the_rotation  3.2
-    Beside (3) this says that $\frac{d\mathbf{R}}{dt}\mathbf{R}^T$ is the matrix
-    $\mathbf{C}(\boldsymbol{\Omega})$ of $\boldsymbol{\Omega}\times$. Its vector, which
-    $\mathbf{C}^{-1}$ takes from the entries below the diagonal, has space components; along the
-    axes of the body, by (7),
+    Comparison with (3) shows that $\frac{d\mathbf{R}}{dt}\mathbf{R}^T$ is the matrix
+    $\mathbf{C}(\boldsymbol{\Omega})$ of the operator $\boldsymbol{\Omega}\times$. So
+    $\boldsymbol{\Omega} = \mathbf{C}^{-1}\bigl(\frac{d\mathbf{R}}{dt}\mathbf{R}^T\bigr)$, where
+    $\mathbf{C}^{-1}$ takes the vector from the entries below the diagonal; its components are
+    along the axes of space. Along the axes of the body, by (7),
     = \boldsymbol{\Omega}'
     = \mathbf{R}^T\,\mathbf{C}^{-1}\left(\frac{d\mathbf{R}}{dt}\mathbf{R}^T\right)
     spin: \frac{d\mathbf{R}}{dt}\mathbf{R}^T = \mathbf{C}(\boldsymbol{\Omega})

@@ -20,7 +20,8 @@ from rigidsym.models.rotation import Citation
 
 _DIEBEL = Citation(
     text="J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation "
-    "Vectors (2006), section 5"
+    "Vectors (2006)",
+    section="section 5",
 )
 
 ROTATION = formula(r"\mathbf{R}")

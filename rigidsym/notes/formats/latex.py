@@ -15,6 +15,7 @@ from rigidsym.notes.document.document import (
     Figure,
     NoteTable,
     Paragraph,
+    Section,
     Span,
     Text,
     plain,
@@ -97,10 +98,15 @@ def _utf16(text: str) -> str:
 
 class _LatexPrinter(NotePrinter):
     pen: LatexPen
+    heading = ""  # of the section, which may be that of its table too
     words = staticmethod(escape)
 
     def __init__(self, document: Document) -> None:
         super().__init__(document, LatexPen(document.letters.notation))
+
+    def body(self, section: Section) -> str:
+        self.heading = section.title
+        return super().body(section)
 
     def paragraph(self, block: Paragraph) -> str:
         # no empty line: a display that follows belongs to the paragraph
@@ -164,17 +170,31 @@ class _LatexPrinter(NotePrinter):
         wide = self._wide(table)
         wider = [row for row, is_wide in zip(rows, wide, strict=True) if is_wide]
         rows = [row for row, is_wide in zip(rows, wide, strict=True) if not is_wide]
-        if len(rows) >= _MANY and len(wider) <= len(rows) / 4:  # in two halves
-            half = -(-len(rows) // 2)
-            rows += [[""] * len(head)] * (2 * half - len(rows))
-            rows = [[*left, *right] for left, right in zip(rows[:half], rows[half:], strict=True)]
-            rows += [[first, rf"\multicolumn{{3}}{{l}}{{{second}}}"] for first, second in wider]
-            head, columns = head * 2, rf"{columns}@{{\hspace{{{_GAP}em}}}}{columns}"
+        parts = self._parts(table)
+        if len(rows) >= _MANY and len(wider) <= len(rows) / 4:
+            high = -(-len(rows) // parts)
+            rows += [[""] * len(head)] * (parts * high - len(rows))
+            beside = zip(*(rows[k : k + high] for k in range(0, len(rows), high)), strict=True)
+            rows = [[cell for row in line for cell in row] for line in beside]
+            span = rf"\multicolumn{{{2 * parts - 1}}}{{l}}"
+            rows += [[first, f"{span}{{{second}}}"] for first, second in wider]
+            head, columns = (
+                head * parts,
+                rf"@{{\hspace{{{_GAP if parts == 2 else 1}em}}}}".join([columns] * parts),
+            )
         else:
             rows = [list(map(self._cell, row)) for row in table.rows]
         lines = [" & ".join(row) + r" \\" for row in (head, *rows)]
-        begin = rf"\begin{{ruled}}{{{columns}}}{{{len(head)}}}{{{escape(table.caption)}}}"
+        is_said = table.caption.lower() in self.heading.lower()
+        caption = "" if is_said else escape(table.caption)
+        begin = rf"\begin{{ruled}}{{{columns}}}{{{len(head)}}}{{{caption}}}"
         return "\n".join([begin, f"{{{lines[0]}}}", *lines[1:], r"\end{ruled}"])
+
+    def _parts(self, table: NoteTable) -> int:
+        """In how many parts beside one another a narrow table is set."""
+        high = -(-len(table.rows) // 3)
+        thirds = (table._replace(rows=table.rows[k * high :][:high]) for k in range(3))
+        return 3 if sum(map(self._width, thirds)) + 2 <= _SLACK * _LINE / _SMALL else 2
 
     def _wide(self, table: NoteTable) -> list[bool]:
         """Which rows do not fit into one of two halves; those of two cells may go below them."""
@@ -239,8 +259,9 @@ class _LatexPrinter(NotePrinter):
         return f"{self.document.name}:{label}"
 
 
-_MANY = 8  # rows of a narrow table that are set in two halves
-_GAP = 3  # ems between them
+_MANY = 8  # rows of a narrow table that are set in two parts or three
+_GAP = 3  # ems between two of them; 1 between three
+_SLACK = 1.05  # by which three may seem too wide: the widths of formulas are upper bounds
 _SMALL = 0.9  # size of a table
 _COLUMN_GAP = 1.1  # ems
 _LETTER = 0.5  # ems

@@ -28,10 +28,7 @@ _SHORTHAND = words(
 )
 
 
-HOW_VERIFIED = (
-    "Each identity was verified exactly, as a polynomial identity in the sines and cosines using "
-    "sin² + cos² = 1 (and similar relations for other functions)."
-)
+HOW_VERIFIED = "Each identity was verified exactly, using relations such as sin² + cos² = 1."
 EXACT_MEANS = " “Exact” means that the two sides were shown to be identical."
 _UNPROVED_MEANS = (
     " “Unproved” means that the difference of the two sides was not shown to vanish; it is given "

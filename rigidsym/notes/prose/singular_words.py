@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from math import prod
+from math import prod, radians, sin
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -26,6 +26,7 @@ from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.prose.turn_words import are_euler_angles
 from rigidsym.notes.prose.words import vector
 
+_AT_ONE_DEGREE = round(1 / sin(radians(1)))  # the determinant of Euler angles is a sine or cosine
 _MOST_POINTS = 8  # that are told of one by one
 _MOST_PLACES = 2  # of one point that are repeated
 _FRAMES = (SPACE.matrix, BODY.matrix)
@@ -312,7 +313,7 @@ def geometry(derivation: Derivation) -> Iterator[Text]:
     yield words(
         "At these orientations the axes of the first and of the last turn coincide: {} and {} turn "
         "the body about the same axis, and one degree of freedom is lost. This is gimbal lock. "
-        "Near these orientations, the rates of {} and {} for a given angular velocity grow without "
-        "bound, as one over the determinant.",
+        "Nearby, the rates of {} and {} for a given angular velocity grow as one over the "
+        f"determinant: one degree away they reach {_AT_ONE_DEGREE} times its size.",
         *(first, last, first, last),
     )

@@ -21,9 +21,10 @@ from rigidsym.formula.tree import (
     row,
 )
 from rigidsym.mechanics.quantities.kinematics import SPACE
-from rigidsym.models.rotation import RotationModel
+from rigidsym.models.rotation import Citation, RotationModel
 from rigidsym.models.so3 import TIME
 from rigidsym.notes.document.document import (
+    Cited,
     Equation,
     EquationRow,
     NoteBlock,
@@ -36,6 +37,9 @@ from rigidsym.notes.figure.scene import scene_of
 
 PROPER = ("precession", "nutation", "spin")
 TAIT_BRYAN = ("yaw", "pitch", "roll")
+GOLDSTEIN = Citation(
+    text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)", section="section 4.9"
+)
 _MOST_WRITTEN = 3  # axes that are written out
 
 
@@ -123,8 +127,9 @@ def sum_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
         return
     see = "; see Figure 1" if scene_of(model, letters) else ""
     yield said(
-        "Angular velocities about different axes add. Each turn contributes its rate about its "
-        f"own axis{see}:"
+        "Angular velocities about different axes add\u00a0{}. Each turn contributes its rate about "
+        f"its own axis{see}:",
+        Cited(GOLDSTEIN),
     )
     yield Equation(sides=(sum_of_turns(model, letters),))
     if len(model.turns) > _MOST_WRITTEN or any(turn.components for turn in model.turns):

@@ -28,7 +28,7 @@ def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[NoteBlock]:
     yield Paragraph(proofs_in_words(is_proved=not unproved))
     yield NoteTable(
         caption="Identities verified",
-        head=(("Equation",), ("Identity",), ("Status",)),
+        head=(("Eq.",), ("Identity",), ("Status",)),
         rows=tuple(
             ((EquationReference(label),), (proof.claim,), _status(proof)) for label, proof in claims
         ),

@@ -6,8 +6,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import chain, groupby
 
+from rigidsym.formula.reader import formula
+from rigidsym.formula.scalars import formula_of
+from rigidsym.formula.tree import equal
 from rigidsym.mechanics.derivation import Statement, Step, claims_of
+from rigidsym.mechanics.quantities.kinematics import ROTATION
+from rigidsym.models.rotation import Citation, lecture
 from rigidsym.notes.document.document import (
+    Cited,
     Equation,
     NoteBlock,
     NoteTable,
@@ -16,16 +22,21 @@ from rigidsym.notes.document.document import (
     said,
 )
 from rigidsym.notes.formula.summands import sums
-from rigidsym.notes.prose.words import with_source
+from rigidsym.notes.prose.turn_words import PROPER, names_of_angles
 from rigidsym.notes.sections.body_note import BodyComposer
 from rigidsym.notes.sections.boxed import RESULTS
-from rigidsym.notes.sections.claims_table import claims_in_a_table
+from rigidsym.notes.sections.claims_table import Claim, claims_in_a_table
 from rigidsym.notes.sections.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to
     "rotation_rate": "velocity_by_the_rotation",
     "spin_matrix": "velocity_by_the_rotation",
     "angular_velocity_space": "angular_velocity_of_the_rotation",
+    "energy_expanded": "energy_splits",
+    "energy_as_a_form": "inertia_of_particles",
+    "products_of_turned_vectors": "rotation_goes_over",
+    "momentum_expanded": "momentum_splits",
+    "momentum_by_the_tensor": "momentum_of_rotation",
     "entries_of_inertia": "inertia_of_particles",
     "moment_about_a_line": "inertia_of_particles",
 }
@@ -38,9 +49,19 @@ _METHOD = (
     "generality.",
 )
 _CENTRE = (
-    r"The position of the centre of mass is written $\mathbf{r}_C$, since $\mathbf{R}$ is the "
-    "rotation."
+    "The equations (1) to (18) have the numbers of the lecture\u00a0{}. The position of the centre "
+    r"of mass is written $\mathbf{r}_C$, since $\mathbf{R}$ is the rotation."
 )
+_NOT_UNIQUE = (
+    "The angles of an orientation are not unique: at {} the first and the last turn are about the "
+    "same axis, and all {} and {} with the same sum give the same orientation."
+)
+_ARBITRARY = (
+    "There is a large degree of arbitrariness in the choice of angles: turns about other axes "
+    "would serve as well. These angles are convenient for the free rigid body and for the "
+    "symmetric top."
+)
+_NUMBER_OF_ROTATION = 17
 
 
 class LectureComposer(BodyComposer):
@@ -49,7 +70,7 @@ class LectureComposer(BodyComposer):
     of_the_body = " of the body"
 
     def beginning(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
-        first = [said(_CENTRE)]
+        first = [said(_CENTRE, Cited(lecture()))]
         for title, statements in groupby(self.derivation.theory, key=lambda s: s.section):
             yield title, chain(first, chain.from_iterable(map(self._statement, statements)))
             first = []
@@ -62,8 +83,7 @@ class LectureComposer(BodyComposer):
         return symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
 
     def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
-        source = statement.source if statement.number else None
-        yield Paragraph(with_source(statement.because, source))
+        yield Paragraph(statement.because)
         sides = statement.sides
         matrix = sums(statement, self.letters)
         if matrix is not None:
@@ -83,11 +103,34 @@ class LectureComposer(BodyComposer):
         yield from self._rotation()
         yield from self._steps(("rotation_rate", "spin_matrix", "angular_velocity_space"))
         yield from self._steps(("angular_velocity_body",))
+        if names_of_angles(self.model) == PROPER:
+            angles = [formula_of(turn.angle, self.letters) for turn in self.model.turns]
+            yield said(_NOT_UNIQUE, equal(angles[1], formula("0")), angles[0], angles[2])
+            yield said(_ARBITRARY)
+
+    def _rotation(self) -> Iterator[NoteBlock]:
+        """With the number of the lecture at the product of turns, and not at its entries."""
+        for block in super()._rotation():
+            if not isinstance(block, Equation) or not self.model.turns:
+                yield block
+            elif block.label == "rotation_matrix":
+                yield replace(block, number=None, label="", is_result=False, proved=(), function="")
+            elif block.sides[0] == ROTATION:
+                (step,) = (s for s in self.derivation.steps if s.number == _NUMBER_OF_ROTATION)
+                yield replace(self._equation(step), sides=block.sides, matrix=None, entries=())
+            else:
+                yield block
 
     def _equation(self, step: Step) -> Equation:
         equation = super()._equation(step)
         is_apart = step.quantity.name not in _WHERE_SHOWN
-        return equation if is_apart else replace(equation, number=None, label="")
+        apart = replace(equation, number=None, label="", is_result=False)
+        return equation if is_apart else apart
+
+    def _source(self, step: Step) -> Citation | None:
+        """None where the number of the equation says it."""
+        source = super()._source(step)
+        return None if source and source.equation == str(step.number) else source
 
     def _label(self, step: Step) -> str:
         return _WHERE_SHOWN.get(step.quantity.name, step.quantity.name)
@@ -98,7 +141,10 @@ class LectureComposer(BodyComposer):
         ]
         claims += [(self._label(step), p) for step in self.derivation.steps for p in step.proofs]
         yield from (said(text) for text in _METHOD)
-        yield from claims_in_a_table(sorted(claims, key=lambda claim: self._number(claim[0])))
+        once: dict[object, Claim] = {}
+        for label, proof in sorted(claims, key=lambda claim: self._number(claim[0])):
+            once.setdefault((label, proof.claim), (label, proof))
+        yield from claims_in_a_table([*once.values()])
 
     def _number(self, label: str) -> int:
         """Of the equation with a label: claims stand in the order of the equations."""
