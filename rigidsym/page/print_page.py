@@ -85,6 +85,7 @@ def print_page(
     shapes |= {"own": own} if own else {}
     body = "own" if own else _body(derivation.model)
     choices = _choices(derivation.model, printer, flows=bool(functions.integrals))
+    others = [other | {"title": printer.said(other["title"])} for other in functions.others]
     data = {
         "name": derivation.name,
         "words": {words: printer.said(words) for words in _words()},
@@ -92,7 +93,7 @@ def print_page(
         "bodies": {name: as_data(shape) for name, shape in shapes.items()},
         "body": body,
         "growing": growing(derivation.body),
-        "others": [other | {"title": printer.said(other["title"])} for other in functions.others],
+        "others": others,
         "shown": [name for name, _, is_shown in choices if is_shown],
         "controls": [_data(control) for control in controls],
         "parameters": [starts.get(symbol, 0.0) for symbol in functions.constants],
@@ -120,7 +121,7 @@ def print_page(
             for group in groups
         ],
         values=[_value(step, printer, in_degrees=in_degrees) for step in functions.steps],
-        others=[(other["key"], escape(other["title"])) for other in data["others"]],
+        others=[(other["key"], escape(other["title"])) for other in others],
         integrals=[printer.span(integral.symbol) for integral in functions.integrals],
         pole=_pole(functions),
         stage=stage,
