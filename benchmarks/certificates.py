@@ -15,6 +15,8 @@ from shutil import which
 from time import perf_counter
 from typing import Any
 
+import sympy as sp
+
 from benchmarks.measure import Settings, progress
 from benchmarks.report import Cell, Column, Figure, Report, Table
 from rigidsym.models.body import principal_moments
@@ -71,7 +73,7 @@ def _cases() -> Iterator[tuple[str, dict[str, Any], dict[str, Any]]]:
     for name in (*EULER_SEQUENCES, *(name for name in PARAMETRISATIONS if name not in SLOW)):
         model = rotation_from(name)
         yield name, _plain(record(derive(model), {})), _plain(record(derive(model, VELOCITIES), {}))
-    body = principal_moments("A", "B", "C")
+    body = principal_moments(*sp.symbols("A B C", positive=True))
     whole = _plain(record(derive(rotation_from("ZXZ"), LECTURE, body=body), {}))
     yield "lecture", whole, whole
 
