@@ -18,7 +18,7 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import factored, formula_of
 
-_LETTERS = "khmb"  # of the names; one that nothing in the notation is called by is taken
+_LETTERS = "kbhm"  # of the names; one that nothing in the notation is called by is taken
 _OVERHEAD = 3.0  # ems that a definition takes beside its formula
 _LEAST = {True: 2.5, False: 6.0}  # ems worth a name: of a sum or quotient, and of a product
 _NAME = 1.1  # ems of a name

@@ -15,6 +15,7 @@ PICTURES = (".png", ".svg", ".pdf")
 SPHERE = np.ones(3)  # its semi-axes
 _ONE_TURN = 360
 _VIEW = (25, -60)  # elevation and azimuth of the eye, degrees
+_GREEK = ["alpha", "beta", "gamma", "delta", "theta", "phi", "psi", "sigma", "chi", "omega"]
 _SMALLEST = 1e-17  # of a relative change in the picture of the drift
 
 
@@ -66,7 +67,7 @@ def _draw_poinsot(solid: Any, plane: Any, motion: Samples) -> None:
     moments, axes = np.linalg.eigh(motion.inertia)
     polhode = motion.angular_velocity_body @ axes
     draw_trace(solid, polhode, np.sqrt(np.sum(moments * polhode[0] ** 2) / moments), "123")
-    solid.set_title("Polhode on the ellipsoid of energy")
+    solid.set_title("Polhode on the ellipsoid of energy,\naxes in the order of the moments")
     rotation, omega = motion.rotation_matrix, motion.angular_velocity_body
     momentum = rotation[0] @ motion.inertia @ omega[0]
     across = np.linalg.svd(momentum[None])[2][1:]  # two unit vectors normal to L
@@ -82,11 +83,18 @@ def _draw_coordinates(
 ) -> None:
     """All of them; of angles, those that wind on are left out, since they would dwarf others."""
     shown = {n: np.degrees(v) if in_degrees else v for n, v in coordinates.items()}
-    swinging = {n: v for n, v in shown.items() if np.ptp(v) < _ONE_TURN}
-    for name, values in (swinging or shown).items():
-        axes.plot(t, values, label=name)
-    axes.set(xlabel="t in s", ylabel="degrees" if in_degrees else "", title="Coordinates")
+    swinging = {n: v for n, v in shown.items() if np.ptp(v) < _ONE_TURN} or shown
+    for name, values in swinging.items():
+        axes.plot(t, values, label=_symbol(name))
+    winding = ", ".join(_symbol(name) for name in shown if name not in swinging)
+    title = f"Coordinates\n({winding}: more than a turn, not shown)" if winding else "Coordinates"
+    axes.set(xlabel="t in s", ylabel="degrees" if in_degrees else "", title=title)
     axes.legend(fontsize="small")
+
+
+def _symbol(name: str) -> str:
+    """Greek letters by their names, as Matplotlib writes them."""
+    return f"$\\{name}$" if name in _GREEK else name
 
 
 def draw_trace(axes: Any, points: Array, size: Array, names: str = "xyz") -> None:
@@ -114,9 +122,12 @@ def draw_trace(axes: Any, points: Array, size: Array, names: str = "xyz") -> Non
     _draw_curve(axes, points, eye, size, "C0", 1.4)
     axes.scatter(*points[:1].T, color="C3", s=18)
     for k, name in enumerate(names):
-        axes.text(*(1.25 * size[k] * np.eye(3)[k]), name, color="0.4", ha="center", va="center")
+        end = size[k] * np.eye(3)[k]
+        pale = 0.4 if end @ eye < 0 else 1.0
+        axes.plot(*np.array([end, 1.15 * end]).T, color="0.4", linewidth=1, alpha=pale)
+        axes.text(*(1.28 * end), name, color="0.4", ha="center", va="center", alpha=pale)
     axes.view_init(*_VIEW)
-    axes.set_box_aspect(size / size.max(), zoom=1.25)
+    axes.set_box_aspect(size / size.max(), zoom=1.1)
     axes.set(xlim=(-size[0], size[0]), ylim=(-size[1], size[1]), zlim=(-size[2], size[2]))
     axes.set_axis_off()
 
@@ -135,6 +146,7 @@ def _draw_drift(axes: Any, t: Array, changes: Mapping[str, Array]) -> None:
     """The largest change so far."""
     for name, values in changes.items():
         largest = np.maximum.accumulate(np.nan_to_num(values))
-        axes.semilogy(t, np.maximum(largest, _SMALLEST), label=name)
+        shown = name.replace("_", " ")
+        axes.semilogy(t, np.maximum(largest, _SMALLEST), label=shown)
     axes.set(xlabel="t in s", ylabel="largest relative change", title="Drift of first integrals")
     axes.legend(loc="lower right", fontsize="x-small")

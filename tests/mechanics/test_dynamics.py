@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 import sympy as sp
+from scipy.spatial.transform import Rotation
 from sympy.physics.mechanics import LagrangesMethod
 
 import rigidsym as rs
@@ -180,6 +181,48 @@ def flowing() -> rs.Motion:
     """A top whose support vibrates."""
     only = ["state_derivative", "state_jacobian", "first_integrals", "accelerations"]
     return top(potential="m*(g - a*omega**2*cos(omega*t))*l*cos(theta)", only=only)
+
+
+@pytest.mark.parametrize(
+    ("rotation", "potential"),
+    [
+        ("unit_quaternion", "k*(w**2 - x**2 - y**2 + z**2)"),
+        ("ZYX", "k*sin(theta)*cos(phi)"),
+    ],
+)
+def test_small_errors_of_orientation_and_angular_velocity_grow_by_the_error_state_jacobian(
+    rotation, potential
+):
+    """Two motions side by side: δθ is the rotation vector of RᵀR₂, δΩ′ the difference of Ω′"""
+    body = rs.principal_moments(A, B, C)
+    motion = rs.derive(rotation, body=body, potential=potential, method="euler")
+    kernels = motion.kernels(conversions=True).load()
+    parameters = {"A": 1.0, "B": 1.4, "C": 2.1, "k": 0.8}
+    given = np.array([parameters.get(n, 1.0) for n in motion.argument("parameters").names])
+    turned = Rotation.from_rotvec([0.4, -0.3, 0.7])
+    omega, small, dt = np.array([0.5, -0.8, 1.1]), 1e-4, 1e-4
+
+    def accelerated(turned, omega):
+        q = kernels.from_rotation_matrix(turned.as_matrix())
+        return kernels.state_derivative(0.0, np.concatenate([q, omega]), given)[-3:], q
+
+    def moved(turned, omega, t):
+        slope = accelerated(turned, omega)[0]
+        return turned * Rotation.from_rotvec((omega + slope * t / 2) * t), omega + slope * t
+
+    def error(delta, t):
+        one = moved(turned, omega, t)
+        two = moved(turned * Rotation.from_rotvec(delta[:3]), omega + delta[3:], t)
+        return np.concatenate([(one[0].inv() * two[0]).as_rotvec(), two[1] - one[1]])
+
+    columns = []
+    for k in range(6):
+        delta = small * np.eye(6)[k]
+        slopes = [(error(d, dt) - error(d, -dt)) / (2 * dt) for d in (delta, -delta)]
+        columns.append((slopes[0] - slopes[1]) / (2 * small))
+    state = np.concatenate([accelerated(turned, omega)[1], omega])
+    found = kernels.error_state_jacobian(0.0, state, given)
+    assert np.abs(found - np.array(columns).T).max() < 1e-6
 
 
 def test_the_jacobian_is_only_derived_if_something_asks_for_it(monkeypatch):

@@ -19,13 +19,14 @@ from rigidsym.algebra.squares import half_form
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import FirstIntegral, Found
-from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, solved_euler
+from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, slopes_of, solved_euler
 from rigidsym.mechanics.kinematics.workspace import Values, encoded
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.rotation import RotationModel
+from rigidsym.models.so3 import hat
 
 
 class EulerEquations(Flow):
@@ -109,6 +110,19 @@ class EulerEquations(Flow):
             (self.prove.vanishes(residual, self.energy_claim, divided_by=divisor),),
             definition=None if self.forces.potential else ROTATIONAL,
         )
+
+    @property
+    def _error_state_jacobian(self) -> sp.ImmutableMatrix:
+        """dδθ/dt = δΩ′ − Ω′ × δθ, and of dΩ′/dt the slopes by q, with δq = W′⁻¹ δθ, and by Ω′."""
+        q, y = self.model.coordinates, self.arguments["y"].symbols
+        slopes = self._state_derivative[len(q) :]
+        by_q, by_omega = (
+            sp.ImmutableMatrix([slopes_of(slope, part, y) for slope in slopes])
+            for part in (q, OMEGA_BODY)
+        )
+        turned = by_q * self._inverse / self._divisor
+        upper = sp.Matrix.hstack(-hat(sp.ImmutableMatrix(OMEGA_BODY)), sp.eye(3))
+        return sp.ImmutableMatrix(upper.col_join(sp.Matrix.hstack(turned, by_omega)))
 
     def own_integrals(self) -> Iterator[FirstIntegral]:
         """Those of the energy and the angular momentum, in space and along the body's axes, that

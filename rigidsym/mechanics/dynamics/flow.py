@@ -87,7 +87,7 @@ class Flow:
         parts = []
         for block in self.blocks:
             others = [other.divisor for other in self.blocks if other is not block]
-            slopes = self.column(_slopes(value, block.symbols, self.arguments["y"].symbols))
+            slopes = self.column(slopes_of(value, block.symbols, self.arguments["y"].symbols))
             parts.append((slopes.T @ block.numerators).scale(prod(others, start=ring.one)))
         divisor = prod((block.divisor for block in self.blocks), start=ring.one)
         return parts[0] + parts[1] + self.explicit_rate(value).scale(divisor), ring.reduce(divisor)
@@ -100,7 +100,7 @@ class Flow:
 
     def explicit_rate(self, value: sp.Expr) -> RingMatrix:
         """∂F/∂t, the state being held."""
-        return self.column(_slopes(value, [TIME], [TIME, *self.arguments["y"].symbols]))
+        return self.column(slopes_of(value, [TIME], [TIME, *self.arguments["y"].symbols]))
 
     @cached_property
     def driving(self) -> RingMatrix:
@@ -150,11 +150,12 @@ class Flow:
         return FirstIntegral(name=name, symbol=symbol, expression=value, proof=proof)
 
     def functions(self) -> Mapping[str, Callable[[], Step]]:
-        """The derivative of the state, its Jacobian and the first integrals, each when needed."""
+        """The derivative of the state, its Jacobians and the first integrals, each when needed."""
         return {
             name: partial(self._function, name)
             for name in claims.FLOW_QUANTITIES
-            if name != "first_integrals" or self.first_integrals
+            if hasattr(type(self), f"_{name}")
+            and (name != "first_integrals" or self.first_integrals)
         }
 
     def _function(self, name: str) -> Step:
@@ -175,7 +176,7 @@ class Flow:
     @property
     def _state_jacobian(self) -> sp.ImmutableMatrix:
         symbols = self.arguments["y"].symbols
-        return sp.ImmutableMatrix([_slopes(s, symbols, symbols) for s in self._state_derivative])
+        return sp.ImmutableMatrix([slopes_of(s, symbols, symbols) for s in self._state_derivative])
 
     @property
     def _first_integrals(self) -> sp.ImmutableMatrix:
@@ -219,7 +220,7 @@ def solved_euler(
     return tensor.adjugate() @ left, tensor.ring.reduce(tensor.det() * below)
 
 
-def _slopes(
+def slopes_of(
     value: sp.Expr, symbols: Sequence[sp.Expr], independent: Sequence[sp.Expr]
 ) -> list[sp.Expr]:
     """The derivatives of a value by symbols; a rate does not follow its coordinate."""

@@ -137,12 +137,15 @@ FLOW_QUANTITIES = read_table(
         time derivative of the state y, in the order of y
     state_jacobian    matrix  -  t y  -
         derivatives of `state_derivative` by y, a column for each component of y
+    error_state_jacobian  matrix  -  t y  -
+        for filters: how small errors of R (rotation vector) and Ω′ grow, in body components
     first_integrals   vector  -  y    -
         quantities that are constant along every motion
     """,
     {
         "state_derivative": (formula(r"\dot{\mathbf{y}}"),),
         "state_jacobian": (formula(r"\mathbf{J}"),),
+        "error_state_jacobian": (formula(r"\boldsymbol{\Phi}"),),
         "first_integrals": (formula(r"\mathbf{F}"),),
     },
 )
