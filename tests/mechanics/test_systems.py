@@ -132,6 +132,24 @@ def test_the_note_of_a_top_writes_the_rate_of_the_matrix_by_the_chain_rule():
     assert r"\frac{\partial \mathbf{R}}{\partial \theta}" in latex
 
 
+def test_the_phase_portrait_of_a_top_shows_motions_of_constant_energy():
+    """Drawn for constants of 1, p_φ = 1 and p_ψ = 3"""
+    motion = shipped("heavy_symmetric_top")
+    figure = motion.note(with_kernels=False).document.figures[-1]
+    curves = [stroke.points for stroke in figure.drawing.strokes if stroke.kind == "body"]
+    assert len(curves) == 3
+    ratios = []
+    for curve in curves:
+        theta, rate = np.array(curve).T
+        theta *= np.pi / 3.2
+        potential = np.cos(theta) + (1 - 3 * np.cos(theta)) ** 2 / (2 * np.sin(theta) ** 2)
+        top = np.argmax(rate)
+        middle = (0.3 * rate[top] < rate) & (rate < 0.8 * rate[top])
+        squares = rate[top] ** 2 - rate[middle] ** 2  # M = A = 1 in units of the drawing
+        ratios += [*((potential[middle] - potential[top]) / squares)]
+    assert np.ptp(ratios) < 1e-6 * np.mean(ratios)
+
+
 def test_a_note_tells_no_mass_that_no_equation_holds():
     assert "has the mass" not in shipped("rolling_disc").note(with_kernels=False).markdown()
 

@@ -78,9 +78,9 @@ def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:
         if stroke.arc is not None:
             yield rf"\draw[{', '.join([*options, _plane(stroke.arc)])}] {_turned(stroke.arc)};"
         else:
-            start, end = map(_point, stroke.points)
+            *line, end = map(_point, stroke.points)
             tip = end if stroke.name is None else _named(stroke.name)
-            yield rf"\draw[{', '.join(options)}] {start} -- {tip};"
+            yield rf"\draw[{', '.join(options)}] {' -- '.join([*line, tip])};"
 
 
 def _plane(arc: Ellipse) -> str:

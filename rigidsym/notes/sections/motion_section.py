@@ -16,6 +16,7 @@ from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.models.forces import MovingPart
 from rigidsym.notes.document.document import (
     Equation,
+    Figure,
     NoteBlock,
     Paragraph,
     Strong,
@@ -24,6 +25,7 @@ from rigidsym.notes.document.document import (
     said,
     words,
 )
+from rigidsym.notes.figure.phase_portrait import phase_portrait
 
 _BECAUSE = {True: "Their rates vanish by the equations of motion, which is proved.", False: ""}
 
@@ -89,3 +91,20 @@ def what_follows(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock
             proved=tuple(claims) if exact else (),
             unproved=() if exact else tuple(claims),
         )
+        if found.title == "The effective potential":
+            yield from _phase_portrait(derivation, letters)
+
+
+def _phase_portrait(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
+    shown = phase_portrait(derivation, letters)
+    if shown is not None:
+        given = [
+            (formula("#1 = #2", letters.name(symbol), formula_of(value, letters)),)
+            for symbol, value in shown.momenta.items()
+        ]
+        caption = words("The phase portrait of {}, for constants of 1 and momenta of ", shown.name)
+        description = words(
+            "Each curve is the motion with one energy, and the mark in the middle is the steady "
+            "motion."
+        )
+        yield Figure(shown.drawing, (*caption, *listed(given), "."), description)
