@@ -156,7 +156,7 @@ def accuracy() -> Iterator[tuple[Cell, ...]]:
 def tumbling() -> Iterator[tuple[Cell, ...]]:
     """The brick after 30 s: in elliptic functions, integrated, and by the five tools."""
     free = rs.derive("unit_quaternion", ["energy"], body=rs.principal_moments(A, B, C), potential=0)
-    start = {"w": 1, "x": 0, "y": 0, "z": 0}
+    start: dict[str, Any] = {"w": 1, "x": 0, "y": 0, "z": 0}
     start["angular_velocity_body"] = np.radians([10.0, 20.0, 30.0])
     ends = {
         f"rigidsym, {method}": np.degrees(

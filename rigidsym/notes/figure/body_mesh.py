@@ -158,9 +158,9 @@ def _solids(what: Distribution) -> Iterator[Solid]:
 def _map(solid: Solid, scale: Scale) -> Map:
     """The point of a solid for coordinates that run from 0 to 1."""
     numbers = scale.numbers
-    places = [_evaluator(part.xreplace(numbers), solid.coordinates) for part in solid.place]
+    places = [evaluator(part.xreplace(numbers), solid.coordinates) for part in solid.place]
     bounds = [
-        [_evaluator(sp.S(bound).xreplace(numbers), solid.coordinates) for bound in pair]
+        [evaluator(sp.S(bound).xreplace(numbers), solid.coordinates) for bound in pair]
         for pair in solid.bounds
     ]
 
@@ -175,7 +175,7 @@ def _map(solid: Solid, scale: Scale) -> Map:
     return point
 
 
-def _evaluator(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> Evaluator:
+def evaluator(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> Evaluator:
     """The value of an expression in floats, for values of the symbols in their order."""
     if expression.is_number:
         number = float(expression)
@@ -183,7 +183,7 @@ def _evaluator(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> Evaluator:
     if expression.is_Symbol:
         place = symbols.index(expression)
         return lambda values: values[place]
-    parts = [_evaluator(part, symbols) for part in expression.args]
+    parts = [evaluator(part, symbols) for part in expression.args]
     if expression.is_Add:
         return lambda values: sum(part(values) for part in parts)
     if expression.is_Mul:

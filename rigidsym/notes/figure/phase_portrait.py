@@ -17,6 +17,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.so3 import TIME
+from rigidsym.notes.figure.body_mesh import evaluator
 from rigidsym.notes.figure.camera import Point
 from rigidsym.notes.figure.drawing import Drawing, Label, Stroke
 
@@ -83,8 +84,8 @@ def _numbers(expression: sp.Expr, coordinate: sp.Expr) -> Callable[[float], floa
     angle = sp.Symbol("angle")
     held = expression.xreplace({coordinate: angle})
     held = held.xreplace(dict.fromkeys(held.free_symbols - {angle}, sp.S.One))
-    evaluated: Callable[[float], float] = sp.lambdify(angle, held, "math")
-    return evaluated
+    evaluated = evaluator(held, [angle])
+    return lambda value: evaluated([value])
 
 
 def _curve(
