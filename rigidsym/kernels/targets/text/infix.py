@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import lru_cache
 from math import isnan
 from types import MappingProxyType
 
@@ -37,7 +38,12 @@ def infix(
     is how the target writes a number. "choice" there is a form with three places, the condition
     first, "nan" a word, and "==" the sign of equality.
     """
-    return _text(expression, functions, number)[0]
+    return _whole(expression, tuple(functions.items()), number)
+
+
+@lru_cache(maxsize=4096)  # lines are measured before they are printed, and kernels are shared
+def _whole(expression: Expression, functions: tuple[tuple[str, str], ...], number: Literal) -> str:
+    return _text(expression, dict(functions), number)[0]
 
 
 def _text(expression: Expression, functions: Mapping[str, str], number: Literal) -> tuple[str, int]:
