@@ -30,7 +30,8 @@ FORMS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
 }
 SQUARE = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"  # N
 PRIME, MOST = 29682952539239999999, 99  # roots to 37 exist modulo PRIME; powers are below MOST
-BROKEN = (LookupError, ArithmeticError, AttributeError, TypeError, ValueError, SyntaxError)
+ERRORS = (LookupError, ArithmeticError, AttributeError, TypeError, ValueError, SyntaxError)
+BROKEN = (*ERRORS, RecursionError, MemoryError)  # raised for what is refused
 
 
 class Poly:
@@ -71,15 +72,12 @@ class Array:
     def T(self) -> Array:
         return Array(zip(*self.rows, strict=True))
 
-    def map(self, change: Callable[[Poly], Poly]) -> Array:
-        return Array(map(change, row) for row in self.rows)
-
     def __add__(self, other: Array) -> Array:
         rows = zip(self.rows, other.rows, strict=True)
         return Array([a + b for a, b in zip(*pair, strict=True)] for pair in rows)
 
     def __mul__(self, factor: Poly | Fraction | int) -> Array:
-        return self.map(lambda entry: entry * factor)
+        return Array([entry * factor for entry in row] for row in self.rows)
 
     def __matmul__(self, other: Array) -> Array:
         pairs = [[zip(row, column, strict=True) for column in other.T.rows] for row in self.rows]
@@ -208,7 +206,7 @@ class Language:
 def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> dict[str, Any]:
     """What each of the printed quantities x must satisfy, entry by entry."""
     R = known.rotation(record["rotation"])
-    R_dot = R.map(known.rate)
+    R_dot = Array(map(known.rate, row) for row in R.rows)
     shown, shown_dot = (R.T, R_dot.T) if record["presentation"] == "passive" else (R, R_dot)
     spin = {"space": R_dot @ R.T, "body": R.T @ R_dot}
     volume = Array([R.rows[0]]) @ hat(Array([R.rows[1]])) @ Array([R.rows[2]]).T
@@ -221,7 +219,7 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
         "rotation_rate": lambda x, _: (x, shown_dot),
         "spin_matrix": lambda x, _: (x, shown_dot @ shown.T),
         "angular_velocity": lambda x, f: (hat(x), spin[f]),
-        "angular_acceleration": lambda x, f: (hat(x), spin[f].map(known.rate)),
+        "angular_acceleration": lambda x, f: (x, Array(map(known.rate, r) for r in omega[f].rows)),
         "rate_matrix": lambda x, f: (x @ known.matrix(rates), omega[f]),
         "inverse_rate_matrix": lambda x, f: (W[f] @ x, UNITS),
         "rates_from_angular_velocity": lambda x, f: (W[f] @ x, given[f]),
