@@ -273,6 +273,19 @@ def test_energy_and_momentum_of_a_body_are_proved(box):
     assert certificate["uncovered"] == ["radii_of_gyration"]
 
 
+def test_euler_s_equations_are_proved_and_a_lost_gyroscopic_term_is_refused():
+    name = "angular_acceleration_from_torque"
+    body = rs.principal_moments(*sp.symbols("A B C", positive=True))
+    motion = rs.derive("ZXZ", ["rotation_matrix", name], body=body, potential=0)
+    found = json.loads(json.dumps(record(motion, {})))
+    certificate = json.loads(certificate_of(found).json)
+    assert name in checker.verify(found, certificate)
+    entries = printed(found, name)["expression"]
+    entries[0] = entries[0].replace("B - C", "B + C")
+    with pytest.raises(ValueError, match=f"{name}: its cofactors do not prove entry 1"):
+        checker.verify(found, certificate)
+
+
 @pytest.mark.parametrize(
     ("quantity", "before", "after"),
     [

@@ -230,7 +230,9 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
         r, v, n, p = (known.matrix(text.split()) for text in texts)
         w, spun = omega["body"], tensor @ omega["body"]
         about = tensor + hat(p + at * -1) @ hat(p + at * -1) * m.entries[0] * -1
+        o, t = given["body"], known.matrix(["torque_1", "torque_2", "torque_3"])
         claims |= {
+            "angular_acceleration_from_torque": lambda x, _: (tensor @ x + hat(o) @ tensor @ o, t),
             "inertia_tensor": lambda x, _: (x, tensor),
             "inertia_tensor_point": lambda x, _: (x, about),
             "moment_of_inertia": lambda x, _: (x, n.T @ about @ n),
