@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
 
+import rigidsym as rs
 from helpers.errors_of_kernels import angles_of_all_sizes, exactly, worst_error
 from helpers.kernel_modules import EPS, QUANTITIES, inputs, module, one_by_one
 from helpers.motions import derived
@@ -118,3 +119,41 @@ def test_single_precision_is_as_good_as_single_precision_can_be(sequence):
     assert found.dtype == np.float32
     expected = module(sequence).rotation_matrix(q.astype(np.float64))
     assert np.abs(found - expected).max() <= 5 * np.finfo(np.float32).eps
+
+
+@pytest.fixture(scope="module")
+def long_chain():
+    """The module of twenty turns, whose twins share functions of arrays, and its text."""
+    kernels = rs.derive(
+        " ".join(f"{'zxy'[k % 3]}({'abcdefghijklmnopqrst'[k]}1)" for k in range(20))
+    ).kernels()
+    return kernels.load(), kernels.source
+
+
+def test_long_twins_share_the_functions_of_arrays(long_chain):
+    functions, text = long_chain
+    q, q_dot = np.random.default_rng(5).uniform(-3, 3, (2, 3, 20))
+    found, shared = functions.rotation_rate(q, q_dot), functions.rotation_rate_scalar
+    twins = [shared(*map(float, [*a, *b])) for a, b in zip(q, q_dot, strict=True)]
+    assert_allclose(twins, found, rtol=1e-13, atol=1e-13)
+    assert isinstance(twins[0][2][2], float)
+    assert shared(*[1] * 40) == shared(*[1.0] * 40)
+    assert "return _of_floats(_rotation_rate, (3, 3)" in " ".join(text.split()).replace("( ", "(")
+
+
+@pytest.mark.filterwarnings("error")
+def test_long_twins_give_nan_where_arrays_do(long_chain):
+    functions, _ = long_chain
+    straight = [0.0, *[0.5 * np.pi, 0.0, 0.0] * 6, 0.0]
+    for q in ([np.inf] * 20, straight, [np.nan, *[1.0] * 19]):
+        vectors = np.array(q), np.array([1.0, 2.0, 3.0])
+        rates = functions.rates_from_angular_velocity_body(*vectors)
+        twin = functions.rates_from_angular_velocity_body_scalar(*map(float, [*q, 1.0, 2.0, 3.0]))
+        assert_array_equal(np.isnan(twin), np.isnan(rates))
+    margin = functions.singularity_margin(np.ones((300, 20)))
+    assert_allclose(margin, functions.singularity_margin_scalar(*[1.0] * 20), rtol=1e-13)
+
+
+def test_the_text_of_a_long_chain_takes_less_than_eight_kilobytes_a_turn(long_chain):
+    _, text = long_chain
+    assert len(text.encode()) < 20 * 8000

@@ -20,6 +20,7 @@ from rigidsym.kernels.ir import (
 from rigidsym.kernels.lowering.naming import Names
 
 _BETWEEN = len(" = ")
+_MANY_TERMS = 6  # of a sum that is written in several
 
 
 def narrowed(
@@ -28,8 +29,8 @@ def narrowed(
     """The same kernel, the same operations, in lines that fit.
 
     `show` is how the target writes an expression; an assignment takes at most `line` characters
-    and an output at most `output`. The widest part of a wide line is named first; an assignment of
-    long names alone stays as wide as it is.
+    and an output at most `output`. The widest part of a wide line is named first, of a sum of many
+    terms the first of them; an assignment of long names alone stays as wide as it is.
     """
     narrower = _Narrower(kernel, show, line)
     for assignment in kernel.assignments:
@@ -64,6 +65,9 @@ class _Narrower:
     def shortened(self, expression: Expression, room: int) -> Expression:
         """The expression in at most `room` characters, after assignments for its widest parts."""
         while len(self._show(expression)) > room:
+            if isinstance(expression, Sum) and len(expression.terms) > _MANY_TERMS:
+                expression = self._begun(expression)
+                continue
             wide = [part for part in _operands(expression) if isinstance(part, Sum | Product)]
             if not wide:
                 break
@@ -72,6 +76,15 @@ class _Narrower:
             self.assign(name, widest)
             expression = _replaced(expression, widest, Name(name))
         return expression
+
+    def _begun(self, total: Sum) -> Sum:
+        """A sum of many terms after an assignment for as many of its first terms as fit in one."""
+        name = self._names.numbered("x")
+        room, count = self._line - len(name) - _BETWEEN, len(total.terms) - 1
+        while count > 2 and len(self._show(Sum(total.terms[:count]))) > room:
+            count -= 1
+        self.assign(name, Sum(total.terms[:count]))
+        return Sum((Name(name), *total.terms[count:]))
 
 
 def _operands(expression: Expression) -> tuple[Expression, ...]:

@@ -6,7 +6,16 @@ from collections.abc import Container, Iterator, Mapping, Sequence
 from types import ModuleType
 
 from rigidsym.kernels import loaded
-from rigidsym.kernels.ir import FUNCTIONS, Call, Kernel, Name, Program, functions_of, last_order
+from rigidsym.kernels.ir import (
+    FUNCTIONS,
+    Call,
+    Choice,
+    Kernel,
+    Name,
+    Program,
+    functions_of,
+    last_order,
+)
 from rigidsym.kernels.lowering.naming import Names
 from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.numpy.unwrap import unwrap_text
@@ -30,6 +39,7 @@ _BY_SIZE = (
     "Small batches, of fewer than 240 rows at most, take sines and cosines by another formula than "
     "larger ones, so that the last bits of a row may depend on the number of rows."
 )
+_LONG = 96  # assignments of a kernel whose twin shares the function of arrays
 _SPELLED = len("float, float, float, float")  # longer types are those of tuples of any length
 
 _SCALAR = python.Statements(
@@ -43,6 +53,10 @@ _BLOCK = python.Statements(
     functions={"sin": "_sin", "cos": "_cos", "eps": "_eps"}
     | {"sqrt": "np.sqrt", "abs": "np.abs", "atan2": "np.arctan2"},
     library="np",
+)
+_SHARED = _BLOCK._replace(  # for arrays and for plain floats
+    functions={name: f"_of.{name}" for name in ("sin", "cos", "sqrt")} | {"abs": "abs"},
+    guard="_of.or_nan",
 )
 
 
@@ -82,6 +96,7 @@ def module_text(
             exports=python.lines(f'"{name}",' for name in sorted(exports)),
             components=python.components(program),
             functions=[_function(kernel, at_once) for kernel in kernels],
+            has_shared=any(map(_is_shared, kernels)),
             has_parts=any(kernel.parts for kernel in kernels),
             helpers="".join(f"\n\n{text}" for text in (*_helpers(kernels), *unwrap)),
             compute=compute,
@@ -96,20 +111,33 @@ def _imports(kernels: Sequence[Kernel]) -> set[str]:
     named = functions.intersection(FUNCTIONS) - {"abs", "eps"}
     series = {"sqrt", "tan"} if functions.difference(FUNCTIONS) else set()
     has_nan = any(kernel.gives_nan for kernel in kernels)
-    return {"prod", *named, *series, *(["nan"] if has_nan else [])}
+    shared = {"sin", "cos", "sqrt"} if any(map(_is_shared, kernels)) else set()
+    return {"prod", *named, *series, *shared, *(["nan"] if has_nan else [])}
 
 
 def _helpers(kernels: Sequence[Kernel]) -> list[str]:
     """The functions behind guards and series, if the kernels need them."""
     environment = resources.environment()
     found = []
-    if any(kernel.guards for kernel in kernels):
+    has_guards = any(kernel.guards for kernel in kernels)
+    if has_guards:
         found.append(environment.get_template("numpy/divisors.py").render())
+    if any(map(_is_shared, kernels)):
+        template = environment.get_template("numpy/shared.py.jinja")
+        found.append(template.render(has_guards=has_guards))
     if last_order(kernels) >= 0:
         table = python.series_entries(kernels)
         series = f"{{\n{table}\n}}" if table else "{}"
         found.append(environment.get_template("numpy/series.py.jinja").render(series=series))
     return found + python.helpers(kernels, "numpy")
+
+
+def _is_shared(kernel: Kernel) -> bool:
+    """Whether floats take the function of arrays, lest a long one be written twice."""
+    values = [assignment.value for assignment in kernel.assignments]
+    called = {value.function for value in values if isinstance(value, Call)}
+    has_choice = any(isinstance(value, Choice) for value in values)
+    return len(values) > _LONG and called <= {*_SHARED.functions} and not has_choice
 
 
 def _fitted(kernel: Kernel) -> Kernel:
@@ -128,7 +156,8 @@ def _function(kernel: Kernel, at_once: str) -> dict[str, str]:
     ]
     shape = str(kernel.shape)
     given = [block, scalar, shape, "out", "threads", *python.passed(kernel, "np")]
-    points = [_row(argument.components) for argument in kernel.arguments]
+    margin = 4 if _is_shared(kernel) else 8
+    points = [_row(argument.components, margin) for argument in kernel.arguments]
     nesting = ("a float", "a tuple", "a tuple of rows")[len(kernel.shape)]
     twin = [f"`{kernel.name}` of one orientation; floats to {nesting}."]
     return {
@@ -145,8 +174,7 @@ def _function(kernel: Kernel, at_once: str) -> dict[str, str]:
             0, f"def {scalar}(", floats, f") -> {_floats(kernel.shape)}:"
         ),
         "scalar_about": docstring(twin, indent=4),
-        "scalar_body": "\n".join([*_scalar_lines(kernel), _scalar_return(kernel)]),
-        "exceptional": bracketed(8, "return _exceptional(", [block, shape, *points], ")"),
+        "scalar_body": _scalar_body(kernel, [block, shape, *points]),
         "block": _block(kernel),
     }
 
@@ -183,6 +211,21 @@ def _body(kernel: Kernel, arguments: Sequence[str], at_once: str) -> str:
     return "\n".join([*lines, returned])
 
 
+def _scalar_body(kernel: Kernel, given: Sequence[str]) -> str:
+    """The twin's statements, and what stands in where floats raise an error."""
+    if _is_shared(kernel):
+        return bracketed(4, "return _of_floats(", given, ")")
+    return "\n".join(
+        [
+            "    try:",
+            *_scalar_lines(kernel),
+            _scalar_return(kernel),
+            "    except (ValueError, ZeroDivisionError):",
+            bracketed(8, "return _exceptional(", given, ")"),
+        ]
+    )
+
+
 def _scalar_lines(kernel: Kernel) -> Iterator[str]:
     for name, value in kernel.statements:
         is_eps = isinstance(value, Call) and value.function == "eps"
@@ -202,13 +245,19 @@ def _block(kernel: Kernel) -> str:
         for output in kernel.outputs
     ]
     lines = [bracketed(0, f"def _{kernel.name}(", vectors, "):")]
+    if _is_shared(kernel):
+        lines = [bracketed(0, f"def _{kernel.name}(", [*vectors, "_of=None"], "):")]
+        lines.append("    _of = _of or _ARRAYS")
     for vector, argument in zip(vectors, kernel.arguments, strict=True):
         lines += _unpacked(vector, argument.components, kernel.used)
     return "\n".join([*lines, *_block_lines(_fitted(kernel)), _tuple(4, "return ", outputs)])
 
 
 def _unpacked(vector: str, components: Sequence[str], used: Container[str]) -> list[str]:
-    """The components of an array that are used; an index costs half of what unpacking does."""
+    """The components of an array; to index a few costs half of what unpacking does."""
+    if len(components) > python.MANY:
+        names = [name if name in used else "_" for name in components]
+        return [exploded(4, "(", names, f") = {vector}")]
     found = {name: f"{vector}[{k}]" for k, name in enumerate(components) if name in used}
     line = f"    {', '.join(found)} = {', '.join(found.values())}"
     if len(line) <= WIDTH:
@@ -219,18 +268,19 @@ def _unpacked(vector: str, components: Sequence[str], used: Container[str]) -> l
 def _block_lines(kernel: Kernel) -> Iterator[str]:
     """The assignments on arrays, the sines and the cosines of several angles in one call."""
     together = _gathered(kernel)
+    head, statements = ("_of.", _SHARED) if _is_shared(kernel) else ("_", _BLOCK)
     for name, value in kernel.statements:
         function = value.function if isinstance(value, Call) else ""
         pair = kernel.sines.get(value.argument, {}) if isinstance(value, Call) else {}
         if len(pair) < 2 or function not in pair:
-            yield _BLOCK.text(name, value)
+            yield statements.text(name, value)
         elif name in together:
             angles = together[name]
             names = [kernel.sines[angle][part] for part in ("sin", "cos") for angle in angles]
             given = [angle.text for angle in angles]
-            yield bracketed(4, f"{', '.join(names)} = _sin_cos(", given, ")")
+            yield bracketed(4, f"{', '.join(names)} = {head}sin_cos(", given, ")")
         if function == "cos" and name in kernel.delicate:
-            yield bracketed(4, f"{name} = _sharp(", [name, value.argument.text], ")")
+            yield bracketed(4, f"{name} = {head}sharp(", [name, value.argument.text], ")")
 
 
 def _gathered(kernel: Kernel) -> dict[str, list[Name]]:
@@ -250,7 +300,7 @@ def _gathered(kernel: Kernel) -> dict[str, list[Name]]:
         needed = len(", ".join(pair.values())) + len(", ")
         if not vector or vector != last or needed > room:
             first = min(pair.values(), key=[*kernel.calls].index)
-            found[first], room = [], WIDTH - len("     = _sin_cos(")
+            found[first], room = [], WIDTH - len("     = _of.sin_cos(")
         found[first].append(angle)
         last, room = vector, room - needed
     return found
@@ -267,10 +317,10 @@ def _scalar_return(kernel: Kernel) -> str:
     return _tuple(8, "return ", [_row(row) for row in rows])
 
 
-def _row(items: Sequence[str]) -> str:
+def _row(items: Sequence[str], margin: int = 8) -> str:
     """One row of a matrix: in a line if it fits, else an entry a line."""
-    line = tuple_of(items)
-    return line if len(line) <= WIDTH - 12 - len(",") else _tuple(12, "", items).lstrip()
+    line, margin = tuple_of(items), margin + 4
+    return line if len(line) <= WIDTH - margin - len(",") else _tuple(margin, "", items).lstrip()
 
 
 def _tuple(indent: int, head: str, items: Sequence[str]) -> str:

@@ -31,6 +31,7 @@ from rigidsym.kernels.targets.text.python_layout import (
 from rigidsym.kernels.targets.text.remarks import Paragraph, about_kernel, in_units, table
 from rigidsym.system import resources
 
+MANY = 8  # components
 _UNWELCOME = ("l", "O", "I")  # linters refuse these names
 RESERVED = frozenset({*FUNCTIONS, *_UNWELCOME, "nan", "max", "min"})
 ARGUMENTS = "Arguments, with the components on the last axis, in radians and SI units:"
@@ -189,10 +190,16 @@ def _leading(shape: Sequence[int]) -> str:
     return f"({', '.join(['...', *map(str, shape)])})"
 
 
+def _listed(names: Sequence[str]) -> str:
+    """All names, or of many the ends; the head of the module has them all."""
+    shown = names if len(names) <= MANY else (*names[:2], "...", names[-1])
+    return ", ".join(shown)
+
+
 def about_function(kernel: Kernel) -> list[Paragraph]:
     """The paragraphs of a function's docstring."""
     rows = [
-        (a.name, _leading(a.shape), ", ".join(a.components) + in_units(a.units))
+        (a.name, _leading(a.shape), _listed(a.components) + in_units(a.units))
         for a in kernel.arguments
     ]
     results = ", ".join(map(_leading, kernel.parts or (kernel.shape,)))
