@@ -270,17 +270,16 @@ def _block_lines(kernel: Kernel) -> Iterator[str]:
     together = _gathered(kernel)
     head, statements = ("_of.", _SHARED) if _is_shared(kernel) else ("_", _BLOCK)
     for name, value in kernel.statements:
-        function = value.function if isinstance(value, Call) else ""
-        pair = kernel.sines.get(value.argument, {}) if isinstance(value, Call) else {}
-        if len(pair) < 2 or function not in pair:
+        call = value if isinstance(value, Call) and value.function in ("sin", "cos") else None
+        if call is None or len(kernel.sines[call.argument]) < 2:
             yield statements.text(name, value)
         elif name in together:
             angles = together[name]
             names = [kernel.sines[angle][part] for part in ("sin", "cos") for angle in angles]
             given = [angle.text for angle in angles]
             yield bracketed(4, f"{', '.join(names)} = {head}sin_cos(", given, ")")
-        if function == "cos" and name in kernel.delicate:
-            yield bracketed(4, f"{name} = {head}sharp(", [name, value.argument.text], ")")
+        if call is not None and call.function == "cos" and name in kernel.delicate:
+            yield bracketed(4, f"{name} = {head}sharp(", [name, call.argument.text], ")")
 
 
 def _gathered(kernel: Kernel) -> dict[str, list[Name]]:
