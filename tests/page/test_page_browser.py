@@ -329,7 +329,7 @@ def test_buttons_copy(tab, tmp_path):
     for language in ("latex", "python", "c"):
         expected = copied(page_of("ZXZ"), language)["angular_velocity_body"]
         tab.click(f'[data-of="angular_velocity_body"] [data-copy="{language}"]')
-        tab.wait_for("document.getElementById('said').textContent.includes('is copied')")
+        tab.wait_for("document.getElementById('said').textContent.startsWith('Copied: ')")
         assert tab.run("navigator.clipboard.readText()") == expected
         tab.run("document.getElementById('said').textContent = ''")
 
@@ -340,7 +340,7 @@ def test_buttons_copy_without_a_clipboard_to_write_to(tab, tmp_path):
     expected = copied(page_of("ZXZ"), "latex")["rotation_matrix"]
     tab.run("navigator.clipboard.writeText = () => Promise.reject(new Error())")
     tab.click('[data-of="rotation_matrix"] [data-copy="latex"]')
-    tab.wait_for("document.getElementById('said').textContent.includes('is copied')")
+    tab.wait_for("document.getElementById('said').textContent.startsWith('Copied: ')")
     assert tab.run("navigator.clipboard.readText()") == expected
 
 
@@ -530,7 +530,7 @@ def test_a_link_holds_the_whole_state(tab, tmp_path):
     lines = "document.querySelectorAll('#figure g *').length"
     state, count = tab.run(STATE), tab.run(lines)
     tab.click("#link")
-    tab.wait_for("document.getElementById('said').textContent === 'The link is copied.'")
+    tab.wait_for("document.getElementById('said').textContent === 'Copied: Link'")
     link = tab.run("navigator.clipboard.readText()")
     tab.call("Page.navigate", url="about:blank")
     tab.call("Page.navigate", url=link)

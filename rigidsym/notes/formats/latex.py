@@ -197,7 +197,7 @@ class _LatexPrinter(NotePrinter):
         return 3 if sum(map(self._width, thirds)) + 2 <= _SLACK * _LINE / _SMALL else 2
 
     def _wide(self, table: NoteTable) -> list[bool]:
-        """Which rows do not fit into one of two halves; those of two cells may go below them."""
+        """Which rows do not fit into one of two parts; those of two cells may go below them."""
         room = (_LINE / _SMALL - _GAP) / 2
         if 2 * self._width(table) + _GAP <= _LINE / _SMALL:
             return [False] * len(table.rows)
