@@ -131,7 +131,8 @@ def _body(derivation: Derivation, notation: Notation) -> Iterator[Text]:
     if derivation.about_fixed_point:
         yield (ABOUT_FIXED_POINT,)
         return
-    if derivation.forces and not any(s.expression.has(body.mass) for s in derivation.steps):
+    used = {name for step in derivation.steps for name in step.quantity.inputs}
+    if derivation.forces and "centre" not in used and "centre_dot" not in used:
         yield ("The inertia tensor is about the centre of mass, along the axes of the body.",)
         return
     centre = listed([(name,) for name in derivation.argument("centre").notation], ", ")
