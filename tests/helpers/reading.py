@@ -319,7 +319,7 @@ _CALLED: dict[str, Callable[..., Any]] = {
     **dict.fromkeys(("sharp", "_sharp"), lambda cosine, _: cosine),
     "_cos": mp.cos,
     "_sin": mp.sin,
-    "_sin_cos": lambda angle: [mp.sin(angle), mp.cos(angle)],
+    "_sin_cos": lambda *angles: [*map(mp.sin, angles), *map(mp.cos, angles)],
     **dict.fromkeys(
         ("_entire", "_entire_scalar"), lambda x, *orders: [entire(k, x) for k in orders]
     ),
@@ -346,6 +346,8 @@ def computed(node: ast.expr, known: Values) -> Value:
             return known[name]
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return -computed(operand, known)
+        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+            return computed(operand, known)
         case ast.BinOp(left=left, op=op, right=right):
             one, two = computed(left, known), computed(right, known)
             acts: dict[type, Callable[[Value, Value], Value]] = {
@@ -362,6 +364,8 @@ def computed(node: ast.expr, known: Values) -> Value:
             return _CALLED[name](*whole)
         case ast.Tuple(elts=parts):
             return [computed(part, known) for part in parts]
+        case ast.Subscript(value=ast.Name(id=name), slice=ast.Constant(value=int(place))):
+            return known[name][place]
     raise UnreadError(ast.unparse(node))
 
 

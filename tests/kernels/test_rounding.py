@@ -157,7 +157,7 @@ JITTED = ("rotation_matrix", "angular_velocity_space", "rates_from_angular_veloc
 )
 def test_measured_errors_are_within_the_bounds_in_every_target(rotation, target):
     # each function and each type is compiled: these take a second each
-    only = JITTED if target in ("numba", "jax") else None
+    only = JITTED if target in ("numba", "jax") else ()
     for dtype in (np.float64, np.float32)[: 1 + TARGETS[target].has_single]:
         found = ratios(rs.derive(rotation, only), target, dtype, 32)
         assert all(ratio <= 1.0 for ratio in found.values()), found

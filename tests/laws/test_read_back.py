@@ -220,13 +220,10 @@ def test_displays_of_the_note(text, form):
 @pytest.mark.parametrize("text", ROTATIONS)
 def test_functions_in_three_languages(text):
     one = printed(text)
-    inputs = {
-        component: one.point[symbol]
-        for group in one.motion.arguments
-        for component, symbol in zip(
-            _components(group.name, one.motion), group.symbols, strict=True
-        )
-    }
+    inputs = {}
+    for group in one.motion.arguments:
+        inputs[group.name] = [one.point[symbol] for symbol in group.symbols]
+        inputs |= zip(_components(group.name, one.motion), inputs[group.name], strict=True)
     sources = {target: one.motion.kernels(target).source for target in ("numpy", "c", "javascript")}
     for name, expected in one.expected.items():
         read = [

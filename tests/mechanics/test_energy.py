@@ -267,7 +267,7 @@ def test_the_note_prints_scalars_and_their_proofs():
     squares = r"\frac{1}{2}\,A\,(\dot{\phi}^2 \sin^2\theta + \dot{\theta}^2)"
     squares += r" + \frac{1}{2}\,C\,(\dot{\phi} \cos\theta + \dot{\psi})^2"
     moments = r"\frac{1}{2}\,(A\,{\Omega'_1}^2 + A\,{\Omega'_2}^2 + C\,{\Omega'_3}^2)"
-    assert rf"\mathbf{{I}}'\,\boldsymbol{{\Omega}}' = {moments} \\[7pt]" in latex
+    assert rf"\mathbf{{I}}'\,\boldsymbol{{\Omega}}' = {moments}" in latex
     assert f"&= {squares}" in latex
     assert r"Proved: $\mathbf{L}'_R \cdot \boldsymbol{\Omega}' = 2 E_R$" in latex
 

@@ -145,6 +145,8 @@ class Function:
         """The statements in order, then the entries of the result."""
         for name, value in self.kernel.statements:
             values = list(value.values()) if isinstance(value, dict) else [value]
+            if isinstance(value, Call) and value.function == "eps":
+                values = []  # a number here: the type of its argument is known
             used = frozenset(n for each in values for n in names_in(each))
             known = frozenset(value) if isinstance(value, dict) else frozenset(self._named(name))
             yield CStatement(
