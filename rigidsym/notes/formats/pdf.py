@@ -34,6 +34,9 @@ _CONFINED = {"openin_any": "p", "openout_any": "p"}
 _SAME_EVERY_TIME = {"SOURCE_DATE_EPOCH": "0", "FORCE_SOURCE_DATE": "1"}
 _WARNING = re.compile(r"^(?:Over|Under)full .*|^.*\bWarning: .*|^No file .*", re.MULTILINE)
 _LOG_LINES = 25
+# latexmk overlooks this where two runs of TeX end within a second and their files have one size
+_UNFINISHED = "Rerun LaTeX"
+_MOST_RERUNS = 4
 
 
 class Typeset(NamedTuple):
@@ -54,7 +57,11 @@ def typeset(tex: str, *, timeout: float = TIMEOUT) -> Typeset:
         source = Path(folder, "note.tex")
         source.write_text(tex, encoding="utf-8")
         output = _run(folder, timeout)
-        log = _read(source.with_suffix(".log")) or output
+        for _ in range(_MOST_RERUNS):
+            log = _read(source.with_suffix(".log")) or output
+            if _UNFINISHED not in log:
+                break
+            output = _run(folder, timeout, "-g")
         pdf = source.with_suffix(".pdf")
         if not pdf.is_file():
             raise ToolFailed(f"TeX made no PDF; the end of its log:\n{_last_lines(log)}")
@@ -75,10 +82,10 @@ def _require_programs() -> None:
         )
 
 
-def _run(folder: str, timeout: float) -> str:
+def _run(folder: str, timeout: float, *options: str) -> str:
     """What latexmk prints; whatever ends this process or its patience ends TeX too."""
     process = subprocess.Popen(
-        _COMMAND,
+        [*_COMMAND, *options],
         cwd=folder,
         env=_SAME_EVERY_TIME | os.environ | _CONFINED,
         stdin=subprocess.DEVNULL,
