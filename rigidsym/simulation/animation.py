@@ -48,7 +48,7 @@ def save_animation(
 def _ffmpeg() -> str:
     """The program, by its name if it is on the path, else the one of imageio-ffmpeg."""
     if shutil.which("ffmpeg") is None and find_spec("imageio_ffmpeg") is not None:
-        from imageio_ffmpeg import get_ffmpeg_exe  # type: ignore[import-not-found]
+        from imageio_ffmpeg import get_ffmpeg_exe
 
         return str(get_ffmpeg_exe())
     return "ffmpeg"
