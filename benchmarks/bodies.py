@@ -29,7 +29,7 @@ SOLIDS = """
 import sys, time
 import rigidsym as rs
 from rigidsym.models.solids import SHAPES
-steps = ("mass", "centre_of_mass", "inertia_tensor")
+steps = ("centre_of_mass", "inertia_tensor")
 for name in SHAPES:
     start = time.perf_counter()
     found = rs.derive("ZXZ", steps, body=rs.solid(name))
