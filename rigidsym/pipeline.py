@@ -99,7 +99,7 @@ def read(source: str, **options: Any) -> DerivationSpec:
 
 
 def _is_rotation(source: str) -> bool:
-    """Whether a name is that of a rotation, so that an error is one of its options."""
+    """Whether this names a rotation; then the error is about one of its options."""
     try:
         spec_for(source)
     except ModelError:

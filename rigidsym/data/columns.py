@@ -47,7 +47,7 @@ class ColumnNames:
 
     @property
     def listed(self) -> str:
-        """For messages: the names; not that of a single column, which may be a line of prose."""
+        """The names, for messages; a single column, which may be prose, is only counted."""
         return ", ".join(self.names) if len(self.names) > 1 else "1 column"
 
     def find(self, spellings: Iterable[str]) -> int | None:

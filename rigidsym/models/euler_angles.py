@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.errors import ExpressionError, ModelError
-from rigidsym.models.rotation import Citation, RotationModel, Turn, lecture, product_of
+from rigidsym.models.rotation import DIEBEL, RotationModel, Turn, lecture, product_of
 from rigidsym.models.so3 import AXES, time_function
 from rigidsym.text.names import check_name
 
@@ -23,11 +23,6 @@ DEFAULT_ANGLES = ("phi", "theta", "psi")
 
 _DIGITS = str.maketrans("123", "XYZ")
 _ZXZ_SOURCE = lecture("17", "section 3.2")
-_SOURCE = Citation(
-    text="J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation "
-    "Vectors (2006)",
-    section="section 5",
-)
 
 
 def EulerAngles(
@@ -57,7 +52,7 @@ def EulerAngles(
         coordinates=coordinates,
         matrix=product_of(turns),
         turns=turns,
-        source=_ZXZ_SOURCE if letters == "ZXZ" else _SOURCE,
+        source=_ZXZ_SOURCE if letters == "ZXZ" else DIEBEL,
         passive=passive,
         request={
             "sequence": letters,

@@ -35,6 +35,12 @@ class Citation(NamedTuple):
 
 LECTURE = "Lecture notes on rigid body motion"
 
+DIEBEL = Citation(
+    text="J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation "
+    "Vectors (2006)",
+    section="section 5",
+)
+
 
 def lecture(equation: str = "", section: str = "") -> Citation:
     """A place in the lecture notes."""

@@ -16,13 +16,7 @@ from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Quantity
 from rigidsym.mechanics.quantities.claims import rate_of, spin_of, transpose_of
 from rigidsym.mechanics.quantities.table import read_table
-from rigidsym.models.rotation import Citation
-
-_DIEBEL = Citation(
-    text="J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation "
-    "Vectors (2006)",
-    section="section 5",
-)
+from rigidsym.models.rotation import DIEBEL
 
 ROTATION = formula(r"\mathbf{R}")
 COSINES = formula(r"\mathbf{A}")
@@ -125,7 +119,7 @@ _ACTIVE = read_table(
             _product(transpose_of(ROTATION), rate_of(SPACE.omega)),
         ),
     },
-    {"Diebel": _DIEBEL},
+    {"Diebel": DIEBEL},
 )
 _PASSIVE = read_table(
     """

@@ -98,7 +98,7 @@ def _utf16(text: str) -> str:
 
 class _LatexPrinter(NotePrinter):
     pen: LatexPen
-    heading = ""  # of the section, which may be that of its table too
+    heading = ""  # of the section; a table need not repeat it as its caption
     words = staticmethod(escape)
 
     def __init__(self, document: Document) -> None:

@@ -93,7 +93,7 @@ class _Steps:
             names = entry_names(step, self.arguments)
             yield from self.console.matrix(sides, step.expression, names)
         for proof in step.proofs:
-            if proof.status != "exact":
+            if not proof.is_exact:
                 yield f"{INDENT}✗ unproved: {self.console.text(proof.claim)}"
         if step.vector_form is not None:  # Ω = v̇ + ...
             yield from self._said(
@@ -249,7 +249,7 @@ class _Screen(_Steps):
             yield from self._proof("", self.conversions.from_matrix)
 
     def _proof(self, label: str, proof: Proof) -> Iterator[str]:
-        mark = "✓" if proof.status == "exact" else "✗"
+        mark = "✓" if proof.is_exact else "✗"
         yield f"{INDENT}{mark} {label:<5}{proof.status:<10}{self.console.text(proof.claim)}"
         if proof.residual is not None:
             yield f"{2 * INDENT}left over:"

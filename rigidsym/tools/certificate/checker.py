@@ -158,7 +158,7 @@ class Language:
         return self._new(x, x * value + ONE * -1, x * x * self.rate(value) * -1)
 
     def root(self, value: Poly) -> Poly:
-        """The positive root; that of a whole number by the roots of its factors."""
+        """The positive square root; of a whole number, the product of the roots of its factors."""
         whole = 0 if value.names else int(value.terms[()])
         for k in range(2, min(whole, MOST)):
             if whole % k == 0:
@@ -258,7 +258,7 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
 
 
 def verify(record: Mapping[str, Any], certificate: Mapping[str, Any]) -> list[str]:
-    """The names of what is proved; raises ValueError for a claim whose cofactors do not."""
+    """The names of the proved claims; raises ValueError if the cofactors do not prove one."""
     known = Language(record, certificate["parts"])
     ids, at, given = (certificate[key] for key in ("names", "point", "claims"))
 

@@ -212,7 +212,7 @@ def _body(kernel: Kernel, arguments: Sequence[str], at_once: str) -> str:
 
 
 def _scalar_body(kernel: Kernel, given: Sequence[str]) -> str:
-    """The twin's statements, and what stands in where floats raise an error."""
+    """The statements of the scalar function, and its fallback where floats raise an error."""
     if _is_shared(kernel):
         return bracketed(4, "return _of_floats(", given, ")")
     return "\n".join(
