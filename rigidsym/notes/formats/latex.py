@@ -220,7 +220,9 @@ class _LatexPrinter(NotePrinter):
         return _LETTER * (4 if isinstance(span, EquationReference) else len(plain((span,))))
 
     def _cell(self, text: Text) -> str:
-        return "".join(self._tall(s) if isinstance(s, Formula) else self.span(s) for s in text)
+        written = "".join(self._tall(s) if isinstance(s, Formula) else self.span(s) for s in text)
+        is_number = len(text) == 1 and isinstance(text[0], EquationReference)
+        return rf"\numbercell{{{written}}}" if is_number else written
 
     def _tall(self, formula: Formula) -> str:
         """In a table, where the fractions of neighbouring rows would touch."""
