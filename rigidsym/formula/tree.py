@@ -14,7 +14,7 @@ Face = Literal["italic", "bold", "arrow", "upright", "sans"]
 Prime = Literal["", "′", "ᴮ"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Formula:
     """Any node of the tree."""
 
@@ -33,11 +33,15 @@ class Formula:
         """Both, for programs."""
         return {"latex": self.latex, "text": self.text}
 
+    def __repr__(self) -> str:
+        """One line, for a prompt; the nodes would fill it."""
+        return f"<{self.text}>"
+
     def __bool__(self) -> bool:
         return self != NOTHING
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Symbol(Formula):
     """A letter or a word, with dots above it, a prime and an index: Ω̇′₁, yaw₂."""
 
@@ -49,51 +53,51 @@ class Symbol(Formula):
     macro: str = ""  # LaTeX of the letter, where it is not the usual one
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Numeral(Formula):
     digits: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Sign(Formula):
     """An operation or a relation between two parts of a row, or a comma: + − = × · / , ≤."""
 
     character: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Gap(Formula):
     """Wide space between two equations on a line."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Words(Formula):
     """Text within a formula, with its blanks."""
 
     words: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Differential(Formula):
     """The d or ∂ before what is differentiated, or integrated over."""
 
     letter: Literal["d", "∂"] = "d"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Row(Formula):
     """Parts side by side: factors of a product, or terms and sides with signs between them."""
 
     parts: tuple[Formula, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Fraction(Formula):
     above: Formula
     below: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Rate(Formula):
     """The derivative with respect to time as a quotient of differentials: dR/dt."""
 
@@ -101,7 +105,7 @@ class Rate(Formula):
     order: int = 1
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Power(Formula):
     """A base with an exponent: a number, Symbol("T") for the transpose, Sign("+")."""
 
@@ -109,7 +113,7 @@ class Power(Formula):
     exponent: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Indexed(Formula):
     """An entry of something compound: (W⁻¹)₁₂."""
 
@@ -117,18 +121,18 @@ class Indexed(Formula):
     index: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Radical(Formula):
     inside: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Bracket(Formula):
     inside: Formula
     kind: Literal["()", "[]", "||"] = "()"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class FunctionCall(Formula):
     """A named function of an argument, which has its own brackets where it needs any: sin² θ."""
 
@@ -137,7 +141,7 @@ class FunctionCall(Formula):
     exponent: int = 1
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Apply(Formula):
     """A symbol with an argument: C(u), R(q)."""
 
@@ -145,7 +149,7 @@ class Apply(Formula):
     inside: Formula
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Big(Formula):
     """The sign of a sum or an integral, with what stands below and above it."""
 
@@ -154,7 +158,7 @@ class Big(Formula):
     above: Formula | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Matrix(Formula):
     rows: tuple[tuple[Formula, ...], ...]
 

@@ -34,8 +34,8 @@ _FRACTIONS: dict[Formula, str] = {
     for above, below, short in ("12½", "13⅓", "23⅔", "14¼", "34¾", "18⅛")
 }
 _ABOVE = str.maketrans("0123456789-−+TB", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻⁺ᵀᴮ")
-_BELOW = str.maketrans(
-    "0123456789+-−=()aeoruhklmnpstijβγρφχ", "₀₁₂₃₄₅₆₇₈₉₊₋₋₌₍₎ₐₑₒᵣᵤₕₖₗₘₙₚₛₜᵢⱼᵦᵧᵨᵩᵪ"
+_BELOW = str.maketrans(  # no Greek: φ has a small letter, but θ and ψ beside it have none
+    "0123456789+-−=()aeoruhklmnpstij", "₀₁₂₃₄₅₆₇₈₉₊₋₋₌₍₎ₐₑₒᵣᵤₕₖₗₘₙₚₛₜᵢⱼ"
 )
 _SPACED = "+−±=≤<∈⇔×"
 

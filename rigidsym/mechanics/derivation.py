@@ -172,6 +172,11 @@ class Step:
     recursion: Formula | None = None  # shown for the entries, if these are names of its parts
     printer: StepPrinter | None = field(default=None, repr=False, compare=False)  # set by Motion
 
+    def __repr__(self) -> str:
+        """One line, for a prompt; `text` shows the equation."""
+        proved = all(proof.is_exact for proof in self.proofs)
+        return f"<Step {self.quantity.name}, {'proved' if proved else 'not proved'}>"
+
     def latex(self) -> str:
         """The equation in LaTeX, without its number."""
         return self._printer().latex(self)

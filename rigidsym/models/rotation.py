@@ -242,6 +242,10 @@ class RotationModel:
     def coordinate_units(self) -> tuple[str, ...]:
         return self.units or ("rad",) * len(self.coordinates)
 
+    def __repr__(self) -> str:
+        """One line, for a prompt."""
+        return f"<RotationModel {self.name}: {self.title}>"
+
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
         """What Jupyter shows: R in the coordinates, and the convention in words."""
         return {"text/latex": self._repr_latex_(), "text/plain": self._in_words()}

@@ -230,6 +230,8 @@ def test_what_would_fill_pages_is_one_line_at_a_prompt():
     assert repr(motion.note()) == f"<Note {NAME}, 13 equations>"
     assert motion.note()._repr_mimebundle_()["text/markdown"] == motion.note().markdown()
     assert repr(motion.kernels()) == f"<KernelModule {NAME}, numpy: {NAME}.py>"
+    assert repr(motion.step("spin_matrix")) == "<Step spin_matrix, proved>"
+    assert repr(motion.model) == f"<RotationModel {NAME}: Euler angles ZXZ, intrinsic>"
 
 
 def test_a_model_shows_its_matrix_and_its_convention():

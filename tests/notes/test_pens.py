@@ -255,3 +255,13 @@ def test_entries_that_are_equal_by_symmetry_are_listed_once():
     other = tensor + sp.ImmutableMatrix(3, 3, lambda i, j: 1 if i < j else 0)
     assert [name.text for name, _ in listed_entries(names, other)] == [n.text for n in names]
     assert len(listed_entries(names[:1], sp.ImmutableMatrix([[a]]))) == 1
+
+
+def test_greek_indices_are_all_written_alike_in_text():
+    assert [formula(rf"p_{{\{name}}}").text for name in ("phi", "theta", "psi")] == [
+        *("p_φ", "p_θ", "p_ψ")
+    ]
+
+
+def test_a_prompt_shows_a_formula_as_one_reads_it():
+    assert repr(formula(r"\mathbf{R}\,\mathbf{\Omega}'")) == "<R Ω′>"
