@@ -31,7 +31,7 @@ POINTS = 3
 ROOM = 128  # doubles behind `out`, for an index that is too large
 _TOKEN = re.compile(r"[A-Za-z_]\w*|\d+(?:\.\d*)?(?:e[-+]?\d+)?|\s+|.")
 _OTHER = {"+": "-", "-": "+", "*": "/", "/": "*"}
-_HEADS = {"numpy": "\ndef _{}(", "c": "\nINLINED uint64_t evaluate_{}("}
+_HEADS = {"numpy": "\ndef _{}(", "c": "\nEVALUATE({})"}
 _ENDS = {"numpy": "\n\n\n", "c": "\n}\n"}
 
 
@@ -53,26 +53,29 @@ def mutants(source: str, kernel: Kernel, target: str) -> Iterator[Mutant]:
     yield Mutant(kernel, "", head + inside + end, source)
     lines = inside.split("\n")
     start = next(k for k, line in enumerate(lines) if line.endswith((":", "{")) or line == "{") + 1
-    names = list(kernel.components)
+    names = [name for name in kernel.components if re.search(rf"\b{name}\b", inside)]
     for number, line in enumerate(lines[start:], start):
-        for change, text in _changed(line, names):
+        is_declared = " = in[" in line
+        for change, text in _changed(line, [] if is_declared else names):
             function = head + "\n".join((*lines[:number], text, *lines[number + 1 :])) + end
             words = f"{kernel.name}, line {number}: {change}"
             yield Mutant(kernel, words, function, before + function + after)
-        names += _defined(line)
+        names += [] if is_declared else _defined(line)
 
 
 def _defined(line: str) -> list[str]:
     """The numbers that a line gives names to."""
-    if line.lstrip().startswith(("uint64_t", "out[")):
+    if line.lstrip().startswith(("WORD", "out[")):
         return []
-    left, sign, _ = line.replace("const double", "").partition(" = ")
-    return re.findall(r"&(\w+)", line) or (re.findall(r"\w+", left) if sign else [])
+    if called := re.search(r"SIN_COS\(\w+, (\w+), (\w+)\)", line):
+        return list(called.groups())
+    left, sign, _ = line.replace("const REAL", "").partition(" = ")
+    return re.findall(r"\w+", left) if sign else []
 
 
 def _changed(line: str, names: Sequence[str]) -> Iterator[tuple[str, str]]:
     """Each change of a line, in words and as it then reads."""
-    if line.lstrip().startswith(("uint64_t", "double", "(void)", "return beyond")):
+    if line.lstrip().startswith(("WORD", "(void)", "return beyond")):
         return
     left, sign, _ = line.partition(" = ")
     tokens = _TOKEN.findall(line)
@@ -116,13 +119,10 @@ def _called(mutant: Mutant, points: Any, names: dict[str, Any]) -> Any:
 def values_in_c(found: Sequence[Mutant], points: Any, files: dict[str, str]) -> list[Any]:
     """The same for C: all mutants as functions of one library."""
     name = next(file for file in files if file.endswith(".c") and "_module" not in file)
-    count = len(found[0].kernel.components)
-    given = ", ".join(f"in[{k}]" for k in range(count))
-    text = [files[name].partition("\nINLINED uint64_t evaluate_")[0]]
+    text = [f'#include "{name}"\n']  # where it ends, the type is double
     for number, mutant in enumerate(found):
-        function = mutant.function.replace("INLINED", "static", 1)
-        text.append(function.replace(f"evaluate_{mutant.kernel.name}(", f"m{number}(", 1))
-        call = f"m{number}(1, {given}, out);"
+        text.append(mutant.function.replace(f"({mutant.kernel.name})", f"(m{number})", 1))
+        call = f"FN(evaluate_m{number})(1, 1, in, out);"
         text.append(f"void call{number}(const double *in, double *out) {{ {call} }}\n")
     with TemporaryDirectory() as folder:
         for file, content in files.items():

@@ -386,27 +386,25 @@ def python_function(source: str, name: str, known: Values) -> list[Value]:
     raise UnreadError(f"{name} returns nothing")
 
 
-_C_CALL = re.compile(r"beyond \|= (sin_cos|entire)\(far, (.+), (?:&(\w+), &(\w+)|(\w+))\)")
+_C_WORD = re.compile(r"\b(?:FN|LIT)\(([\w.+-]+)\)")
+_C_CALL = re.compile(r"SIN_COS\((.+), (\w+), (\w+)\)|beyond \|= entire\(far, (.+), (\w+)\)")
 _STORED = re.compile(r"(?:(\w+)\[([\w +*]*)\]|const \[(.*)\]|(?:const )?(?:double )?(\w+)) = (.+)")
 
 
 def braced_function(source: str, head: str, known: Values) -> list[Value]:
     """What a function of C or JavaScript stores in `out`; `known` holds its inputs by name."""
     inside = source.partition(head)[2].partition("{")[2].partition("\n}")[0]
-    known, out = dict(known), {}
+    inside = _C_WORD.sub(r"\1", inside).replace("REAL ", "double ")
+    known, out = {**known, "EPS": mp.mpf(0), "LEAST": mp.mpf(0)}, {}
     for statement in (" ".join(part.split()) for part in inside.split(";")):
         called, stored = _C_CALL.fullmatch(statement), _STORED.fullmatch(statement)
         if called:
-            value = computed(ast.parse(called[2], mode="eval").body, known)
-            if called[1] == "entire":
+            value = computed(ast.parse(called[1] or called[4], mode="eval").body, known)
+            if called[4]:
                 known[called[5]] = value
             else:
-                known[called[3]], known[called[4]] = mp.sin(value), mp.cos(value)
-        elif (
-            stored
-            and not re.match(r"uint|in\d|\w+\[\w*_at", stored[5])
-            and "double " not in stored[5]
-        ):
+                known[called[2]], known[called[3]] = mp.sin(value), mp.cos(value)
+        elif stored and not re.match(r"in\[|\w+\[\w*_at", stored[5]) and "double " not in stored[5]:
             array, index, several, name, text = stored.groups()
             element = re.fullmatch(r"(_entire_\w+)\[(\d+)\]", text)
             if element:

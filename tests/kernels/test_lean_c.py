@@ -126,7 +126,7 @@ def test_options_may_be_chosen_one_by_one(folder):
         run("clang", *STRICT, "-fsyntax-only", source, cwd=folder)
         assert ("sin(" in kernels.source or "sinf(" in kernels.source) is libm
         assert ("_array" in kernels.source) is arrays
-        assert ("double q[" in kernels.source) is (precision == "both")
+        assert ("double q[" in kernels.files[f"{kernels.name}.h"]) is (precision == "both")
         if (test := f"{kernels.name}_test.c") in kernels.files:
             run("gcc", *STRICT, source, test, "-o", "alone", "-lm", cwd=folder)
             assert run("./alone", cwd=folder) == ""

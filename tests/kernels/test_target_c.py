@@ -220,22 +220,18 @@ def test_a_tile_of_any_width_is_taken_and_given_back(sources, compiler, flag):
     """Rows of 1 to 14 components, shuffled by fours or one by one."""
     if platform.machine() != "x86_64":
         pytest.skip("other vectors")
-    text = (sources / f"{NAME}.c").read_text(encoding="utf-8")
+    text = (sources / f"{NAME}.c").read_text(encoding="utf-8").removesuffix("#endif\n")
     widths = range(1, 15)
-    for real, suffix in (("double", ""), ("float", "f")):
-        text += (
-            f"\nvoid turn{suffix}(const int n, const {real} *from, {real} *tile, {real} *to)\n{{"
-        )
-        for n in widths:
-            take = f"take_rows{suffix}({n}, from, tile);"
-            give = (
-                f"give_rows{suffix}({n}, tile, to, STREAMED < SIZE_MAX && (uintptr_t)to % 32 == 0);"
-            )
-            text += f"\n    if (n == {n}) {{\n        {take}\n        {give}\n    }}"
-        text += "\n}\n"
+    text += "\nvoid FN(turn)(const int n, const REAL *from, REAL *tile, REAL *to)\n{"
+    for n in widths:
+        take = f"FN(take_rows)({n}, from, tile);"
+        give = f"FN(give_rows)({n}, tile, to, STREAMED < SIZE_MAX && (uintptr_t)to % 32 == 0);"
+        text += f"\n    if (n == {n}) {{\n        {take}\n        {give}\n    }}"
+    text += "\n}\n#endif\n"
     name = f"tiles_{compiler}_{flag.strip('-')}"
     widened = re.sub(r"MOST = \d+", f"MOST = {widths[-1]}", text)
-    (sources / f"{name}.c").write_text(widened, encoding="utf-8")
+    renamed = widened.replace(f'include "{NAME}.c"', f'include "{name}.c"')
+    (sources / f"{name}.c").write_text(renamed, encoding="utf-8")
     flags = ("-std=c99", "-O1", "-fPIC", "-shared", flag)
     run(compiler, *flags, f"{name}.c", "-o", f"{name}.so", "-lm", cwd=sources)
     library = ctypes.CDLL(str(sources / f"{name}.so"))
@@ -282,7 +278,7 @@ def test_a_portable_module_uses_wide_vectors_in_its_clones_only(tmp_path, monkey
         (name, register)
         for part in functions
         for register in re.findall(r"%([yz]mm)", part)
-        for name in [re.search(r"_(avx2|avx512)>:|$", part.partition("\n")[0])[1]]
+        for name in [re.search(r"_(avx2|avx512)f?[.>]|$", part.partition("\n")[0])[1]]
     }
     assert found == {("avx2", "ymm"), ("avx512", "zmm"), ("avx512", "ymm")}
     code = f"import {source.stem}_c as m; print(m.rotation_matrix([[0.1, 0.2, 0.3]] * 40).tolist())"

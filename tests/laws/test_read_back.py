@@ -229,7 +229,7 @@ def test_functions_in_three_languages(text):
         read = [
             python_function(sources["numpy"], f"_{name}", inputs),
             python_function(sources["numpy"], f"{name}_scalar", inputs),
-            braced_function(sources["c"], f"evaluate_{name}(", inputs),
+            braced_function(sources["c"], f"EVALUATE({name})", inputs),
             braced_function(sources["javascript"], f"function _{name}(", inputs),
         ]
         limit = NEAR if "sqrt" in str(one.motion.step(name).expression) else TOLERANCE

@@ -14,7 +14,6 @@ from rigidsym.kernels.targets.text.python_layout import bracketed
 
 _FORMS = {"choice": "{0} ? {1} : {2}"}
 _WIDTH = 92
-_PLAIN = frozenset({"sqrt", "abs", "atan2", "eps"})  # functions without far angles
 
 
 def show(expression: Expression) -> str:
@@ -56,86 +55,74 @@ class Function:
     contents: Contents
 
     def pieces(self) -> dict[str, Any]:
-        kernel, arguments = self.kernel, list(self._arguments())
-        columns = [f"tile{a['offset']} + j" for a in arguments]
+        """The texts of a function with arrays; its arguments follow one another in one row."""
+        kernel = self.kernel
         return {
-            "name": self.name,
+            "kernel": kernel.name,
             "inputs": len(kernel.components),
             "outputs": len(kernel.outputs),
-            "arguments": arguments,
             "signature": self.signature,
-            "array": self._array,
-            "array_parameters": listed(4, "(", self._array_parameters).lstrip(),
-            "array_given": listed(4, "(", map(_name, self._array_parameters)).lstrip(),
+            "array_signature": self.array_signature,
             "body": self._body(),
-            "scalar_call": self._call(4, "1", "1", *(a["name"] for a in arguments), "out") + ";",
-            "tile_call": self._call(12, "0", "TILE", *columns, "found + j"),
-            "far_call": self._call(12, "1", "TILE", *columns, "found + j"),
+            "one": "\n".join(self._one()),
+            "many": "\n".join(self._many()),
         }
+
+    def _one(self) -> Iterator[str]:
+        """The lines that compute one orientation."""
+        named, given = self.precision.named, self.kernel.arguments
+        row, place = given[0].name, 0
+        if len(given) > 1:
+            row = "in"
+            yield f"    {self.precision.real} in[{len(self.kernel.components)}];"
+            for a in given:
+                yield f"    {named('copy')}({len(a.components)}, {a.name}, in + {place});"
+                place += len(a.components)
+        yield f"    {named(f'evaluate_{self.kernel.name}')}(1, 1, {row}, out);"
+
+    def _many(self) -> Iterator[str]:
+        """The lines that compute an array of orientations."""
+        named, arguments = self.precision.named, self.kernel.arguments
+        yield f"    const {named('array')} given[] = {{"
+        for a in arguments:
+            yield f"        {{ {a.name}, {a.name}_step, {a.name}_stride, {len(a.components)} }},"
+        yield "    };"
+        given = f"count, {len(arguments)}, given, out, out_step, out_stride"
+        yield f"    {named(f'{self.kernel.name}_of_rows')}({given});"
 
     @property
     def signature(self) -> str:
-        real, outputs = self.precision.real, len(self.kernel.outputs)
+        real, head = self.precision.real, f"void {self.precision.named(self.name)}("
         given = [f"const {real} {a.name}[{len(a.components)}]" for a in self.kernel.arguments]
-        head = f"void {self.name}{self.precision.suffix}("
-        return listed(0, head, [*given, f"{real} out[{outputs}]"])
+        return listed(0, head, [*given, f"{real} out[{len(self.kernel.outputs)}]"])
 
     @property
     def array_signature(self) -> str:
-        return listed(0, f"void {self._array}(", self._array_parameters)
-
-    @property
-    def _array(self) -> str:
-        return f"{self.name}_array{self.precision.suffix}"
-
-    @property
-    def _array_parameters(self) -> list[str]:
         real = self.precision.real
         items = ["size_t count"]
         for kind, name in (*(("const ", a.name) for a in self.kernel.arguments), ("", "out")):
             items += [f"{kind}{real} *{name}", f"ptrdiff_t {name}_step", f"ptrdiff_t {name}_stride"]
-        return items
-
-    def _arguments(self) -> Iterator[dict[str, Any]]:
-        """Name, size, and place in the tile."""
-        offset = 0
-        for argument in self.kernel.arguments:
-            count = len(argument.components)
-            place = f" + {offset} * TILE" if offset else ""
-            yield {"name": argument.name, "count": count, "offset": place}
-            offset += count
-
-    def _call(self, indent: int, *given: str) -> str:
-        head = f"evaluate_{self.kernel.name}{self.precision.suffix}("
-        return listed(indent, head, given).lstrip()
+        return listed(0, f"void {self.precision.named(f'{self.name}_array')}(", items)
 
     def _body(self) -> str:
         kernel, real, word = self.kernel, self.precision.real, self.precision.word
-        given = [f"const {real} *in{k}" for k in range(len(kernel.arguments))]
-        head = f"INLINED {word} evaluate_{kernel.name}{self.precision.suffix}("
-        called = (call.function for call in kernel.calls.values())
-        has_far = not self.contents.libm and not _PLAIN.issuperset(called)
         read = [
-            f"{name} = {_entry(f'in{k}', place)}"
-            for k, argument in enumerate(kernel.arguments)
-            for place, name in enumerate(argument.components)
+            f"{name} = {_entry('in', place)}"
+            for place, name in enumerate(kernel.components)
             if name in kernel.used
         ]
-        unused = [f"in{k}" for k in range(len(given)) if f" in{k}[" not in "".join(read)]
         unbroken = ", ".join(item.replace(" ", "\xa0") for item in read)
         lines = wrap(f"    const {real} {unbroken};", _WIDTH, subsequent_indent=" " * 8)
         declared = [line.replace("\xa0", " ") for line in lines if read]
+        statements = [f"    {line}" for step in self.steps() for line in step.lines]
         return "\n".join(
             [
-                listed(0, head, ["const int far", "const ptrdiff_t apart", *given, f"{real} *out"]),
+                f"EVALUATE({kernel.name})",
                 "{",
                 f"    {word} beyond = 0;",
-                *(
-                    f"    (void){name};"
-                    for name in (*([] if has_far else ["far"]), "apart", *unused)
-                ),
+                "    (void)far, (void)apart, (void)in;",
                 *declared,
-                *(f"    {line}" for step in self.steps() for line in step.lines),
+                *statements,
                 "    return beyond;",
                 "}",
             ]
@@ -167,14 +154,15 @@ class Function:
 
     def _reduced(self, helper: str, *arguments: str) -> str:
         """A call of a helper that reduces angles, in arrays the far ones later."""
+        called = self.precision.named(helper)
         if self.contents.libm:
-            return f"{helper}{self.precision.suffix}({', '.join(arguments)});"
+            return f"{called}({', '.join(arguments)});"
         tracked, far = ("beyond |= ", "far") if self.contents.arrays else ("(void)", "1")
-        return f"{tracked}{helper}{self.precision.suffix}({', '.join((far, *arguments))});"
+        return f"{tracked}{called}({', '.join((far, *arguments))});"
 
     def _lines(self, name: str, value: Expression | dict[str, Call]) -> Iterator[str]:
         precision = self.precision
-        real, suffix = precision.real, precision.suffix
+        real, named = precision.real, precision.named
         match value:
             case dict():  # all functions c_k of one square
                 (square,) = {call.argument.text for call in value.values()}
@@ -183,29 +171,32 @@ class Function:
                 for called, call in value.items():
                     yield f"const {real} {called} = _entire_{square}[{call.order}];"
             case Guarded(divisor):
-                yield f"const {real} {name} = or_nan{suffix}({divisor.text}, {self._limit(value)});"
+                kept = f"{named('or_nan')}({divisor.text}, {self._limit(value)})"
+                yield f"const {real} {name} = {kept};"
             case Call("sin" | "cos", argument) if not self.contents.libm:
                 both, angle = self.kernel.sines[argument], argument.text
                 if name == next(iter(both.values())):
                     sine, cosine = (both.get(f, f"_{f}_{angle}") for f in ("sin", "cos"))
-                    yield f"{real} {sine}, {cosine};"
-                    yield self._reduced("sin_cos", angle, f"&{sine}", f"&{cosine}")
+                    if self.contents.arrays:
+                        yield f"SIN_COS({angle}, {sine}, {cosine});"
+                    else:
+                        yield f"{real} {sine}, {cosine};"
+                        yield self._reduced("sin_cos", angle, f"&{sine}", f"&{cosine}")
             case Call("eps"):
-                yield f"const {real} {name} = {precision.literal(precision.eps)};"
+                yield f"const {real} {name} = {precision.of_eps()};"
             case Call(called):
                 own = {} if self.contents.libm else {"atan2": "angle_of"}
                 used = {"abs": "fabs", **own}.get(called, called)
                 given = ", ".join(argument.text for argument in value.arguments)
-                yield f"const {real} {name} = {used}{suffix}({given});"
+                yield f"const {real} {name} = {named(used)}({given});"
             case _:
                 kind = "int" if isinstance(value, Compare) else real
                 yield f"const {kind} {name} = {self._text(value)};"
 
     def _limit(self, guard: Guarded) -> str:
-        literal, eps = self.precision.literal, self.precision.eps
         if guard.scale is None:
-            return literal(self.precision.tiny / eps)
-        return f"{literal(eps**guard.power)} * {self._text(guard.scale)}"
+            return self.precision.least
+        return f"{self.precision.of_eps(guard.power)} * {self._text(guard.scale)}"
 
     def _text(self, expression: Expression) -> str:
         nan = f"({self.precision.real})NAN"  # the macro is a float
@@ -215,10 +206,6 @@ class Function:
 def _entry(array: str, k: int) -> str:
     """Of components that are `apart` from one to the next."""
     return f"{array}[{f'{k} * ' if k > 1 else ''}{'apart' if k else 0}]"
-
-
-def _name(parameter: str) -> str:
-    return parameter.split()[-1].lstrip("*")
 
 
 def listed(indent: int, head: str, items: Iterable[str]) -> str:

@@ -7,6 +7,7 @@ them stand the two files with which `rigidsym build` makes a Python module of th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import pi
 from types import ModuleType
 from typing import Any
@@ -20,19 +21,17 @@ from rigidsym.kernels.targets.c.module_files import module_files
 from rigidsym.kernels.targets.c.parts import parts_of
 from rigidsym.kernels.targets.numpy import printer as numpy
 from rigidsym.kernels.targets.text import remarks
-from rigidsym.kernels.targets.text.precision import PRECISIONS
+from rigidsym.kernels.targets.text.precision import EITHER, PRECISIONS, Precision
 from rigidsym.system import resources
 
 _WORDS = (
     "out far beyond sin_cos sin_cosf or_nan or_nanf entire entiref sqrtf fabs fabsf NULL angle_of "
     "angle_off SIZE_MAX PTRDIFF_MAX size_t ptrdiff_t uint32_t uint64_t TILE MOST SHUFFLED SHUFFLE "
-    "INLINED STREAMED STREAM STREAMf END_STREAM streams tile found rows count at i j HELPER CLONES "
-    "CLONED PART shared expected apart"
+    "INLINED STREAMED STREAM STREAMf END_STREAM HELPER CLONES CLONE "
+    "CLONED PART shared expected apart REAL WORD FN LIT EPS LEAST EVALUATE SIN_COS TILED GIVEN "
+    "PARAMETERS ORDERS in given count"
 )
-RESERVED = numpy.RESERVED | {
-    *_WORDS.split(),
-    *(f"in{k}" for k in range(16)),
-}  # the Python module's, too
+RESERVED = numpy.RESERVED | {*_WORDS.split()}  # the Python module's, too
 _WIDTH = 92
 _TILE = 32  # orientations that are evaluated side by side
 
@@ -42,13 +41,13 @@ def render(program: Program, **options: Any) -> dict[str, str]:
     contents = Contents(**options)
     room = _WIDTH - len("    const double  = ;")
     kernels = [narrowed(kernel, show, line=room, output=room) for kernel in program.kernels]
+    precisions = [p for p in PRECISIONS if contents.precision in ("both", p.real)]
     functions = [
         [Function(f"{program.name}_{kernel.name}", kernel, p, contents) for kernel in kernels]
-        for p in PRECISIONS
-        if contents.precision in ("both", p.real)
+        for p in precisions
     ]
     return {
-        f"{program.name}.c": _source(program, kernels, functions),
+        f"{program.name}.c": _source(program, precisions, functions[0]),
         f"{program.name}.h": _header(program, functions),
         **(module_files(program, kernels) if contents.is_module else _test(program, functions)),
     }
@@ -62,14 +61,15 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
 
 
 def _source(
-    program: Program, kernels: Sequence[Kernel], functions: Sequence[Sequence[Function]]
+    program: Program, precisions: Sequence[Precision], functions: Sequence[Function]
 ) -> str:
+    kernels, contents = [function.kernel for function in functions], functions[0].contents
     called, last = functions_of(kernels), last_order(kernels)
-    contents = functions[0][0].contents
     groups = (g for k in kernels for g in (k.outputs, *(a.components for a in k.arguments)))
+    typed = EITHER if contents.arrays or len(precisions) > 1 else precisions[0]
     written = [
-        [f.pieces() if contents.arrays else {"parts": list(parts_of(f))} for f in made]
-        for made in functions
+        f.pieces() if contents.arrays else {"parts": list(parts_of(f))}
+        for f in (replace(function, precision=typed) for function in functions)
     ]
     return _template("c/source.c.jinja").render(
         title=_safe(program.title),
@@ -82,11 +82,11 @@ def _source(
         has_guards=any(kernel.guards for kernel in kernels),
         has_series=last >= 0,
         orders=max(2, last) + 1,
-        precisions=[
-            {**made[0].precision.filled(last), "functions": texts}
-            for made, texts in zip(functions, written, strict=True)
-        ],
-        has_parts=any(len(text.get("parts", ())) > 1 for texts in written for text in texts),
+        is_both=len(precisions) > 1,
+        typed=typed,
+        precisions=[{**p.filled(last), "eps": p.of_eps(), "least": p.least} for p in precisions],
+        functions=written,
+        has_parts=any(len(text.get("parts", ())) > 1 for text in written),
         two_over_pi=_words(),
         half_pi=repr(pi / 2),
         widths=sorted(set(map(len, groups))),

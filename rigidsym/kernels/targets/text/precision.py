@@ -32,6 +32,18 @@ class Precision:
     def literal(self, value: float) -> str:
         return f"{value!r}{self.suffix}"
 
+    def named(self, function: str) -> str:
+        return f"{function}{self.suffix}"
+
+    def of_eps(self, power: int = 1) -> str:
+        """A power of eps."""
+        return self.literal(self.eps**power)
+
+    @property
+    def least(self) -> str:
+        """The smallest normal number over eps."""
+        return self.literal(self.tiny / self.eps)
+
     def filled(self, last: int) -> dict[str, Any]:
         """What the templates need; `last` is the highest order of the functions c_k."""
         found = reduction(self.digits)
@@ -95,4 +107,26 @@ DOUBLE, SINGLE = PRECISIONS = (
         packed=("f", "I"),
         tiny=2.0**-126,
     ),
+)
+
+
+class _EitherPrecision(Precision):
+    """Macros of C for the type, its numbers and functions: one text, compiled for both types."""
+
+    def literal(self, value: float) -> str:
+        return f"LIT({value!r})"
+
+    def named(self, function: str) -> str:
+        return f"FN({function})"
+
+    def of_eps(self, power: int = 1) -> str:
+        return " * ".join(["EPS"] * power)
+
+    @property
+    def least(self) -> str:
+        return "LEAST"
+
+
+EITHER = _EitherPrecision(
+    real="REAL", word="WORD", suffix="", bits=0, digits=0, packed=("", ""), tiny=0.0
 )
