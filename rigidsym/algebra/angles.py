@@ -1,17 +1,19 @@
 """Arguments of sine and cosine as rational combinations of atoms, over a common fraction.
 
-sin(2φ − ψ/2) needs the generators of φ and ψ/2 alone: every sine and cosine is expanded over the
-smallest fraction of each atom that occurs, so that cos 2θ and cos θ meet in one ring.
+Every sine and cosine is expanded over the smallest fraction of each angle that occurs, so that
+cos 2θ and cos θ meet in one ring. Independent sums of coordinates are angles by themselves:
+beside sin θ, sin(2φ − ψ/2) needs one pair of generators; beside sin φ, those of φ and ψ/2.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, reduce
 from math import gcd, lcm
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import AlgebraError
 
@@ -119,12 +121,41 @@ def cosine_sine_of_pi(turns: sp.Rational) -> tuple[sp.Expr, sp.Expr]:
 
 
 def common_fractions(combinations: Iterable[Combination]) -> Combination:
-    """For each atom, the largest fraction of which every coefficient is a whole multiple."""
+    """{angle: fraction}: each combination is a sum of whole multiples of fraction·angle.
+
+    The angles are the combinations themselves if these are independent, or else their atoms.
+    """
+    given = [{a: c for a, c in terms.items() if a is not sp.pi} for terms in combinations]
+    if any(len(terms) > 1 for terms in given):
+        multiples = [_multiple(terms) for terms in given if terms]
+        if _are_independent(set().union(*multiples)):
+            given = multiples
     fractions: Combination = {}
-    for terms in combinations:
-        for atom, coefficient in terms.items():
-            fractions[atom] = _common(fractions.get(atom, sp.Integer(0)), abs(coefficient))
-    return {atom: fraction for atom, fraction in fractions.items() if atom is not sp.pi}
+    for terms in given:
+        for angle, coefficient in terms.items():
+            fractions[angle] = _common(fractions.get(angle, sp.Integer(0)), abs(coefficient))
+    return fractions
+
+
+def _multiple(terms: Combination) -> Combination:
+    """{angle: coefficient}: the combination as a multiple of one sum of whole multiples."""
+    unit = reduce(_common, map(abs, terms.values()), sp.Integer(0))
+    angle = sp.Add(*(c / unit * atom for atom, c in terms.items()))
+    return {-angle: -unit} if angle.could_extract_minus_sign() else {angle: unit}
+
+
+def _are_independent(angles: Collection[sp.Expr]) -> bool:
+    """Whether no rational combination of the angles vanishes and each sum is of coordinates."""
+    atoms = {atom for angle in angles for atom in combination(angle)}
+    sums = (atom for angle in angles if angle.is_Add for atom in combination(angle))
+    if len(angles) > len(atoms) or not all(isinstance(atom, AppliedUndef) for atom in sums):
+        return False
+    return bool(coefficients(angles, atoms).rank() == len(angles))
+
+
+def coefficients(angles: Iterable[sp.Expr], atoms: Collection[sp.Expr]) -> sp.Matrix:
+    """A row for each angle: its coefficients, atom by atom."""
+    return sp.Matrix([[combination(angle).get(atom, 0) for atom in atoms] for angle in angles])
 
 
 def _common(a: sp.Rational, b: sp.Rational) -> sp.Rational:

@@ -18,7 +18,12 @@ from rigidsym.algebra.adjoin import (
     rate_of,
     roots_of,
 )
-from rigidsym.algebra.angles import Combination, combination, cosine_sine_of_pi
+from rigidsym.algebra.angles import (
+    Combination,
+    coefficients,
+    combination,
+    cosine_sine_of_pi,
+)
 from rigidsym.algebra.ring import Generator, Quotient, Ring
 from rigidsym.errors import AlgebraError
 
@@ -237,10 +242,23 @@ class Codec:
             return known
         ring = self.ring
         pair = ring.one, ring.zero
-        for atom, coefficient in combination(argument).items():
+        for atom, coefficient in self._in_angles(argument).items():
             pair = self._added(pair, self._multiple(atom, coefficient))
         self._pairs[argument] = pair
         return pair
+
+    def _in_angles(self, argument: sp.Expr) -> Combination:
+        """The argument as a combination of the angles of this ring and π."""
+        terms = combination(argument)
+        if not any(angle.is_Add for angle in self._fractions):
+            return terms
+        atoms = {a for e in (argument, *self._fractions) for a in combination(e) if a is not sp.pi}
+        own, wanted = coefficients(self._fractions, atoms), coefficients([argument], atoms)
+        found = wanted * own.T * (own * own.T).inv()
+        if found * own != wanted:
+            raise self._foreign(sp.sin(argument))
+        times = dict(zip((*self._fractions, sp.pi), (*found, terms.get(sp.pi, 0)), strict=True))
+        return {angle: coefficient for angle, coefficient in times.items() if coefficient}
 
     def _multiple(self, atom: sp.Expr, coefficient: sp.Rational) -> Pair:
         if atom is sp.pi:

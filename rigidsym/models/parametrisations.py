@@ -125,7 +125,7 @@ def AxisAngle(
         "Axis and angle",
         "The axis is a unit vector, about which the body is turned by the angle.",
         (*axis, angle),
-        rodrigues(axis, angle),
+        rodrigues(tuple(axis), angle),
         _SHUSTER,
         passive=passive,
         constraints=(_square(axis) - 1,),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import lru_cache
 
 import sympy as sp
@@ -56,10 +55,15 @@ def elementary(axis: str, angle: sp.Expr) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix(3, 3, lambda row, column: entries.get((row, column), 0))
 
 
-def rodrigues(axis: Sequence[sp.Expr], angle: sp.Expr) -> sp.ImmutableMatrix:
+@lru_cache(maxsize=256)
+def rodrigues(axis: tuple[sp.Expr, ...], angle: sp.Expr) -> sp.ImmutableMatrix:
     """Right-handed active turn by `angle` (radians) about a unit axis (3,), Rodrigues' formula.
 
     1 + sin β C(e) + (1 − cos β) C(e)², which is a rotation where e·e = 1 and not otherwise.
     """
-    skew = hat(sp.Matrix(axis))
-    return sp.ImmutableMatrix(sp.eye(3) + sp.sin(angle) * skew + (1 - sp.cos(angle)) * skew * skew)
+    skew = hat(axis)
+    sine, rest = sp.sin(angle), 1 - sp.cos(angle)
+    parts = zip(sp.eye(3), skew, skew * skew, strict=True)
+    return sp.ImmutableMatrix(
+        3, 3, [sp.Add(e, sine * s, *(rest * t for t in sp.Add.make_args(q))) for e, s, q in parts]
+    )

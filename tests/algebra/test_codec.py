@@ -159,6 +159,19 @@ def test_generators_are_as_few_as_can_be():
     assert held(sin(k), m) == {sin(k), cos(k), m}
 
 
+def test_independent_sums_are_angles_by_themselves():
+    turns = (2 * a - Rational(3, 2) * b + x, Rational(2, 3) * y - z / 4, a + b / 2)
+    codec = codec_for([cos(angle) for angle in turns], order=0)
+    assert codec.encode(cos(turns[0])) in codec.ring.polynomials.gens
+    assert len(codec.angle_pairs) == len(turns)
+    codec = codec_for([sin(a + b), sin(a - b)])
+    assert codec.encode(sin(2 * a + pi / 2)) == codec.encode(
+        cos(a + b) * cos(a - b) - sin(a + b) * sin(a - b)
+    )
+    with pytest.raises(AlgebraError, match="is not in the ring"):
+        codec.encode(sin(a))
+
+
 def test_constants_do_not_move():
     codec = codec_for([m / length + sqrt(k), sin(k) * pi, sqrt(3)])
     for expression in (m, 1 / length, sqrt(k), sin(k), cos(k), pi, sqrt(3)):
