@@ -89,6 +89,18 @@ def schema() -> Schema:
                         },
                     ),
                 },
+                "examples": {
+                    "type": "array",
+                    "description": "motions that the note draws; simulate begins with the first",
+                    "items": obj(
+                        "a motion; it takes from the first one what it does not name",
+                        {
+                            "parameters": _numbers("values of the constants, by name"),
+                            "initial": _numbers("coordinates and rates at t = 0, else 0"),
+                            "time": {"type": "number", "description": "its length in seconds"},
+                        },
+                    ),
+                },
             },
         ),
         "notation": _notation(),
@@ -109,6 +121,10 @@ def _by_name(about: str) -> Schema:
         "description": about,
         "additionalProperties": {"type": "string"},
     }
+
+
+def _numbers(about: str) -> Schema:
+    return _by_name(about) | {"additionalProperties": {"type": "number"}}
 
 
 def _three(about: str) -> Schema:

@@ -248,6 +248,7 @@ def derive(
     parts: Sequence[Mapping[str, Any]] | None = None,
     frame_rate: Sequence[sp.Expr | str] | None = None,
     method: str | None = None,
+    examples: Sequence[Mapping[str, Any]] | None = None,
     theory: bool = False,
     timeout: float | None = None,
 ) -> Motion:
@@ -261,7 +262,8 @@ def derive(
     follows from a `torque` in body components. `method` is "lagrange", for free coordinates, or
     "euler", with the state (q, Ω′); `first_integrals` are claims to be proved, by name; `parts`
     move with the body: {"rotation", "principal_moments"} or {"velocity", "mass"}; `frame_rate` is
-    the angular velocity of the frame that R is measured in.
+    the angular velocity of the frame that R is measured in. `examples` are motions that the note
+    draws, {"parameters", "initial", "time"}; each takes from the first what it does not name.
     `theory` adds equations 1 to 16 of the lecture, which hold for every body and rotation.
     `timeout` limits the time, in seconds.
 
@@ -290,6 +292,7 @@ def derive(
         given: dict[str, Any] = {
             **{"potential": potential, "forces": forces, "torque": torque, "method": method},
             **{"first_integrals": first_integrals, "parts": parts, "frame_rate": frame_rate},
+            "examples": examples,
         }
         moving = {key: value for key, value in given.items() if value is not None}
         if moving:

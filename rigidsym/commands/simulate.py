@@ -14,11 +14,12 @@ import numpy as np
 
 from rigidsym.commands.command import FILE, NAMED_NUMBER, command as make, option, with_options
 from rigidsym.data.writers import check_ending, table_writer
+from rigidsym.models.example import OMEGA, OMEGA_COMPONENTS, Example, initial_values
 from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
 from rigidsym.simulation.animation import WRITERS
 from rigidsym.simulation.plot import PICTURES, check_picture
-from rigidsym.simulation.solver import METHODS, OMEGA, no_rotation
+from rigidsym.simulation.solver import METHODS
 from rigidsym.system.files import whole_file
 from rigidsym.system.progress import bar
 
@@ -50,14 +51,18 @@ def _grid(context: click.Context, _: object, given: Sequence[str]) -> dict[str, 
 class SimulationOptions:
     """All options of `simulate`."""
 
-    constants: tuple[tuple[str, float], ...] = option("--set", **_NUMBERS, help="A parameter.")
+    constants: tuple[tuple[str, float], ...] = option(
+        "--set", **_NUMBERS, help="A parameter.  [default: the first example of the file]"
+    )
     initial: tuple[tuple[str, float], ...] = option(
         "--initial",
         **_NUMBERS,
         help="A coordinate, a rate, or angular_velocity_body_1, _2, _3 in place of rates. "
-        "[default: no rotation, at rest]",
+        "The others are 0.  [default: the first example of the file, else no rotation, at rest]",
     )
-    t_end: float = option("--time", type=float, default=10.0, show_default=True, help="Seconds.")
+    t_end: float | None = option(
+        "--time", type=float, help="Seconds.  [default: the first example of the file, else 10]"
+    )
     method: str = option(
         "--method",
         type=click.Choice(METHODS),
@@ -118,12 +123,14 @@ def command(source: str, options: SimulationOptions) -> None:
     for name in ("spread", "scheduler"):
         if getattr(options, name):
             raise click.UsageError(f"--{name} is for ensembles; add --ensemble or --grid")
-    start = _start(motion, dict(options.initial))
+    example = _example(motion)
+    constants = {**example.parameters, **dict(options.constants)}
+    start = _start(motion, dict(options.initial) or example.initial)
     with bar(motion.name) as progress:
         found = motion.simulate(
             start,
-            dict(options.constants),
-            options.t_end,
+            constants,
+            example.time if options.t_end is None else options.t_end,
             samples=options.samples or 1001,
             method=options.method,
             progress=progress,
@@ -132,17 +139,17 @@ def command(source: str, options: SimulationOptions) -> None:
     if options.plot is not None:
         click.echo(found.plot(options.plot))
     if options.animate is not None:
-        click.echo(_animated(motion, found, options))
+        click.echo(_animated(motion, found, constants, options.animate))
 
 
-def _animated(motion: Motion, found: Trajectory, options: SimulationOptions) -> Path:
+def _animated(
+    motion: Motion, found: Trajectory, constants: Mapping[str, float], path: Path
+) -> Path:
     """The file of the animation."""
-    path = options.animate
-    assert path is not None
     if path.suffix != ".html":
         with bar(str(path)) as progress:
             return found.animate(path, progress)
-    start = dict(options.constants)
+    start = dict(constants)
     for k, name in enumerate(found.coordinates):
         start |= {name: found.q[0, k], f"{name}_dot": found.q_dot[0, k]}
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -159,8 +166,9 @@ def _ensemble(motion: Motion, options: SimulationOptions) -> None:
     if options.grid and options.ensemble is not None:
         raise click.UsageError("--grid and --ensemble: expected one of them")
     generator = np.random.default_rng(options.seed)
-    initial: dict[str, Any] = dict(options.initial)
-    constants: dict[str, Any] = dict(options.constants)
+    example = _example(motion)
+    initial: dict[str, Any] = dict(options.initial or example.initial)
+    constants: dict[str, Any] = {**example.parameters, **dict(options.constants)}
     names = {name for each in motion.arguments if each.name == "parameters" for name in each.names}
     for name, values in options.grid.items():
         (constants if name in names else initial)[name] = values
@@ -177,7 +185,7 @@ def _ensemble(motion: Motion, options: SimulationOptions) -> None:
         found = motion.simulate_many(
             start,
             constants,
-            options.t_end,
+            example.time if options.t_end is None else options.t_end,
             samples=options.samples or 101,
             scheduler=options.scheduler,
             progress=progress,
@@ -204,13 +212,12 @@ def _reported(found: Trajectory | Ensemble, out: Path | None) -> None:
 
 def _start(motion: Motion, given: Mapping[str, Any]) -> dict[str, Any]:
     """The initial values, with 0 and no rotation for what is not given."""
-    start: dict[str, Any] = dict(no_rotation(motion.model))
-    if set(start).isdisjoint(given):
-        start |= given
-    else:
-        start = dict.fromkeys(start, 0.0) | dict(given)
-    turning = [start.pop(f"{OMEGA}_{k}", None) for k in (1, 2, 3)]
-    if any(value is not None for value in turning):
-        parts = np.broadcast_arrays(*(0.0 if value is None else value for value in turning))
-        return start | {OMEGA: np.stack(parts, axis=-1)}
-    return dict.fromkeys(motion.argument("q_dot").names, 0.0) | start
+    start = initial_values(motion.model, given)
+    turning = [start.pop(name) for name in OMEGA_COMPONENTS if name in start]
+    return start | ({OMEGA: np.stack(np.broadcast_arrays(*turning), axis=-1)} if turning else {})
+
+
+def _example(motion: Motion) -> Example:
+    """The first of the file, or no rotation at rest for 10 s."""
+    examples = motion.forces.examples if motion.forces else ()
+    return examples[0] if examples else Example({}, {}, 10.0)

@@ -12,6 +12,7 @@ import sympy as sp
 
 from rigidsym.errors import ModelError, offer
 from rigidsym.models.body import Parameter, RigidBody
+from rigidsym.models.example import Example, examples_of
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import TIME, depends_on_time, symbolic
@@ -51,6 +52,7 @@ class Forces:
     method: str = ""  # one of METHODS; "": Lagrange's where the coordinates are free
     parts: tuple[MovingPart, ...] = ()
     frame_rate: tuple[sp.Expr, ...] = ()  # rad/s, of the frame of R, constant in it; three or none
+    examples: tuple[Example, ...] = ()  # motions with numbers
 
     @property
     def fix_a_point(self) -> bool:
@@ -114,12 +116,13 @@ def forces_on(
     parts: Sequence[Mapping[str, Any]] = (),
     frame_rate: Sequence[sp.Expr | str] = (),
     method: str = "",
+    examples: Sequence[Mapping[str, Any]] = (),
 ) -> Forces:
     """What acts on a body, by the keys of [dynamics]; texts are read as in a file.
 
     In a text `theta_dot` is the rate of theta, `omega_body_1` a component of Ω′ and `t` the time;
     other names are constants. Raises ModelError for a force on what is no coordinate and for parts
-    that are none, ExpressionError for a text that cannot be read.
+    and examples that are none, ExpressionError for a text that cannot be read.
     """
     known = {q.func.__name__: q for q in model.coordinates}
     names = known | {f"{name}_dot": sp.diff(q, TIME) for name, q in known.items()}
@@ -140,6 +143,7 @@ def forces_on(
         frame_rate=tuple(_read(component, names) for component in frame_rate),
         method=method,
         parts=tuple(_part(part, names) for part in parts),
+        examples=tuple(examples_of(model, examples)),
     )
 
 

@@ -14,12 +14,12 @@ import sympy as sp
 from rigidsym.errors import ModelError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation
+from rigidsym.models.example import OMEGA as OMEGA
 from rigidsym.simulation.sampled_motion import Array
 from rigidsym.simulation.trajectory import Trajectory
 
 POLE = 1e-3  # of the singularity margin: nearer to a pole, coordinates lose digits
 _UNIT = 1e-9  # by which the entries of R Rᵀ − 1 may be off at the start
-OMEGA = "angular_velocity_body"
 
 
 class Problem:

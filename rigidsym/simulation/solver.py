@@ -6,14 +6,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-import sympy as sp
 
 from rigidsym.errors import DerivationError, MissingExtra, ModelError, offer
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
 from rigidsym.models.forces import Forces
-from rigidsym.models.rotation import RotationModel
 from rigidsym.simulation.attitude import Attitude, quaternions_of
 from rigidsym.simulation.free_body import free_motion
 from rigidsym.simulation.problem import OMEGA as OMEGA, POLE, Problem
@@ -66,16 +64,6 @@ def simulate(
         states = attitude.states(problem.start[None], attitude.in_group(times, progress))
         return problem.trajectory(times, states)
     return _integrated(problem, times, progress, {"method": method, "rtol": rtol, "atol": atol})
-
-
-def no_rotation(model: RotationModel) -> dict[str, float]:
-    """Coordinates of R = 1: all 0, or one of them 1."""
-    q = model.coordinates
-    for place in range(-1, len(q)):
-        values = {x: sp.S.One if k == place else sp.S.Zero for k, x in enumerate(q)}
-        if model.matrix.xreplace(values) == sp.eye(3):
-            return {x.func.__name__: float(value) for x, value in values.items()}
-    return dict.fromkeys((x.func.__name__ for x in q), 0.0)
 
 
 def with_motion(derivation: Derivation) -> Derivation:

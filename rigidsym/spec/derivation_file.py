@@ -24,7 +24,10 @@ A_PAIR_OF_FRAMES = 'two names such as ["inertial", "spacecraft"]'
 _OF_BOTH = ("title", "theory", "parameters", "body", "dynamics", "notation", "text")
 _FILE = (*_OF_BOTH, "rotation", "output")
 _RECORD = (*_OF_BOTH, "name", "rotations")
-_DYNAMICS = ("potential", "forces", "torque", "first_integrals", "parts", "frame_rate", "method")
+_DYNAMICS = (
+    *("potential", "forces", "torque", "first_integrals", "parts", "frame_rate", "method"),
+    "examples",
+)
 _FORMER = ("measured",)  # in old records: errors that were printed with the kernels
 _LINES = ("author", "course", "date")
 _SENTENCES = ("before", "after", "sources")
@@ -252,6 +255,9 @@ def _dynamics(table: Table) -> Iterator[tuple[str, Any]]:
     if table.value("parts") is not None:
         parts = table.tables("parts", "a list of tables: [[dynamics.parts]]")
         yield "parts", [dict(_part(part)) for part in parts]
+    if table.value("examples") is not None:
+        examples = table.tables("examples", "a list of tables: [[dynamics.examples]]")
+        yield "examples", [dict(_example(example)) for example in examples]
 
 
 def _part(table: Table) -> Iterator[tuple[str, Any]]:
@@ -262,6 +268,15 @@ def _part(table: Table) -> Iterator[tuple[str, Any]]:
     for key in ("principal_moments", "velocity"):
         if components := _expressions(table, key):
             yield key, components
+
+
+def _example(table: Table) -> Iterator[tuple[str, Any]]:
+    table.refuse_others(("parameters", "initial", "time"))
+    for key in ("parameters", "initial"):
+        if inner := table.table(key):
+            yield key, {name: inner.number(name) or 0 for name in inner.data}
+    if (time := table.number("time")) is not None:
+        yield "time", time
 
 
 def _expressions(table: Table, key: str) -> list[str]:

@@ -103,7 +103,7 @@ def test_the_command_simulates_a_grid_and_writes_every_kind_of_file(tmp_path):
         (["--grid=theta=0.2:1.2"], "expected NAME=FROM:TO:COUNT"),
         (["--grid=theta=0:1:2", "--ensemble=3"], "--grid and --ensemble: expected one of them"),
         (["--spread=theta=1"], "--spread is for ensembles; add --ensemble or --grid"),
-        (["--ensemble=3", "--spread=theta=1"], "--spread theta: no value of it is given"),
+        (["--ensemble=3", "--spread=phi=1"], "--spread phi: no value of it is given"),
         (["--ensemble=3", "--method=lie"], "an ensemble takes steps of fixed length"),
         (["--ensemble=3", "--out=x.foo"], "a result ends in .npy, .csv, .txt, .parquet, .pq, .npz"),
     ],

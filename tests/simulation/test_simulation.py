@@ -206,6 +206,17 @@ def test_the_command_writes_a_table_and_a_picture(tmp_path):
     assert "expected NAME=NUMBER" in wrong.stderr
 
 
+def test_the_command_begins_with_the_first_example_of_the_file(tmp_path):
+    done = call("simulate", "heavy_symmetric_top", "--out=top.csv", cwd=tmp_path)
+    assert "from 0 to 7 s" in done.stdout
+    table = np.genfromtxt(tmp_path / "top.csv", delimiter=",", names=True)
+    assert (table["theta"][0], table["psi_dot"][0], table["phi_dot"][0]) == (0.9, 12, 0)
+    given = ["--initial=theta=0.5", "--time=1", "--set=C=0.6", "--out=own.csv"]
+    call("simulate", "heavy_symmetric_top", *given, cwd=tmp_path)
+    table = np.genfromtxt(tmp_path / "own.csv", delimiter=",", names=True)
+    assert (table["t"][-1], table["theta"][0], table["psi_dot"][0]) == (1, 0.5, 0)
+
+
 def test_a_film_is_written_with_the_ffmpeg_of_the_extra(tmp_path):
     pytest.importorskip("imageio_ffmpeg")
     found = free().simulate(REST | {"theta": 1, "psi_dot": 3}, {"A": 1, "C": 0.5}, 1.0, samples=5)

@@ -19,6 +19,7 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.so3 import TIME
 from rigidsym.notes.figure.body_mesh import evaluator
 from rigidsym.notes.figure.camera import Point
+from rigidsym.notes.figure.chart import mark
 from rigidsym.notes.figure.drawing import Drawing, Label, Stroke
 
 _MOMENTA = (sp.Integer(1), sp.Integer(3))
@@ -26,7 +27,7 @@ _WIDTH, _HEIGHT = 3.2, 1.0  # of the range of θ, and of half the range of θ̇
 _POINTS = 96  # of the range of θ
 _HIGHEST = (0.45, 0.7, 0.95)  # of the range to the nearer end: how far a motion swings
 _GAP = 0.16  # between an axis and its label
-_DOT = 0.03  # half the width of the mark of the steady motion
+_TICK = 0.03  # half its length
 
 
 class PhasePortrait(NamedTuple):
@@ -68,7 +69,7 @@ def phase_portrait(derivation: Derivation, letters: Letters) -> PhasePortrait | 
     name = letters.name(q[k])
     strokes = [Stroke("body", _scaled(curve, most), is_thin=True) for curve in curves]
     drawing = Drawing(
-        strokes=(*_axes(), *strokes, _mark(grid[lowest])),
+        strokes=(*_axes(), *strokes, mark((grid[lowest] / pi * _WIDTH, 0.0))),
         labels=(
             Label("space", name, (_WIDTH + 0.25 + _GAP, 0.0)),
             Label("space", letters.name(q[k].diff(TIME)), (0.0, _HEIGHT + 0.2 + _GAP)),
@@ -121,11 +122,4 @@ def _scaled(curve: Sequence[Point], most: float) -> tuple[Point, ...]:
 def _axes() -> Iterator[Stroke]:
     yield Stroke("space", ((0.0, 0.0), (_WIDTH + 0.25, 0.0)), has_arrow=True)
     yield Stroke("space", ((0.0, -_HEIGHT - 0.1), (0.0, _HEIGHT + 0.2)), has_arrow=True)
-    yield Stroke("space", ((_WIDTH, -_DOT), (_WIDTH, _DOT)))
-
-
-def _mark(angle: float) -> Stroke:
-    """A small diamond at the steady motion."""
-    x = angle / pi * _WIDTH
-    corners = ((x - _DOT, 0.0), (x, _DOT), (x + _DOT, 0.0), (x, -_DOT), (x - _DOT, 0.0))
-    return Stroke("vector", corners)
+    yield Stroke("space", ((_WIDTH, -_TICK), (_WIDTH, _TICK)))

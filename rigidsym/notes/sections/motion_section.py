@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial, reduce
 
 import sympy as sp
 
@@ -13,18 +14,23 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.dynamics import LETTERS
-from rigidsym.models.forces import MovingPart
+from rigidsym.models.example import OMEGA_COMPONENTS, Example, initial_values
+from rigidsym.models.forces import OMEGA_BODY, MovingPart
+from rigidsym.models.so3 import TIME
 from rigidsym.notes.document.document import (
     Equation,
     Figure,
     NoteBlock,
     Paragraph,
+    Span,
     Strong,
     Text,
     listed,
     said,
     words,
 )
+from rigidsym.notes.figure.chart import number
+from rigidsym.notes.figure.motion_picture import motion_picture
 from rigidsym.notes.figure.phase_portrait import phase_portrait
 
 _BECAUSE = {True: "Their rates vanish by the equations of motion, which is proved.", False: ""}
@@ -93,6 +99,7 @@ def what_follows(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock
         )
         if found.title == "The effective potential":
             yield from _phase_portrait(derivation, letters)
+    yield from _pictures(derivation, letters)
 
 
 def _phase_portrait(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
@@ -108,3 +115,85 @@ def _phase_portrait(derivation: Derivation, letters: Letters) -> Iterator[NoteBl
             "motion."
         )
         yield Figure(shown.drawing, (*caption, *listed(given), "."), description)
+
+
+_TRACES = {
+    "axis": "The curve on the unit sphere is the trace of the third body axis, which stays between "
+    "the circles of its lowest and highest points.",
+    "polhode": "The polhode is the path of the angular velocity on the ellipsoid of energy.",
+    "polhodes": "The polhodes, paths of the angular velocity on the ellipsoid of energy, belong to "
+    "this motion and to others with the same parameters.",
+    "path": "The curve in the plane is the path of the point of mass, seen from above.",
+}
+_ON_A_SURFACE = "Dashed lines are behind the surface."
+
+
+def _pictures(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
+    """The examples, with their numbers in the caption."""
+    shown = motion_picture(derivation, letters)
+    if shown is None or derivation.forces is None:
+        return
+    given = [_numbers(derivation, letters, e) for e in derivation.forces.examples[: shown.count]]
+    parameters, initial = (
+        listed([(each,) for each in part if all(each in other[k] for other in given)])
+        for k, part in enumerate(given[0])
+    )
+    if len(given) == 1:
+        typed = (
+            "The motion for {}, which begins with {}, in SI units and radians; all other initial "
+            "values are 0."
+        )
+    else:
+        typed = (
+            "Motions for {}, which begin with {}, in SI units and radians; all other initial "
+            "values are 0 but for these, from left to right: {}."
+        )
+    own = [
+        [
+            each
+            for k, part in enumerate(one)
+            for each in part
+            if any(each not in o[k] for o in given)
+        ]
+        for one in given
+    ]
+    differing = listed([(reduce(partial(formula, "#1, #2"), each),) for each in own if each])
+    caption = _filled(typed, parameters, initial, differing)
+    traces = [_TRACES[kind] for kind in shown.traces]
+    if {*shown.traces} - {"path"}:
+        traces.append(_ON_A_SURFACE)
+    yield Figure(shown.drawing, caption, words(" ".join(traces)))
+
+
+def _filled(typed: str, *lists: Text) -> Text:
+    """The text with a list of formulas for each {}."""
+    first, *others = typed.split("{}")
+    found: list[Span] = [first]
+    for spans, part in zip(lists, others, strict=False):
+        found += [*spans, part]
+    return tuple(found)
+
+
+def _numbers(
+    derivation: Derivation, letters: Letters, example: Example
+) -> tuple[list[Formula], list[Formula]]:
+    """The parameters of an example, and its initial values but for those that are 0 in all."""
+    forces = derivation.forces
+    assert forces is not None
+    q = derivation.model.coordinates
+    known = {x.func.__name__: letters.name(x) for x in q}
+    known |= {f"{x.func.__name__}_dot": letters.name(sp.diff(x, TIME)) for x in q}
+    known |= {n: formula_of(w, letters) for n, w in zip(OMEGA_COMPONENTS, OMEGA_BODY, strict=True)}
+    start = initial_values(derivation.model, example.initial)
+    named = {name for each in forces.examples for name, value in each.initial.items() if value}
+    named |= {name for name, value in start.items() if value}
+    parameters = [
+        formula("#1 = #2", formula_of(sp.Symbol(name), letters), number(value))
+        for name, value in example.parameters.items()
+    ]
+    initial = [
+        formula("#1 = #2", known[name], number(value))
+        for name, value in start.items()
+        if name in named
+    ]
+    return parameters, initial

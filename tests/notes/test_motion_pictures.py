@@ -1,0 +1,114 @@
+"""Pictures of motions in notes: examples of derivation files, integrated and drawn."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+from rigidsym.errors import ModelError, SpecError
+from rigidsym.models.example import OMEGA, OMEGA_COMPONENTS, initial_values
+from rigidsym.notes.figure.motion_picture import ExampleMotion
+from rigidsym.pipeline import motion_of, read, read_spec
+from rigidsym.system import resources
+
+SYSTEMS = [
+    spec
+    for spec in map(read, resources.names("derivations", ".toml"))
+    if len(spec.models) == 1 and spec.dynamics
+]
+A_PENDULUM = {
+    "model": "x(theta)",
+    "body": rs.principal_moments(*sp.symbols("A B C")),
+    "potential": "-m*g*l*cos(theta)",
+}
+NUMBERS = {"A": 1, "B": 1, "C": 1, "m": 1, "g": 10, "l": 1}
+
+
+@cache
+def shipped(name: str) -> rs.Motion:
+    return motion_of(read(name))
+
+
+def figure_of(motion: rs.Motion):
+    return motion.note(with_kernels=False).document.figures[-1]
+
+
+def test_every_shipped_system_has_an_example():
+    assert len(SYSTEMS) >= 10
+    assert [spec.name for spec in SYSTEMS if not spec.dynamics.get("examples")] == []
+
+
+@pytest.mark.parametrize("name", ["heavy_symmetric_top", "free_body", "rolling_disc"])
+def test_the_motion_drawn_is_the_motion_simulated(name):
+    motion = shipped(name)
+    example = motion.forces.examples[0]
+    start = initial_values(motion.model, example.initial)
+    omega = [start.pop(component) for component in OMEGA_COMPONENTS if component in start]
+    start |= {OMEGA: omega} if omega else {}
+    parameters = example.parameters
+    simulated = motion.simulate(start, parameters, example.time, samples=401)
+    drawn = ExampleMotion(motion, motion.forces, example)
+    states = np.array(drawn.states)
+    count = simulated.q.shape[1]
+    assert np.abs(states[:, :count] - simulated.q).max() < 3e-3 * np.ptp(simulated.q)
+
+
+def test_the_path_of_the_disc_has_the_velocity_of_its_centre():
+    motion = shipped("rolling_disc")
+    drawn = ExampleMotion(motion, motion.forces, motion.forces.examples[0])
+    path = np.array(drawn.states)[:, drawn.path]
+    height = path[:, 2] + np.sin(drawn.states[0][1])  # a sin θ
+    assert height == pytest.approx(np.sin(np.array(drawn.states)[:, 1]), abs=1e-4)
+
+
+def test_the_caption_tells_parameters_and_initial_values():
+    figure = figure_of(shipped("heavy_symmetric_top"))
+    told = "".join(span if isinstance(span, str) else span.text for span in figure.caption)
+    for value in ("A = 1", "l = 0.5", "θ = 0.9", "ψ̇ = 12", "φ̇ = 0, φ̇ = 0.4 and φ̇ = -0.5"):
+        assert value.replace("-", "−") in told.replace("-", "−")
+
+
+def test_an_example_takes_from_the_first_what_it_does_not_name():
+    first = {"parameters": NUMBERS, "initial": {"theta": 0.5}, "time": 2}
+    motion = rs.derive(**A_PENDULUM, examples=[first, {"initial": {"theta_dot": 1}}])
+    assert motion.forces.examples[1] == (NUMBERS, {"theta": 0.5, "theta_dot": 1}, 2)
+
+
+@pytest.mark.parametrize(
+    ("example", "message"),
+    [
+        ({"initial": {"thta": 1}, "time": 1}, "thta; did you mean theta?"),
+        ({"initial": {"theta": 1}}, "a time > 0"),
+        ({"initial": {"theta": float("nan")}, "time": 1}, "finite numbers"),
+        ({"start": {"theta": 1}, "time": 1}, "start; expected parameters, initial, time"),
+    ],
+)
+def test_an_example_that_is_none_is_refused(example, message):
+    with pytest.raises(ModelError, match=message):
+        rs.derive(**A_PENDULUM, examples=[example])
+
+
+def test_missing_values_of_an_example_are_named_all_at_once():
+    motion = rs.derive(**A_PENDULUM, examples=[{"parameters": {"A": 1}, "time": 1}])
+    with pytest.raises(ModelError, match=r"lacks values of g, l, m$"):
+        motion.note()
+
+
+def test_a_motion_too_fast_for_a_picture_is_refused():
+    fast = {"parameters": NUMBERS | {"g": 1e9}, "initial": {"theta": 1}, "time": 1e3}
+    motion = rs.derive(**A_PENDULUM, examples=[fast])
+    with pytest.raises(ModelError, match="cannot be drawn"):
+        motion.note()
+
+
+def test_a_file_tells_the_place_of_a_wrong_example():
+    text = (
+        '[rotation]\nsequence = "ZXZ"\n[body]\nprincipal_moments = ["A", "A", "C"]\n'
+        '[dynamics]\npotential = "0"\n[[dynamics.examples]]\ninitial = { theta = "1" }\ntime = 1\n'
+    )
+    with pytest.raises(SpecError, match=r"line 8: dynamics.examples\[0\].initial.theta"):
+        read_spec(text, source="top.toml", name="top")
