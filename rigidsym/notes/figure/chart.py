@@ -113,7 +113,7 @@ def on_ellipsoid(
     paths: Sequence[Sequence[Vector]],
     circles: Iterable[Sequence[Vector]],
     size: Vector,
-    axes: Sequence[tuple[Formula | str, int]],
+    axes: Sequence[tuple[Formula, int]],
 ) -> Drawing:
     """Curves and circles on an ellipsoid, given on the unit sphere, dashed where they are behind.
 

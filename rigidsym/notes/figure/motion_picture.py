@@ -21,7 +21,7 @@ from rigidsym.models.example import Example, initial_values
 from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.so3 import TIME
 from rigidsym.notes.figure.body_mesh import evaluator
-from rigidsym.notes.figure.camera import STANDARD, Point, Vector
+from rigidsym.notes.figure.camera import STANDARD, Point, Vector, unit
 from rigidsym.notes.figure.chart import Range, chart, circle, in_a_row, on_ellipsoid
 from rigidsym.notes.figure.drawing import Drawing
 from rigidsym.notes.figure.scene import BODY
@@ -41,7 +41,7 @@ class MotionPicture(NamedTuple):
     """A drawing, and what its caption says of it."""
 
     drawing: Drawing
-    count: int  # of the examples whose numbers the caption needs
+    told: int  # of how many examples the caption needs the numbers
     traces: tuple[str, ...]  # "axis", "polhode", "polhodes", "path"
 
 
@@ -91,11 +91,16 @@ class ExampleMotion:
         self.states: list[Numbers] = found
 
     @property
+    def inertia(self) -> sp.ImmutableMatrix:
+        """I′ about the fixed point."""
+        assert self.derivation.body is not None
+        return self.derivation.body.inertia
+
+    @property
     def is_poinsot(self) -> bool:
         """Whether the polhode on the ellipsoid of energy shows the motion."""
-        body = self.derivation.body
         is_free = self.forces.leave_free(self.derivation.model)
-        return is_free and body is not None and bool(body.inertia.is_diagonal())
+        return is_free and bool(self.inertia.is_diagonal())
 
     def _start(self, coordinates: Sequence[str]) -> Numbers:
         """The initial state in the order of y."""
@@ -234,19 +239,17 @@ def _traces(motions: Sequence[ExampleMotion], letters: Letters) -> Iterator[tupl
 
 def _polhodes(motions: Sequence[ExampleMotion], letters: Letters) -> Drawing:
     """Each on the ellipsoid of its own energy, scaled to one size."""
-    moments = [motions[0].derivation.body.inertia[k, k] for k in range(3)]  # type: ignore[union-attr]
-    weights = [m**0.5 for m in motions[0].function(moments)(0.0, motions[0].states[0])]
-    paths: list[list[Vector]] = []
-    for motion in motions:
-        scaled = [
-            [w * s for w, s in zip(weights, o, strict=True)] for o in motion.over_time(motion.omega)
-        ]
-        length = sum(part * part for part in scaled[0]) ** 0.5
-        paths.append([tuple(part / length for part in each) for each in scaled])  # type: ignore[misc]
-    size = tuple(min(weights) / weight for weight in weights)
+    first = motions[0]
+    moments = first.function([*first.inertia.diagonal()], len(first.states[0]))
+    a, b, c = (moment**0.5 for moment in moments(0.0, first.states[0]))
+    least = min(a, b, c)
+    paths = [
+        [unit((a * x, b * y, c * z)) for x, y, z in motion.over_time(motion.omega)]
+        for motion in motions
+    ]
     circles = [circle(axis, 0.0) for axis in STANDARD]
     axes = [(letters.notation.applied(name), k) for k, name in enumerate(BODY)]
-    return on_ellipsoid(paths, circles, size, axes)  # type: ignore[arg-type]
+    return on_ellipsoid(paths, circles, (least / a, least / b, least / c), axes)
 
 
 def _axis(motion: ExampleMotion) -> Drawing:

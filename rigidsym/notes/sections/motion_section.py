@@ -133,7 +133,7 @@ def _pictures(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
     shown = motion_picture(derivation, letters)
     if shown is None or derivation.forces is None:
         return
-    given = [_numbers(derivation, letters, e) for e in derivation.forces.examples[: shown.count]]
+    given = [_numbers(derivation, letters, e) for e in derivation.forces.examples[: shown.told]]
     parameters, initial = (
         listed([(each,) for each in part if all(each in other[k] for other in given)])
         for k, part in enumerate(given[0])
