@@ -60,7 +60,7 @@ _FRAME_WORDS = (
         _NOT_A_FRAME + r"\b(?:(?P<before>of|in|from) the body|body(?P<after> components| to\b))"
     ),
 )
-_VECTORS = frozenset("uvwxyrpmngscdLeΩω")  # bold matrices and columns of coordinates stay so
+_VECTORS = frozenset("uvwxyrpmngscdLeabkΩω")  # bold matrices and columns of coordinates stay so
 
 
 class HasNames(Protocol):
@@ -79,6 +79,7 @@ class Notation:
     body: str = "prime"
     angular_velocity: str = "Omega"
     frames: tuple[str, str] = FRAMES
+    vector: str = "v"  # the letter of the vector that the coordinates are components of
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frames", _checked(self.frames))
@@ -106,7 +107,8 @@ class Notation:
     @property
     def is_default(self) -> bool:
         """Whether formulas stay as they were composed."""
-        return all(getattr(self, name) == known[0] for name, known in CHOICES.items())
+        chosen = all(getattr(self, name) == known[0] for name, known in CHOICES.items())
+        return chosen and self.vector == "v"
 
     def check(self, model: HasNames) -> None:
         """Raises ModelError for a name in a model that looks like the angular velocity."""
@@ -146,6 +148,8 @@ def _within(value: Any, notation: Notation) -> Any:
 def _symbol(symbol: Symbol, notation: Notation) -> Formula:
     index = symbol.index and _applied(symbol.index, notation)
     symbol = replace(symbol, index=index)
+    if symbol.letter == "v" and symbol.face == "bold":
+        symbol = replace(symbol, letter=notation.vector)
     if notation.angular_velocity == "omega" and symbol.letter == "Ω":
         symbol = replace(symbol, letter="ω")
     if notation.body == "superscript" and symbol.prime:

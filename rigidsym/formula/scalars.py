@@ -86,10 +86,12 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     """What is in all entries, such as ½ M or 2/(n² + w²), and the matrix behind it."""
     entries = [entry for entry in matrix if entry != 0]
     below = {sp.fraction(entry)[1].as_coeff_Mul()[1] for entry in entries}
+    if len(below) == 2 and any(entry.is_Add for entry in entries):  # 1 − 2 y²/d, 2 x y/d
+        below = {sp.fraction(sp.together(e))[1].as_coeff_Mul()[1] for e in entries}
     if len(entries) < 2 or len(below) > 1:
         return sp.S.One, matrix
     (divisor,) = below
-    contents = [(entry * divisor).as_content_primitive() for entry in matrix]
+    contents = [_over(entry, divisor).as_content_primitive() for entry in matrix]
     number = sp.gcd_list([content for content, rest in contents if rest != 0])
     constants = _constants_in_all([rest for _, rest in contents if rest != 0])
     if divisor == 1 and number.is_Integer and constants == 1:
@@ -99,6 +101,12 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
         for content, primitive in contents
     ]
     return number * constants / divisor, sp.ImmutableMatrix(*matrix.shape, rest)
+
+
+def _over(entry: sp.Expr, divisor: sp.Expr) -> sp.Expr:
+    """The numerator of an entry over a divisor."""
+    apart = entry.is_Add and any(sp.fraction(term)[1] == divisor for term in entry.args)
+    return sp.Add(*(sp.expand(term * divisor) for term in entry.args)) if apart else entry * divisor
 
 
 def _constants_in_all(entries: Sequence[sp.Expr]) -> sp.Expr:

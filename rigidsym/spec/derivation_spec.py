@@ -104,7 +104,8 @@ class DerivationSpec:
     def _notation_data(self) -> dict[str, Any]:
         if self.notation is None or self.notation == type(self.notation)():
             return {}
-        return asdict(self.notation)
+        chosen = asdict(self.notation)
+        return {name: chosen[name] for name in chosen if name != "vector"}  # that is the model's
 
 
 def spec_for(

@@ -8,7 +8,7 @@ import sympy as sp
 
 import rigidsym as rs
 from rigidsym.models.so3 import TIME
-from rigidsym.notes.document.document import Equation
+from rigidsym.notes.document.document import EquationRow
 from rigidsym.notes.prose.algebra_words import is_told, rates_in_words, rotation_in_words
 
 COEFFICIENTS = {  # of v × x′ and v × (v × x′), for the length n of the vector
@@ -52,6 +52,18 @@ def test_the_angular_velocity_is_twice_the_rate_times_the_conjugate():
         np.testing.assert_allclose([0, *found.ravel()], expected, atol=1e-14)
 
 
+def test_a_turn_whose_axis_moves_has_the_angular_velocity_of_the_note():
+    motion = rs.derive("axis_angle", ["rotation_matrix", "angular_velocity_space"])
+    e, e_dot, angle, rate = np.array([1, 2, 2]) / 3, np.array([0.2, -0.3, 0.2]), 0.7, 0.4
+    across = np.cross(e, e_dot)
+    values = dict(zip(motion.model.coordinates, map(sp.Float, (*e, angle)), strict=True))
+    rates = {q.diff(TIME): sp.Float(r) for q, r in zip(values, (*e_dot, rate), strict=True)}
+    moved = (1 - np.cos(angle)) * across + np.sin(angle) * e_dot
+    np.testing.assert_allclose(across - rotated(motion.model, values) @ across, moved, atol=1e-15)
+    found = np.array(motion.angular_velocity_space.xreplace(rates).xreplace(values), dtype=float)
+    np.testing.assert_allclose(found.ravel(), rate * e + moved, atol=1e-15)
+
+
 @pytest.mark.parametrize(
     "name", ["quaternion", "unit_quaternion", "cayley_klein", "axis_angle", *COEFFICIENTS]
 )
@@ -60,6 +72,7 @@ def test_the_note_of_each_says_how_it_turns_a_vector(name):
     letters = motion.note().document.letters
     assert is_told(motion.model)
     blocks = [*rotation_in_words(motion.model, letters), *rates_in_words(motion.model, letters)]
-    texts = [block.sides[0].text for block in blocks if isinstance(block, Equation)]
+    rows = [block.equations for block in blocks if isinstance(block, EquationRow)]
+    texts = [equation.sides[0].text for row in rows for equation in row]
     assert "x" in texts
     assert ("q̇" in texts) is (name in ("quaternion", "unit_quaternion", "cayley_klein"))

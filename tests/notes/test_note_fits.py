@@ -27,8 +27,13 @@ from rigidsym.notes.document.document import (
 from rigidsym.notes.formats.latex import render as print_latex
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formula.derivation_letters import entry_names, length_of, letters_of
-from rigidsym.notes.formula.vector_rates import rate_of_form
-from rigidsym.notes.prose.vector_words import by_half_angle, sign_outside, sum_of_vectors
+from rigidsym.notes.formula.vector_rates import rates_of_form
+from rigidsym.notes.prose.vector_words import (
+    by_half_angle,
+    in_notation,
+    sign_outside,
+    sum_of_vectors,
+)
 
 TURNS = (
     "z(phi)",
@@ -91,7 +96,7 @@ def _given(document: Document, label: str) -> tuple[Equation, Equation | None]:
     ("rotation", "label", "done", "names"),
     [
         ("ZXZ", "rotation_matrix", "", 0),  # as it stands
-        ("axis_angle", "rotation_matrix", "", 1),  # 1 − cos φ: a matrix with a name
+        ("axis_angle", "inverse_rate_matrix_space", "", 1),  # 1 − cos φ: a matrix with a name
         ("z(yaw) y(pitch) x(roll)", "rotation_matrix", "abbreviated", 0),  # products: shorthand
         ("z(yaw) y(pitch) x(roll)", "spin_matrix", "", 3),  # entries of Ω: a matrix, not a list
         ("ZXZ", "rotation_rate", "listed", 0),  # an entry a line, and none broken
@@ -214,7 +219,7 @@ def test_what_cannot_break_gets_a_name():
 # --- vectors
 
 
-@pytest.mark.parametrize("name", VECTORS[:3])
+@pytest.mark.parametrize("name", [*VECTORS[:3], "quaternion"])
 def test_rates_of_vector_forms_are_the_derivatives(name):
     motion = rs.derive(name)
     model, length = motion.model, length_of(motion.model)
@@ -235,15 +240,37 @@ def test_rates_of_vector_forms_are_the_derivatives(name):
         "(v·v̇) v̇": v.dot(first) * first,
         "(v·v̇) v": v.dot(first) * v,
     }
-    size = sp.sqrt(v.dot(v))
+    size = sp.sqrt(sum(part**2 for part in length.components))
     for frame in ("space", "body"):
-        form = motion.step(f"angular_velocity_{frame}").vector_form
-        total = sp.zeros(3, 1)
-        for term in rate_of_form(form, length.rate).terms:
-            coefficient = term.coefficient.subs(length.rate, v.dot(first) / size)
-            total += coefficient.subs(length.symbol, size) * named[term.vector.text]
+        form = in_notation(motion.step(f"angular_velocity_{frame}").vector_form, length)
         expected = getattr(motion, f"angular_acceleration_{frame}")
-        assert all(_agree(e, t) for e, t in zip(expected, total, strict=True))
+        for rates in rates_of_form(form, length.rate):
+            total = sp.zeros(3, 1)
+            for term in rates.terms:
+                coefficient = term.coefficient.subs(length.rate, size.diff("t"))
+                total += coefficient.subs(length.symbol, size) * named[term.vector.text]
+            assert all(_agree(e, t) for e, t in zip(expected, total, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("name", "quantity", "written"),
+    [
+        ("quaternion", "angular_velocity_space", "(2/n²) (w v̇ + v × v̇ − ẇ v)"),
+        ("quaternion", "rotation_matrix", "1 + (2/n²) (w C(v) + C(v)²)"),
+        ("gibbs_vector", "inverse_rate_matrix_body", "½(1 + C(v) + v vᵀ)"),
+        ("modified_rodrigues", "inverse_rate_matrix_space", "¼(1 − n²) 1 − ½(C(v) − v vᵀ)"),
+        ("axis_angle", "rotation_matrix", "1 + sin φ C(v) + (1 − cos φ) C(v)²"),
+    ],
+)
+def test_a_fraction_that_terms_share_is_written_once(name, quantity, written):
+    motion = rs.derive(name, quantity)
+    letters = letters_of(motion.arguments, model=motion.model)
+    assert sum_of_vectors(motion.step(quantity).vector_form, letters).text == written
+
+
+def test_a_vector_is_called_by_the_letter_of_its_components():
+    models = map(rotation_from, ("axis_angle", "gibbs_vector", "modified_rodrigues", "quaternion"))
+    assert [letters_of((), model=model).notation.vector for model in models] == list("egsv")
 
 
 @pytest.mark.parametrize("name", VECTORS[:3])

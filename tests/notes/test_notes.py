@@ -389,8 +389,8 @@ def test_what_is_transposed_is_said_to_be():
 @pytest.mark.parametrize(
     ("rotation", "choice"),
     [
-        ("unit_quaternion", "The rates that satisfy the conditions on the coordinates are unique"),
-        ("quaternion", "we choose the smallest"),
+        ("unit_quaternion", "satisfy the conditions on the coordinates"),
+        ("quaternion", "gives those that keep it constant"),
     ],
 )
 def test_which_of_all_rates_are_taken_depends_on_the_conditions(rotation, choice):

@@ -213,9 +213,9 @@ class Expanded(Kinematics):
         if kind == "rate_matrix":
             return self._columns_in_words(frame)
         if kind == "inverse_rate_matrix":
-            return self._inverse_in_words()
-        words = _PASSIVE_WORDS if self.model.passive and name in _PASSIVE_WORDS else _WORDS
-        return words[name if name in words else kind]
+            return self._inverse_in_words(frame)
+        words = _PASSIVE_WORDS if self.model.passive and name in _PASSIVE_WORDS else WORDS
+        return words[name]
 
     def _given_as(self) -> str:
         """Where the matrix that is shown comes from."""
@@ -236,24 +236,36 @@ class Expanded(Kinematics):
             return "The angular velocity is the rate times the axis of the turn."
         turns = [turn.angle for turn in self.model.turns]
         if turns and all(a == q for a, q in zip(turns, coordinates, strict=False)):
-            where = "space" if frame == "space" else "the body"
+            if frame == "body":
+                return "The columns of W′ are the same axes, with their components in the body."
             return (
-                "The angular velocity depends linearly on the rates; the columns of the rate "
-                f"matrix are the axes of the turns, with their components in {where}."
+                "The angular velocity depends linearly on the rates; the columns of W are the axes "
+                "of the turns, with their components in space."
             )
-        return (
-            "The angular velocity depends linearly on the rates; the columns of the rate matrix "
-            "are their coefficients."
-        )
+        if frame == "body":
+            return "The coefficients of its body components are those of W′."
+        return "The angular velocity depends linearly on the rates, with the coefficients W."
 
-    def _inverse_in_words(self) -> str:
-        if len(self.model.coordinates) == 3:
+    def _inverse_in_words(self, frame: str) -> str:
+        is_square = len(self.model.coordinates) == 3
+        if frame == "body":
+            kind = "inverse" if is_square else "right inverse"
+            return f"The {kind} of W′ is found in the same way."
+        if is_square:
             return (
-                "The inverse gives the rates for a known angular velocity, for example one "
-                "measured by gyroscopes; it is the adjugate divided by the determinant."
+                "The inverse of W, its adjugate divided by its determinant, gives the rates for a "
+                "known angular velocity."
             )
         if self.values.bound is not None:
-            return "The rates that satisfy the conditions on the coordinates are unique."
+            return (
+                "W has more columns than rows; its right inverse gives the rates that satisfy the "
+                "conditions on the coordinates, which are unique."
+            )
+        if self.model.vector:
+            return (
+                "The rates are not unique, since the length of the quaternion is irrelevant; the "
+                "right inverse of W gives those that keep it constant."
+            )
         return (
             "The rates are not unique, since there are more coordinates than components of the "
             "angular velocity; we choose the smallest."
@@ -261,22 +273,25 @@ class Expanded(Kinematics):
 
 
 _COMPONENTS = "The components of Ω are the entries (3,2), (1,3) and (2,1) of this skew matrix."
-_WORDS = {
+WORDS = {
     "rotation_rate": "The chain rule gives the time derivative of each entry.",
     "spin_matrix": "Multiplying the derivative by the transpose gives a skew matrix.",
     "angular_velocity_space": _COMPONENTS,
     "angular_velocity_body": "Multiplying by Rᵀ gives the components along the axes of the body.",
-    "rates_from_angular_velocity": "It takes a given angular velocity to the rates, which can then "
-    "be integrated.",
+    "rates_from_angular_velocity_space": "The rates follow from the space components of the "
+    "angular velocity.",
+    "rates_from_angular_velocity_body": "Gyroscopes fixed in the body measure Ω′; integrating the "
+    "rates that follow gives the orientation.",
     "angular_acceleration_space": "The angular acceleration is the time derivative of the angular "
     "velocity.",
-    "angular_acceleration_body": "In the body frame it is enough to differentiate the components "
-    "of Ω′, since Ω × Ω vanishes.",
+    "angular_acceleration_body": "Its components in the body are the derivatives of those of Ω′, "
+    "since Ω × Ω vanishes.",
 }
 _PASSIVE_WORDS = {
-    "spin_matrix": "Multiplying the derivative by the transpose gives a skew matrix, and it is the "
-    "operator of −Ω′, not of Ω.",
-    "angular_velocity_space": "The derivative of the transpose times the matrix is the operator of "
-    f"Ω, as the transpose is R. {_COMPONENTS}",
-    "angular_velocity_body": "Multiplying by A gives the components along the axes of the body.",
+    "spin_matrix": "Multiplying the derivative by the transpose gives a skew matrix, the operator "
+    "of −Ω′ and not of Ω.",
+    "angular_velocity_space": "Since Aᵀ = R, the derivative of the transpose times the matrix is "
+    f"the operator of Ω. {_COMPONENTS}",
+    "angular_velocity_body": "The direction cosine matrix gives the components along the axes of "
+    "the body.",
 }

@@ -14,7 +14,13 @@ from rigidsym.algebra.real_values import RealValues
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Bracket, Formula, Symbol
 from rigidsym.mechanics.derivation import Definition, Found, Proof, Singularities
-from rigidsym.mechanics.kinematics.derive import FRAMES, IS_OPERATOR, Kinematics, kind_and_frame
+from rigidsym.mechanics.kinematics.derive import (
+    FRAMES,
+    IS_OPERATOR,
+    WORDS,
+    Kinematics,
+    kind_and_frame,
+)
 from rigidsym.mechanics.kinematics.recursion import OrthogonalRows, Recursion
 from rigidsym.mechanics.kinematics.recursion_proofs import (
     Encoded,
@@ -68,6 +74,7 @@ class TurnByTurn(Kinematics):
         if expression is None:
             return None
         words, recursion = _WORDS[kind_and_frame(name)[0] if name not in _WORDS else name]
+        words = words or WORDS[name]
         if self.model.passive and name in _PASSIVE_WORDS:
             words, recursion = _PASSIVE_WORDS[name]
         return Found(
@@ -265,14 +272,14 @@ _TURNING = (
 )
 _WORDS: dict[str, tuple[str, str | None]] = {  # how it follows, and the recursion that is shown
     "rotation_matrix": (f"{_TURNING}.", _LAWS["product"]),
-    "rotation_rate": ("The derivative is C(Ω) R.", r"\mathbf{C}(#1)\,#2"),
+    "rotation_rate": ("The derivative follows from the angular velocity.", r"\mathbf{C}(#1)\,#2"),
     "spin_matrix": ("The derivative times the transpose is the operator of Ω.", r"\mathbf{C}(#1)"),
     "angular_velocity_space": (
-        "Each turn adds its rate about its own axis, and turns what the later turns add.",
+        "Each turn adds its rate about its own axis, and rotates the sum of the later turns.",
         rf"\mathbf{{u}}_1, \quad {_LAWS['omega_space']}",
     ),
     "angular_velocity_body": (
-        "Seen from the body each turn moves what the turns before it have added.",
+        "Seen from the body, each turn rotates the sum of the turns before it backwards.",
         rf"\mathbf{{w}}_{{LAST}}, \quad {_LAWS['omega_body']}",
     ),
     "rate_matrix": ("The columns of the rate matrix are the axes of the turns.", None),
@@ -281,22 +288,19 @@ _WORDS: dict[str, tuple[str, str | None]] = {  # how it follows, and the recursi
         "solution of least norm.",
         r"#2\left(#1\,#2\right)^{-1}",
     ),
-    "rates_from_angular_velocity": (
-        "The right inverse is applied to a given angular velocity.",
-        r"#1\,#2",
-    ),
+    "rates_from_angular_velocity": ("", r"#1\,#2"),
     "angular_acceleration_space": (
-        "The recursion of the angular velocity is differentiated.",
+        "Differentiating the recursion of Ω gives the angular acceleration.",
         rf"\dot{{\mathbf{{u}}}}_1, \quad {_LAWS['alpha_space']}",
     ),
     "angular_acceleration_body": (
-        "The recursion of its body components is differentiated.",
+        "Differentiating the recursion of Ω′ gives its body components.",
         rf"\dot{{\mathbf{{w}}}}_{{LAST}}, \quad {_LAWS['alpha_body']}",
     ),
 }
 _PASSIVE_WORDS: dict[str, tuple[str, str | None]] = {
     "rotation_matrix": (f"{_TURNING}, and the product is transposed.", _LAWS["product"]),
-    "rotation_rate": ("The derivative is C(Ω) R, transposed.", r"\mathbf{C}(#1)\,#2"),
+    "rotation_rate": ("The derivative follows from the angular velocity.", r"\mathbf{C}(#1)\,#2"),
     "spin_matrix": (
         "The derivative times the transpose is the operator of −Ω′, not of Ω.",
         r"-\mathbf{C}(#1)",

@@ -116,6 +116,7 @@ class Vectors:
         self.square = self.ring.dot([(part, part) for part in self.v])
         self._places = [self.ring.index[part] for part in vector]
         self._root = self.ring.index.get(sp.sqrt(sum(part**2 for part in vector)))
+        self._is_unit = self.ring.reduce(self.square - self.ring.one) == self.ring.zero
 
     def forms(self, omega: RingMatrix) -> list[Weighted]:
         """The candidates: with (v·v̇) v, and with v × (v × v̇) in its place."""
@@ -215,7 +216,9 @@ class Vectors:
             if any(monomial[place] for place in others):
                 continue
             powers = list(monomial)
-            if self._root is not None:
+            if self._is_unit:
+                powers[first] %= 2
+            elif self._root is not None:
                 powers[self._root] += powers[first]
                 powers[first] = 0
             result += self.ring.polynomials.term_new(tuple(powers), coefficient)
@@ -227,6 +230,8 @@ class Vectors:
             root = self.ring.generators[self._root].expression
             return self.ring.reduce(element * self.codec.encode(1 / root))
         gen = self.ring.generator(self._places[0])
+        if self._is_unit:
+            return self.special(element * gen)
         whole, inverse = self._without_inverses(element)
         if any(monomial[self._places[0]] == 0 for monomial in whole):
             return None

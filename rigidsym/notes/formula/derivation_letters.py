@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 import sympy as sp
@@ -18,6 +19,7 @@ from rigidsym.models.rotation import RotationModel
 RESIDUAL = formula(r"\boldsymbol{\Delta}")  # what is left over of a claim
 VECTOR = formula(r"\mathbf{v}")
 _LENGTHS = ("n", "l", "r")  # one that nothing in the model is called by is taken
+_OF_VECTORS = tuple("abegkpsvw")
 _ORDERS = {"q": 0, "q_dot": 1, "q_ddot": 2, "centre": 0, "centre_dot": 1}
 _GIVEN_RATE = 1  # a given angular velocity is ordered as the rates are
 _BEFORE = dict.fromkeys(("centre", "centre_dot"), -3)  # what translates before what turns
@@ -31,8 +33,16 @@ def letters_of(
 
     With the model, the length of its vector is written for what its components make up.
     """
-    length = length_of(model) if model is not None and model.vector else None
-    return _letters(tuple(arguments), notation, length)
+    if model is None or not model.vector:
+        return _letters(tuple(arguments), notation, None)
+    notation = replace(notation, vector=_letter_of(model.vector))
+    return _letters(tuple(arguments), notation, length_of(model))
+
+
+def _letter_of(vector: Sequence[sp.Expr]) -> str:
+    """That of its components, e for (e₁, e₂, e₃), or v."""
+    letter, *others = {part.func.__name__.rstrip("0123456789").rstrip("_") for part in vector}
+    return letter if not others and letter in _OF_VECTORS else VECTOR.text
 
 
 @lru_cache(maxsize=64)
@@ -57,7 +67,7 @@ def length_of(model: RotationModel) -> VectorLength | None:
         return None
     taken = {q.func.__name__ for q in model.coordinates} | {c.name for c in model.constants}
     letter = next(letter for letter in _LENGTHS if letter not in taken)
-    for components in (model.vector, model.coordinates):
+    for components in (model.coordinates, model.vector):
         is_of_vector = components == model.vector and letter == LENGTH.name
         symbol = LENGTH if is_of_vector else sp.Symbol(f"{letter}_q", positive=True)
         length = VectorLength(components, symbol, sp.Symbol(f"{symbol.name}_dot"), letter)

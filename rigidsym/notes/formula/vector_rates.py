@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import sympy as sp
 
@@ -29,13 +29,24 @@ _RATES: Mapping[Formula, tuple[Formula, ...]] = {  # of each vector, as a sum
 }
 
 
-def rate_of_form(form: VectorForm, rate_of_length: sp.Symbol) -> VectorForm:
-    """The derivative of f v̇ + g v × v̇ + ..., with the symbol for ṅ in its coefficients."""
-    found: dict[Formula, sp.Expr] = {}
+def rates_of_form(form: VectorForm, rate_of_length: sp.Symbol) -> Iterator[VectorForm]:
+    """The derivative of f v̇ + g v × v̇ + ..., with the symbol for ṅ in its coefficients.
+
+    Each vector once, and each as often as its coefficients have denominators.
+    """
+    whole: dict[Formula, sp.Expr] = {}
+    apart: dict[tuple[Formula, sp.Expr], sp.Expr] = {}
     for coefficient, vector in _terms(form, rate_of_length):
-        found[vector] = found.get(vector, 0) + coefficient
-    terms = tuple(VectorTerm(_collected(c), vector) for vector, c in found.items() if c != 0)
-    return VectorForm(terms=terms, components=form.components, length=form.length, proof=form.proof)
+        whole[vector] = whole.get(vector, 0) + coefficient
+        for part in sp.Add.make_args(coefficient):
+            kind = (vector, sp.fraction(part)[1])
+            apart[kind] = apart.get(kind, 0) + part
+    yield _form(form, whole.items())
+    yield _form(form, ((vector, c) for (vector, _), c in apart.items()))
+
+
+def _form(form: VectorForm, terms: Iterable[tuple[Formula, sp.Expr]]) -> VectorForm:
+    return form._replace(terms=tuple(VectorTerm(_collected(c), v) for v, c in terms if c != 0))
 
 
 def _collected(coefficient: sp.Expr) -> sp.Expr:

@@ -2,19 +2,21 @@
 
 A block is a paragraph, or an equation whose lines begin with `=`. Formulas in a paragraph stand
 between dollar signs; <v> is the vector of the coordinates, <n> its length, and <w> the coordinate
-beside it.
+beside it; of a quaternion <n> is |q|, which is left out where it is 1.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
+from itertools import groupby
 
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import Equation, NoteBlock, Paragraph, said
+from rigidsym.notes.document.document import Equation, EquationRow, NoteBlock, Paragraph, said
 from rigidsym.notes.formula.derivation_letters import VECTOR
 
 _RODRIGUES = r"""
@@ -41,7 +43,7 @@ formula
 """
 _LENGTHS = {  # what the vector is, and the coefficients that follow
     "axis_angle": r"""
-Here $\mathbf{e} = <v>$ and $\alpha = <w>$.
+Here $\alpha = <w>$.
 """,
     "rotation_vector": r"""
 Here $<v> = \alpha\,\mathbf{e}$, so that $\alpha = <n>$, and the coefficients of
@@ -79,29 +81,46 @@ by the rule
 = a\,b - \mathbf{a}\cdot\mathbf{b} + a\,\mathbf{b} + b\,\mathbf{a} + \mathbf{a}\times\mathbf{b}
 
 and $\mathbf{q}^{\ast} = <w> - <v>$ is the conjugate, so that
-$\mathbf{q}\,\mathbf{q}^{\ast} = |\mathbf{q}|^2$. The quaternion takes $\mathbf{x}'$ to
+$\mathbf{q}\,\mathbf{q}^{\ast} = <n>^2$. The quaternion takes $\mathbf{x}'$ to
 
 = \mathbf{x}
-= \frac{1}{|\mathbf{q}|^2}\,\mathbf{q}\,\mathbf{x}'\,\mathbf{q}^{\ast}
-= \mathbf{x}' + \frac{2}{|\mathbf{q}|^2}\left(<w>\,<v>\times\mathbf{x}'
+= \frac{1}{<n>^2}\,\mathbf{q}\,\mathbf{x}'\,\mathbf{q}^{\ast}
+= \mathbf{x}' + \frac{2}{<n>^2}\left(<w>\,<v>\times\mathbf{x}'
   + <v>\times(<v>\times\mathbf{x}')\right)
 
-With $<w> = |\mathbf{q}|\cos\frac{\alpha}{2}$ and
-$<v> = |\mathbf{q}|\sin\frac{\alpha}{2}\,\mathbf{e}$, where $\mathbf{e}$ is a unit vector, the
+With $<w> = <n>\cos\frac{\alpha}{2}$ and
+$<v> = <n>\sin\frac{\alpha}{2}\,\mathbf{e}$, where $\mathbf{e}$ is a unit vector, the
 coefficients are $2\cos\frac{\alpha}{2}\sin\frac{\alpha}{2} = \sin\alpha$ and
 $2\sin^2\frac{\alpha}{2} = 1 - \cos\alpha$. By Rodrigues' formula this is the turn by $\alpha$ about
 $\mathbf{e}$.
 """
+_OF_TURNING = r"""
+If only the angle changes, the angular velocity is $\dot{\alpha}\,\mathbf{e}$. If only the axis
+moves, a rotation $\mathbf{Q}$ with the angular velocity $\mathbf{e}\times\dot{\mathbf{e}}$ carries
+it along. The turn about the moved axis undoes $\mathbf{Q}$, turns about the former axis and applies
+$\mathbf{Q}$ again; its angular velocity is
+
+= \mathbf{e}\times\dot{\mathbf{e}} - \mathbf{R}\,(\mathbf{e}\times\dot{\mathbf{e}})
+= (1 - \cos\alpha)\,\mathbf{e}\times\dot{\mathbf{e}} + \sin\alpha\,\dot{\mathbf{e}}
+
+by Rodrigues' formula. Both together are
+
+= \boldsymbol{\Omega}
+= \dot{\alpha}\,\mathbf{e} + \sin\alpha\,\dot{\mathbf{e}}
+  + (1 - \cos\alpha)\,\mathbf{e}\times\dot{\mathbf{e}}
+
+The derivative of the rotation matrix leads to the same result.
+"""
 _OF_RATES = r"""
-Let $|\mathbf{q}|$ be constant. Differentiating $|\mathbf{q}|^2\,\mathbf{x} =
+Keep $<n>$ constant. Differentiating $<n>^2\,\mathbf{x} =
 \mathbf{q}\,\mathbf{x}'\,\mathbf{q}^{\ast}$ for a point at rest in the body gives
 $\dot{\mathbf{x}} = \boldsymbol{\Omega}\times\mathbf{x}$ with
 
 = \boldsymbol{\Omega}
-= \frac{2}{|\mathbf{q}|^2}\,\dot{\mathbf{q}}\,\mathbf{q}^{\ast}
+= \frac{2}{<n>^2}\,\dot{\mathbf{q}}\,\mathbf{q}^{\ast}
 
 = \boldsymbol{\Omega}'
-= \frac{2}{|\mathbf{q}|^2}\,\mathbf{q}^{\ast}\,\dot{\mathbf{q}}
+= \frac{2}{<n>^2}\,\mathbf{q}^{\ast}\,\dot{\mathbf{q}}
 
 Multiplied by $\mathbf{q}$, this is the equation that attitude software integrates:
 
@@ -109,7 +128,7 @@ Multiplied by $\mathbf{q}$, this is the equation that attitude software integrat
 = \frac{1}{2}\,\boldsymbol{\Omega}\,\mathbf{q}
 = \frac{1}{2}\,\mathbf{q}\,\boldsymbol{\Omega}'
 
-The derivative of the rotation matrix leads to the same.
+The derivative of the rotation matrix leads to the same result.
 """
 _QUATERNIONS = ("quaternion", "unit_quaternion", "cayley_klein")
 
@@ -129,22 +148,36 @@ def rotation_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBl
 
 
 def rates_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
-    """The angular velocity of a quaternion as a product of quaternions."""
-    if model.name.removesuffix("_passive") in _QUATERNIONS:
+    """The angular velocity as a product of quaternions, or of a turn whose axis moves."""
+    name = model.name.removesuffix("_passive")
+    if name in _QUATERNIONS:
         yield from _blocks(_OF_RATES, model, letters)
+    elif name in _LENGTHS:
+        yield from _blocks(_OF_TURNING, model, letters)
 
 
 def _blocks(text: str, model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
     others = [q for q in model.coordinates if q not in model.vector]
     spans: dict[str, Formula] = {"v": VECTOR}
     spans |= {"w": formula_of(others[0], letters)} if others else {}
-    spans |= {"n": letters.names[letters.length.symbol]} if letters.length else {}
-    for block in text.strip().split("\n\n"):
-        sides = block.strip().removeprefix("= ").split("\n= ")
-        if block.lstrip().startswith("= "):
-            yield Equation(sides=tuple(formula(*_filled(side, spans)) for side in sides))
+    if letters.length:
+        spans["n"] = letters.names[letters.length.symbol]
+    else:  # it is 1
+        text = re.sub(r"\\frac\{(\d)\}\{<n>\^2\}", r"\1", text).replace("$<n>^2$", "1")
+        text = text.replace("Keep $<n>$ constant. ", "")
+        text = re.sub(r"(?<!\d)1\\,|<n>(\^2)?(\\,|(?=\\))", "", text).replace("<n>^2", "1")
+    blocks = text.strip().split("\n\n")
+    for is_formula, group in groupby(blocks, lambda block: block.startswith("= ")):
+        if is_formula:
+            parts = (block.removeprefix("= ").split("\n= ") for block in group)
+            yield EquationRow(
+                tuple(
+                    Equation(sides=tuple(formula(*_filled(side, spans)) for side in sides))
+                    for sides in parts
+                )
+            )
         else:
-            yield _paragraph(" ".join(block.split()), spans)
+            yield from (_paragraph(" ".join(block.split()), spans) for block in group)
 
 
 def _filled(typed: str, spans: Mapping[str, Formula]) -> tuple[str, *tuple[Formula, ...]]:

@@ -4,18 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import sympy as sp
+
 from rigidsym.formula.display import Done
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Symbol, equal, joined, row
-from rigidsym.mechanics.quantities.claims import rate_of, spin_of
+from rigidsym.mechanics.quantities.claims import orthogonal, rate_of, skew, spin_of
 from rigidsym.mechanics.quantities.kinematics import COSINES, ROTATION
 from rigidsym.models.rotation import Turn, lecture
-from rigidsym.notes.document.document import Cited, Equation, NoteBlock, Text, said, words
+from rigidsym.models.so3 import hat
+from rigidsym.notes.document.document import (
+    Cited,
+    Equation,
+    EquationRow,
+    NoteBlock,
+    Text,
+    said,
+    words,
+)
 from rigidsym.notes.prose.words import (
     ACTIVE,
     BODY_POSITION,
     BODY_POSITION_RATE,
+    OPERATOR,
     PASSIVE,
     POSITION,
     POSITION_RATE,
@@ -73,7 +85,13 @@ def motion(*, passive: bool) -> Iterator[NoteBlock]:
             "is the matrix of the operator $\\boldsymbol{\\Omega}\\times$\u00a0{}.",
             *(_TURNING, spin_of(shown), _MOTION),
         )
-    yield said(r"For a vector $\mathbf{u}$ the matrix of $\mathbf{u}\times$ is")
+    yield said(
+        r"For any vector $\mathbf{u}$ the matrix of $\mathbf{u}\times$ is skew, and so is {}, "
+        "as the derivative of {} shows:",
+        *(spin_of(shown), orthogonal(shown)),
+    )
+    operator = Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
+    yield EquationRow((operator, Equation(sides=(skew(spin_of(shown)),))))
 
 
 def announcement(equation: Equation, done: Done) -> Text:

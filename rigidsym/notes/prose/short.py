@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from rigidsym.formula.letters import Letters
+from rigidsym.formula.letters import TIME, Letters
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula, row
+from rigidsym.formula.tree import PLUS, Differential, Formula, Fraction, Rate, joined, row
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.claims import rate_of, transpose_of
-from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE, Frame
+from rigidsym.mechanics.quantities.kinematics import BODY, RATES, SPACE, Frame
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.formula.vector_rates import rate_of_form
+from rigidsym.notes.formula.vector_rates import rates_of_form
 from rigidsym.notes.prose.prose import turn
-from rigidsym.notes.prose.vector_words import sum_of_vectors
+from rigidsym.notes.prose.vector_words import in_notation, sum_of_vectors
 
 _DEFINED = frozenset(  # by other quantities, and so are rates from an angular velocity
     {
@@ -34,7 +34,7 @@ def in_short(step: Step, derivation: Derivation, letters: Letters) -> tuple[Form
     if step.quantity.name == "rotation_matrix" and derivation.model.turns:
         return (_turns(derivation.model, letters),)
     if step.quantity.name == "rotation_rate":
-        return (_poisson(passive=derivation.model.passive),)
+        return (by_the_chain_rule(step.quantity.symbol, letters),)
     if step.quantity.name in _DEFINED or kind == "rates_from_angular_velocity":
         return ()
     if kind == "inverse_rate_matrix" and _is_least(derivation):
@@ -52,11 +52,15 @@ def _turns(model: RotationModel, letters: Letters) -> Formula:
     return formula(r"\left(#1\right)^{\mathsf T}", whole)
 
 
-def _poisson(*, passive: bool) -> Formula:
-    """dR/dt = C(Ω) R, and dA/dt = −C(Ω′) A."""
-    if passive:
-        return formula(r"-\mathbf{C}(#1)\,#2", BODY.omega, COSINES)
-    return formula(r"\mathbf{C}(#1)\,#2", SPACE.omega, ROTATION)
+def by_the_chain_rule(rate: Formula, letters: Letters) -> Formula:
+    """dR/dt = φ̇ ∂R/∂φ + ..., which is what its entries come from."""
+    coordinates = [q for q, (order, k) in letters.places.items() if order == 0 and k >= 0]
+    above = row(Differential("∂"), rate.of if isinstance(rate, Rate) else rate)
+    terms = [
+        row(letters.name(q.diff(TIME)), Fraction(above, row(Differential("∂"), letters.name(q))))
+        for q in coordinates
+    ]
+    return joined(terms, PLUS)
 
 
 def _is_least(derivation: Derivation) -> bool:
@@ -75,5 +79,6 @@ def _acceleration(derivation: Derivation, frame: Frame, letters: Letters) -> For
     velocity = f"angular_velocity_{frame.name}"
     form = derivation.step(velocity).vector_form if velocity in names else None
     if form is not None and letters.length is not None:
-        return sum_of_vectors(rate_of_form(form, letters.length.rate), letters)
+        rates = rates_of_form(in_notation(form, letters.length), letters.length.rate)
+        return min((sum_of_vectors(rate, letters) for rate in rates), key=lambda f: len(f.text))
     return formula(r"#1\,#2 + #4\,#3", frame.matrix, _ACCELERATIONS, RATES, rate_of(frame.matrix))

@@ -100,8 +100,9 @@ def _zeros(found: Singularities, letters: Letters) -> Text:
     """Where the determinant vanishes, as far as that was decided."""
     if found.determinant is None and not found.is_solved:
         return (
-            "They fail where the axes of all turns lie in one plane; for so many turns these "
-            "orientations are not listed. The function singularity_margin is 0 there.",
+            "The rates are not determined where the axes of all turns lie in one plane. For this "
+            "many turns such orientations are not listed; the function singularity_margin is 0 "
+            "there.",
         )
     if found.determinant is None and not found.minors:
         return ("The rates follow without any divisor, so that there is no singular orientation.",)
@@ -313,7 +314,8 @@ def geometry(derivation: Derivation) -> Iterator[Text]:
     yield words(
         "At these orientations the axes of the first and of the last turn coincide: {} and {} turn "
         "the body about the same axis, and one degree of freedom is lost. This is gimbal lock. "
-        "Nearby, the rates of {} and {} for a given angular velocity grow as one over the "
-        f"determinant: one degree away they reach {_AT_ONE_DEGREE} times its size.",
+        "Nearby, the rates of {} and {} needed for a given angular velocity grow like the "
+        "reciprocal of the determinant: one degree away they reach "
+        f"{_AT_ONE_DEGREE} times its magnitude.",
         *(first, last, first, last),
     )

@@ -135,7 +135,7 @@ def sum_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
     if len(model.turns) > _MOST_WRITTEN or any(turn.components for turn in model.turns):
         return
     yield Paragraph(
-        ("Each axis has been moved by the turns to its left. In space components the axes are",)
+        ("Each axis is carried along by the turns before it. In space components the axes are",)
     )
     yield EquationRow(tuple(_written(axes_of_turns(model, letters), _directions(model))))
     yield said("The derivative of the rotation matrix leads to the same result.")

@@ -49,10 +49,10 @@ _ALSO_WORDS = ("a", "A", "I")  # in a sentence these are words, whatever an angl
 def symbols_of(derivation: Derivation) -> dict[str, Formula]:
     """The symbols that may occur in a sentence about a derivation, by their plain text."""
     named = chain(
-        (ROTATION, transpose_of(ROTATION), *map(Symbol, AXES)),
+        (ROTATION, transpose_of(ROTATION), transpose_of(COSINES), *map(Symbol, AXES)),
         chain.from_iterable(argument.notation for argument in derivation.arguments),
         (step.quantity.symbol for step in derivation.steps),
-        (SPACE.omega, BODY.omega, RATES, VECTOR_OF),
+        (SPACE.omega, BODY.omega, SPACE.matrix, BODY.matrix, RATES, VECTOR_OF),
     )
     if derivation.body is not None:
         named = chain(named, _OF_BODIES)
@@ -102,14 +102,17 @@ def vector_in_words(derivation: Derivation, notation: Notation) -> Iterator[Text
     """The vector, and the letter for its length, where they stand in the formulas."""
     letters = letters_of(derivation.arguments, notation, derivation.model)
     length, parts = letters.length, derivation.model.vector
-    if any(step.vector_form for step in derivation.steps):
-        yield ("The vector is ", VECTOR, " = ", *vector(parts, letters), ".")
+    has_form = any(step.vector_form for step in derivation.steps)
+    said = ("The vector is ", VECTOR, " = ", *vector(parts, letters), ".") if has_form else ()
     if length is None:
+        if said:
+            yield said
         return
     n, rate = length.names.values()
     v = VECTOR if length.components == parts else COORDINATES
     whole = formula("|#1|", v)
     yield (
+        *((*said, " ") if said else ()),
         *words("The length {} is written {}, so that {}", whole, n, _square(n, v)),
         *words(
             " and {}.",

@@ -16,13 +16,11 @@ from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, equal, indexed, row
 from rigidsym.mechanics.derivation import Argument, Derivation, Step, claims_of
-from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, EULER_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
-from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
+from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE
 from rigidsym.models.matrices import GIVEN
 from rigidsym.models.rotation import Citation, Turn
-from rigidsym.models.so3 import hat
 from rigidsym.notes.document.document import (
     Cited,
     Document,
@@ -48,7 +46,7 @@ from rigidsym.notes.prose.singular_words import (
     singular_title,
 )
 from rigidsym.notes.prose.turn_words import angles_in_words, sum_in_words
-from rigidsym.notes.prose.words import OPERATOR, convention, symbols_of, with_source, with_symbols
+from rigidsym.notes.prose.words import convention, symbols_of, with_source, with_symbols
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
 from rigidsym.notes.sections.fitting import Fitter
@@ -105,7 +103,7 @@ class Composer:
         self.letters = letters_of(derivation.arguments, notation, derivation.model)
         self.symbols = symbols_of(derivation)
         self.fitter = Fitter(derivation, self.letters)
-        self.said: set[str] = set()
+        self.said: set[str | Citation] = set()
 
     @property
     def subtitle(self) -> str:
@@ -243,17 +241,9 @@ class Composer:
         )
 
     def _angular_velocity(self) -> Iterator[NoteBlock]:
-        shown = COSINES if self.model.passive else ROTATION
         yield from sum_in_words(self.model, self.letters)
         yield from rates_in_words(self.model, self.letters)
         yield from motion(passive=self.model.passive)
-        yield Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
-        yield said(
-            "Differentiating {} shows that {} is skew:",
-            orthogonal(shown),
-            spin_of(shown),
-        )
-        yield Equation(sides=(skew(spin_of(shown)),))
         yield from self._steps(_ANGULAR_VELOCITY)
 
     def _rates(self) -> Iterator[NoteBlock]:
@@ -301,8 +291,9 @@ class Composer:
         """How the quantity follows; what has been said once is not said again."""
         if step.because in self.said:
             return (f"Likewise, the {step.quantity.about}:",)
-        self.said.add(step.because)
         source = self._source(step)
+        source = None if source in self.said else source
+        self.said |= {step.because, *([source] if source else [])}
         is_matrix = step.quantity.name == "rotation_matrix"
         if is_matrix and is_told(self.model) and not self.model.passive:
             return with_source(("The matrix of this turn is:",), source)

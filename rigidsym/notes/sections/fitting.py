@@ -63,9 +63,12 @@ class Fitter:
     def fitted(self, equation: Equation, step: Step) -> Iterator[NoteBlock]:
         """An equation; where it would be long, in short, or its parts with their names first."""
         equation = as_vectors(equation, step, self.letters)
-        breaks = display(equation, self.letters, PAGE).breaks(equation, PAGE)
-        short = in_short(step, self.derivation, self.letters) if breaks else None
-        if short is not None and self.derivation.model.vector and _is_of_motion(step):
+        shown = display(equation, self.letters, PAGE)
+        breaks = shown.breaks(equation, PAGE)
+        is_vector = bool(self.derivation.model.vector) and _is_of_motion(step)
+        is_long = breaks or (is_vector and bool(shown.done))
+        short = in_short(step, self.derivation, self.letters) if is_long else None
+        if short is not None and is_vector:
             yield _without_entries(equation, short)
             return
         form = self._shortest(equation)
@@ -184,12 +187,15 @@ def _said(equation: Equation, short: Sequence[Formula], lines: int) -> Iterator[
 
 
 def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:
-    """With its vector form; where there is one, the entries are shown only if they fit."""
+    """With its vector form; where there is one, the entries are shown only if they fit.
+
+    Those of the rates, which hold the most products, are not.
+    """
     if step.vector_form is None:
         return equation
     sides = (*equation.sides, sum_of_vectors(step.vector_form, letters))
     whole = replace(equation, sides=sides)
-    fits = not display(whole, letters, PAGE).done
+    fits = not (step.quantity.name.startswith("rates_") or display(whole, letters, PAGE).done)
     return whole if fits else _without_entries(equation, sides[-1:])
 
 

@@ -6,8 +6,7 @@ from dataclasses import replace
 
 from rigidsym.errors import ModelError
 from rigidsym.formula.display import PAGE, display
-from rigidsym.formula.letters import TIME, Letters
-from rigidsym.formula.tree import PLUS, Differential, Fraction, Rate, joined, row
+from rigidsym.formula.letters import Letters
 from rigidsym.notes.document.document import (
     Document,
     Equation,
@@ -17,6 +16,7 @@ from rigidsym.notes.document.document import (
     Section,
 )
 from rigidsym.notes.prose.prose import EXACT_MEANS, HOW_VERIFIED
+from rigidsym.notes.prose.short import by_the_chain_rule
 from rigidsym.notes.sections.claims_table import EXACT
 from rigidsym.notes.sections.compose import FUNCTIONS, IDENTITIES, SYMBOLS
 from rigidsym.notes.sections.summary import TITLE as SUMMARY
@@ -28,12 +28,9 @@ _LEFT_OUT = {
     "lecture": (FUNCTIONS, SYMBOLS, SUMMARY),
     "paper": (FUNCTIONS, SYMBOLS, SUMMARY, IDENTITIES),
 }
-_VERIFIED = {
-    "lecture": "Each equation listed in the appendix has been verified exactly; the others are "
-    "definitions or are given.",
-    "paper": "Each numbered equation has been verified exactly, unless it is a definition or is "
-    "given.",
-}
+_VERIFIED = (
+    "Each numbered equation has been verified exactly, unless it is a definition or is given."
+)
 
 
 def in_style(document: Document, style: str, *, is_short: bool = False) -> Document:
@@ -57,10 +54,9 @@ def in_style(document: Document, style: str, *, is_short: bool = False) -> Docum
         s._replace(title=APPENDIX, is_appendix=True) for s in kept if s.title == IDENTITIES
     ]
     others = [section for section in kept if section.title != IDENTITIES]
-    if all(not equation.unproved for equation in document.equations):
+    if not identities and all(not equation.unproved for equation in document.equations):
         first, *rest = others
-        said = Paragraph((_VERIFIED["paper" if is_short else style],))
-        others = [first._replace(blocks=(*first.blocks, said)), *rest]
+        others = [first._replace(blocks=(*first.blocks, Paragraph((_VERIFIED,)))), *rest]
     return replace(document, sections=tuple(map(_plain, (*others, *identities))))
 
 
@@ -86,11 +82,6 @@ def _by_the_chain_rule(block: NoteBlock, letters: Letters) -> NoteBlock:
         return block
     if not display(block, letters, PAGE).done:
         return block
-    coordinates = [q for q, (order, k) in letters.places.items() if order == 0 and k >= 0]
-    matrix = block.sides[0].of if isinstance(block.sides[0], Rate) else block.sides[0]
-    above = row(Differential("∂"), matrix)
-    terms = [
-        row(letters.name(q.diff(TIME)), Fraction(above, row(Differential("∂"), letters.name(q))))
-        for q in coordinates
-    ]
-    return replace(block, sides=(*block.sides[:1], joined(terms, PLUS)), matrix=None, entries=())
+    rate = block.sides[0]
+    sides = (rate, by_the_chain_rule(rate, letters))
+    return replace(block, sides=sides, matrix=None, entries=())
