@@ -34,6 +34,7 @@ COMPILERS = [
 ]
 CPU = Path("/proc/cpuinfo").read_text("utf-8") if Path("/proc/cpuinfo").is_file() else ""
 STREAMS = ("-mavx2", "-DSTREAMED=1") if "avx2" in CPU else ()  # past the caches from one row up
+SHUFFLES = "#define SHUFFLE __builtin_shufflevector\n"
 ROTATIONS = ("ZXZ", "rotation_vector", "quaternion")
 NAME = "euler_zxz_intrinsic"
 
@@ -178,9 +179,9 @@ def test_sanitizers_find_nothing_at_any_size(tmp_path, compiler):
 def test_rows_stand_where_they_belong(sources, compiler, way):
     """Any count, from any place in a line of the cache, into rows side by side and apart."""
     text = (sources / f"{NAME}.c").read_text(encoding="utf-8")
-    assert text.count("#define SHUFFLED\n") == 1
+    assert text.count(SHUFFLES) == 1
     name = f"rows_{compiler}_{way}"
-    kept = text.replace("#define SHUFFLED\n", "") if way == "plain" else text
+    kept = text.replace(SHUFFLES, "") if way == "plain" else text
     (sources / f"{name}.c").write_text(kept, encoding="utf-8")
     flags = ["-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off"]
     flags += STREAMS if way == "streamed" else ()
@@ -224,8 +225,9 @@ def test_a_tile_of_any_width_is_taken_and_given_back(sources, compiler, flag):
     widths = range(1, 15)
     text += "\nvoid FN(turn)(const int n, const REAL *from, REAL *tile, REAL *to)\n{"
     for n in widths:
-        take = f"FN(take_rows)({n}, from, tile);"
-        give = f"FN(give_rows)({n}, tile, to, STREAMED < SIZE_MAX && (uintptr_t)to % 32 == 0);"
+        take = f"FN(take_rows)(SHUFFLED, {n}, from, tile);"
+        streams = "STREAMED < SIZE_MAX && (uintptr_t)to % 32 == 0"
+        give = f"FN(give_rows)(SHUFFLED, {n}, tile, to, {streams});"
         text += f"\n    if (n == {n}) {{\n        {take}\n        {give}\n    }}"
     text += "\n}\n#endif\n"
     name = f"tiles_{compiler}_{flag.strip('-')}"
