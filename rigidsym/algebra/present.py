@@ -15,6 +15,7 @@ from operator import add, sub
 from typing import Any
 
 import sympy as sp
+from sympy.polys.orderings import lex
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
@@ -110,13 +111,17 @@ class Presenter:
         factors = self._factors.get(below)
         if factors is None:
             factors = self._factors[below] = below.factor_list()[1]
+        polynomials = below.ring
+        plain = polynomials.clone(order=lex)  # in which leading terms are found fastest
+        above, below = above.set_ring(plain), below.set_ring(plain)
         for factor, power in factors:
+            divisor = factor.set_ring(plain)
             for _ in range(power):
-                quotient, rest = above.div(factor)
+                quotient, rest = above.div(divisor)
                 if rest:
                     break
-                above, below = quotient, below.exquo(factor)
-        return above, below
+                above, below = quotient, below.exquo(divisor)
+        return above.set_ring(polynomials), below.set_ring(polynomials)
 
     def _is_plain_sum(self, expression: sp.Expr) -> bool:
         """Not so a sum whose root is in the ring too: what it divides, half its powers divide."""

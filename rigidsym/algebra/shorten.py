@@ -70,10 +70,11 @@ def _neighbours(ring: Ring, element: PolyElement, length: tuple[int, int]) -> It
     for part, needed, factor, relation in ring.relation_terms:
         if any(highest[k] < power for k, power in needed):
             continue
+        is_one = factor == domain.one
         for monomial, coefficient in element.items():
             if any(monomial[k] < power for k, power in needed):
                 continue
-            times, left = domain.div(coefficient, factor)
+            times, left = (coefficient, None) if is_one else domain.div(coefficient, factor)
             if left:  # in Z a coefficient may not be divisible
                 continue
             rest = tuple(map(sub, monomial, part))

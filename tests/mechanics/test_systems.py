@@ -135,7 +135,7 @@ def test_the_note_of_a_top_writes_the_rate_of_the_matrix_by_the_chain_rule():
 def test_the_phase_portrait_of_a_top_shows_motions_of_constant_energy():
     """Drawn for constants of 1, p_φ = 1 and p_ψ = 3"""
     motion = shipped("heavy_symmetric_top")
-    figure = motion.note(with_kernels=False).document.figures[-1]
+    figure = motion.note(with_kernels=False).document.figures[-2]
     curves = [stroke.points for stroke in figure.drawing.strokes if stroke.kind == "body"]
     assert len(curves) == 3
     ratios = []

@@ -101,9 +101,13 @@ class LagrangeEquations(Flow):
     def _of_lagrange(self) -> RingMatrix:
         """d/dt ∂T/∂q̇ − ∂T/∂q − (M q̈ + h − ∂V/∂q); not zero if the body rolls."""
         work = self.work
-        slopes = work.column([sp.diff(self.kinetic, q) for q in work.model.coordinates])
         turning = work.mass_matrix @ work.column(work.accelerations)
-        return work.momenta.dt() - slopes - turning - work.gyroscopic
+        return work.momenta.dt() - self._slopes - turning - work.gyroscopic
+
+    @cached_property
+    def _slopes(self) -> RingMatrix:
+        """∂T/∂q."""
+        return self.work.slopes(self.codec.encode(self.kinetic))
 
     @cached_property
     def is_holonomic(self) -> bool:
@@ -151,8 +155,8 @@ class LagrangeEquations(Flow):
     def generalised_momenta(self) -> Found:
         if not self.is_holonomic:
             return _NONE
-        slopes = self.work.column([sp.diff(self.kinetic, rate) for rate in self.work.rates])
-        residual = slopes - self.work.momenta
+        places = [self.work.ring.index[rate] for rate in self.work.rates]
+        residual = self._scalar(self.kinetic).jacobian(places).T - self.work.momenta
         return Found(
             self.present.matrix(self.work.momenta),
             "The generalised momenta are the derivatives of the kinetic energy by the rates.",
@@ -179,17 +183,16 @@ class LagrangeEquations(Flow):
         work = self.work
         if not self.is_holonomic or work.acting.frame_rate:
             return _NONE
-        q = work.model.coordinates
-        mass = self.present.matrix(work.mass_matrix)
-        places = range(len(q))
+        places = range(len(work.rates))
         half = work.ring.one / 2
-        slope = {
-            k: encoded(self.codec, mass.applyfunc(lambda e, k=k: sp.diff(e, q[k]))) for k in places
-        }
+        slope = {(i, j): work.slopes(work.mass_matrix[i, j]) for i in places for j in places}
         rows = [
             [
                 work.ring.dot(
-                    (slope[k][i, j] + slope[j][i, k] - slope[i][j, k], half * work.q_dot[k, 0])
+                    (
+                        slope[i, j][k, 0] + slope[i, k][j, 0] - slope[j, k][i, 0],
+                        half * work.q_dot[k, 0],
+                    )
                     for k in places
                 )
                 for j in places
@@ -339,8 +342,8 @@ class LagrangeEquations(Flow):
             return
         momenta = self.present.matrix(work.momenta)
         for k, q in enumerate(work.model.coordinates):
-            if work.forces[k] == 0 and not sp.diff(work.potential, q):
-                slope = self._scalar(sp.diff(self.kinetic, q))
+            if work.forces[k] == 0 and not work.gradient[k]:
+                slope = RingMatrix.of(work.ring, [self._slopes.rows[k]])
                 if slope.is_zero():
                     yield FirstIntegral(
                         name=f"momentum_{q.func.__name__}",

@@ -20,6 +20,7 @@ from operator import add
 from typing import NamedTuple
 
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
@@ -107,6 +108,20 @@ class Lagrange:
     def column(self, entries: Sequence[sp.Expr]) -> RingMatrix:
         return RingMatrix.column(self.ring, map(self.codec.encode, entries))
 
+    def slopes(self, element: PolyElement) -> RingMatrix:
+        """The derivatives by q, a column, by the chain rule over the generators of the ring."""
+        ring, rates = self.ring, [self.ring.index[rate] for rate in self.rates]
+        last = {*rates, *(ring.index[a] for a in self.accelerations)}
+        moving = [k for k in range(len(ring.generators)) if k not in last]
+        parts = [(ring.partial(element, k), ring.dt(ring.generator(k))) for k in moving]
+        return RingMatrix.column(
+            ring,
+            [
+                ring.dot((part, ring.partial(rate, k)) for part, rate in parts if part)
+                for k in rates
+            ],
+        )
+
     @cached_property
     def terms(self) -> tuple[tuple[RingMatrix, RingMatrix, RingMatrix, bool], ...]:
         """J, j, I of each moving part over the ring, and whether it turns."""
@@ -153,13 +168,29 @@ class Lagrange:
 
         Raises ModelError if the mass matrix has no inverse.
         """
-        below = self.mass_matrix.det()
+        if len(self.terms) == 1 and len(self.rates) == 3:
+            above, below = self._solved_by_euler()
+        else:
+            above = self.mass_matrix.adjugate() @ (self.column(self.forces) - self.bias)
+            below = self.mass_matrix.det()
         if not below:
             raise ModelError(
                 f"{self.model.name}: the mass matrix has no inverse; expected coordinates that "
                 "move the body in different ways"
             )
-        return self.mass_matrix.adjugate() @ (self.column(self.forces) - self.bias), below
+        return above, below
+
+    def _solved_by_euler(self) -> Inverse:
+        """The same for one body and three coordinates: J q̈ = dΩ′/dt − dJ/dt q̇ − dj/dt."""
+        ((jacobian, shift, tensor, _),) = self.terms
+        back, below, size = jacobian.adjugate(), jacobian.det(), tensor.det()
+        slopes = jacobian.dt() @ self.q_dot + shift.dt()
+        inner = tensor.adjugate() @ turned(tensor, self.omega) + slopes.scale(size)
+        acting = self.column(self.forces) - self.column(self.gradient)
+        if acting.is_zero():
+            return back @ inner.scale(-self.ring.one), self.ring.reduce(size * below)
+        torque = tensor.adjugate() @ (back.T @ acting)
+        return back @ (torque - inner.scale(below)), self.ring.reduce(size * below * below)
 
 
 def is_free(model: RotationModel) -> bool:
