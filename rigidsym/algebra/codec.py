@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
 from itertools import permutations
+from operator import mul
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -152,7 +153,7 @@ class Codec:
     def encode(self, expression: sp.Expr) -> PolyElement:
         """Normal form of a polynomial expression; raises AlgebraError for a true quotient."""
         value = self.encode_quotient(expression)
-        if value.denominator != self.ring.one:
+        if not self.ring.is_one(value.denominator):
             raise AlgebraError(f"{expression} is a quotient, and its inverse is not in the ring")
         return value.numerator
 
@@ -192,21 +193,22 @@ class Codec:
         return AlgebraError(f"{expression} is not in the ring of {names}")
 
     def _product(self, factors: Sequence[sp.Expr]) -> Quotient:
-        """The product; generators and their powers are gathered into one monomial."""
-        powers = [0] * len(self.ring.generators)
+        """The product; numbers, generators and their powers are gathered into one term."""
+        index, domain = self.ring.index, self.ring.polynomials.domain
+        powers, number = [0] * len(index), domain.one
         others: list[Quotient] = []
         for factor in factors:
-            base, exponent = (factor.base, factor.exp) if factor.is_Pow else (factor, sp.S.One)
-            place = self.ring.index.get(factor)
-            if place is not None:
-                powers[place] += 1
-            elif exponent.is_Integer and exponent > 0 and base in self.ring.index:
-                powers[self.ring.index[base]] += int(exponent)
+            place, exponent = index.get(factor), 1
+            if place is None and factor.is_Pow and factor.exp.is_Integer:
+                place, exponent = index.get(factor.base), int(factor.exp)
+            if place is not None and exponent > 0:
+                powers[place] += exponent
+            elif factor.is_Integer or (factor.is_Rational and domain.is_Field):
+                number *= domain(factor.p, factor.q) if domain.is_Field else int(factor.p)
             else:
                 others.append(self.encode_quotient(factor))
-        one = self.ring.polynomials.domain.one
-        monomial = self.ring.reduce(self.ring.polynomials.term_new(tuple(powers), one))
-        return Quotient.product(self.ring, [*others, Quotient.whole(self.ring, monomial)])
+        term = self.ring.reduce(self.ring.polynomials.term_new(tuple(powers), number))
+        return reduce(mul, others, Quotient.whole(self.ring, term))
 
     def _number(self, numerator: int, denominator: int) -> Quotient:
         polynomials = self.ring.polynomials

@@ -60,14 +60,11 @@ class RingMatrix:
         return self.rows[place[0]][place[1]]
 
     def __matmul__(self, other: RingMatrix) -> RingMatrix:
-        columns, dot = other.T.rows, self.ring.dot
-        return RingMatrix(
-            self.ring,
-            tuple(
-                tuple(dot(zip(row, column, strict=True)) for column in columns) for row in self.rows
-            ),
-            ("@", (self, other)),
-        )
+        columns, dot = tuple(zip(*other.rows, strict=True)), self.ring.dot
+        rows = [
+            tuple([dot(zip(row, column, strict=True)) for column in columns]) for row in self.rows
+        ]
+        return RingMatrix(self.ring, tuple(rows), ("@", (self, other)))
 
     def gram(self) -> RingMatrix:
         """M Mᵀ, the products of every two rows, each worked out once."""
@@ -103,6 +100,8 @@ class RingMatrix:
         return RingMatrix.of(self.ring, [[function(entry) for entry in row] for row in self.rows])
 
     def scale(self, factor: PolyElement) -> RingMatrix:
+        if self.ring.is_one(factor):
+            return self
         dot = self.ring.dot
         return RingMatrix(
             self.ring,
@@ -165,7 +164,7 @@ def hat(vector: RingMatrix) -> RingMatrix:
     """C(u), the matrix of u ×, over the ring (lecture, section 3.2)."""
     x, y, z = vector.entries
     zero = vector.ring.zero
-    return RingMatrix.of(vector.ring, [[zero, -z, y], [z, zero, -x], [-y, x, zero]])
+    return RingMatrix(vector.ring, ((zero, -z, y), (z, zero, -x), (-y, x, zero)))
 
 
 def unhat(skew: RingMatrix) -> RingMatrix:

@@ -62,7 +62,7 @@ class Presenter:
         key = matrix.rows, below
         known = self._matrices.get(key)
         if known is None:
-            entries = [self.quotient(Quotient(self.ring, entry, below)) for entry in matrix.entries]
+            entries = [self._over(entry, below) for entry in matrix.entries]
             known = sp.ImmutableMatrix(*matrix.shape, entries, copy=False)  # the list is ours
             self._matrices[key] = known
         return known
@@ -73,29 +73,28 @@ class Presenter:
 
     def quotient(self, value: Quotient) -> sp.Expr:
         """The textbook form of a quotient."""
-        if not value.numerator:
+        return self._over(value.numerator, value.denominator)
+
+    def _over(self, above: PolyElement, below: PolyElement) -> sp.Expr:
+        """The textbook form of above / below, both in normal form, proved equal."""
+        if not above:
             return sp.S.Zero
-        key = value.numerator, value.denominator
-        known = self._known.get(key)
+        known = self._known.get((above, below))
         if known is None:
-            known = self._known[key] = self._prove(self._form(value), value)
+            known = self._known[above, below] = self._form(above, below)
+            if not self.codec.encode_quotient(known).equals(Quotient(self.ring, above, below)):
+                raise AlgebraError(f"the form {known} differs from its normal form")
         return known
 
-    def _prove(self, expression: sp.Expr, value: Quotient) -> sp.Expr:
-        if not self.codec.encode_quotient(expression).equals(value):
-            raise AlgebraError(f"the form {expression} differs from its normal form")
-        return expression
-
-    def _form(self, value: Quotient) -> sp.Expr:
-        above = shortest(self.ring, value.numerator)
-        below = shortest(self.ring, value.denominator)
+    def _form(self, above: PolyElement, below: PolyElement) -> sp.Expr:
+        above, below = shortest(self.ring, above), shortest(self.ring, below)
         if len(below) > 1:
             above, below = self._cancelled(above, below)
         if len(below) > 1:
             over, under = _leading_number(above), _leading_number(below)
             number = sp.Rational(*(over / under).as_integer_ratio())
             return sp.Mul(number, self._terms(above, over), 1 / self._terms(below, under))
-        if below == self.ring.one:
+        if self.ring.is_one(below):
             plain, *others = (self._terms(above), *self._over_one(above))
             return min(plain, *others, key=_length) if others else plain
         ((divisor, scale),) = below.items()
@@ -150,10 +149,10 @@ class Presenter:
         return found
 
     def _terms(self, terms: Mapping[Monomial, Any], scale: Fraction = Fraction(1)) -> sp.Expr:
-        fractions = {monomial: _fraction(c) for monomial, c in terms.items()}
-        if scale != 1:
-            fractions = {monomial: value / scale for monomial, value in fractions.items()}
-        return self._sum(collect(folded(fractions, self._sums), self._weights))
+        numbers = terms
+        if scale != 1 or self.ring.polynomials.domain.is_Field:
+            numbers = {monomial: _fraction(c) / scale for monomial, c in terms.items()}
+        return self._sum(collect(folded(numbers, self._sums), self._weights))
 
     def _sum(self, products: Sequence[FactoredTerm]) -> sp.Expr:
         return sp.Add(*(self._product(product) for product in products))
@@ -164,8 +163,8 @@ class Presenter:
         if factors is None:
             factors = self._products[key] = self._multiplied(*key)
         number = product.coefficient
-        if number == 1:
-            return factors
+        if abs(number) == 1:
+            return factors if number == 1 else -factors
         return sp.Rational(number.numerator, number.denominator) * factors
 
     def _multiplied(self, given: Monomial, bracket: Sequence[FactoredTerm]) -> sp.Expr:

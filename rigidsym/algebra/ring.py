@@ -145,6 +145,9 @@ class Ring:
     def is_zero(self, element: PolyElement) -> bool:
         return not self.reduce(element)
 
+    def is_one(self, element: PolyElement) -> bool:
+        return element is self.one or dict.__eq__(element, self.one)
+
     def can_derive(self, element: PolyElement) -> bool:
         """Whether every generator in the element has a time derivative in this ring."""
         used = (place for monomial in element for place, power in enumerate(monomial) if power)
@@ -201,7 +204,7 @@ class Quotient:
     def sum(cls, ring: Ring, parts: Iterable[Quotient]) -> Quotient:
         """The sum, over one denominator where the parts share it."""
         terms = list(parts)
-        if all(term.denominator == ring.one for term in terms):
+        if all(ring.is_one(term.denominator) for term in terms):
             return cls.whole(ring, ring.total(term.numerator for term in terms))
         return reduce(add, terms)
 
@@ -226,7 +229,7 @@ class Quotient:
     def __mul__(self, other: Quotient) -> Quotient:
         dot = self.ring.dot
         below, other_below = self.denominator, other.denominator
-        if other_below != self.ring.one:
+        if not self.ring.is_one(other_below):
             below = dot(((below, other_below),))
         return Quotient(self.ring, dot(((self.numerator, other.numerator),)), below)
 
@@ -239,11 +242,10 @@ class Quotient:
 
     def equals(self, other: Quotient) -> bool:
         """Whether both are the same function: the cross products agree in the ring."""
-        if self.denominator == other.denominator:
-            return bool(self.numerator == other.numerator)  # normal forms
-        return self.ring.is_zero(
-            self.numerator * other.denominator - other.numerator * self.denominator
-        )
+        if dict.__eq__(self.denominator, other.denominator):
+            return dict.__eq__(self.numerator, other.numerator)  # normal forms
+        crossed = (self.numerator, other.denominator), (other.numerator, self.denominator)
+        return not self.ring.dot(crossed[:1], minus=crossed[1:])
 
 
 class _NormalForms(dict[Monomial, Terms | None]):

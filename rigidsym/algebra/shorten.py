@@ -38,10 +38,11 @@ def shortest(ring: Ring, element: PolyElement) -> PolyElement:
     least = length = _length(element)
     seen = {current}
     for _ in range(_MOST_STEPS):
-        neighbours = sorted(_neighbours(ring, current, length), key=itemgetter(0))
-        found = ((n.length, current - n.relation.mul_term(n.term)) for n in neighbours)
+        shorter = [n for n in _neighbours(ring, current, length) if n.length <= length]
+        shorter.sort(key=itemgetter(0))
+        found = ((n.length, current - n.relation.mul_term(n.term)) for n in shorter)
         fresh = next((neighbour for neighbour in found if neighbour[1] not in seen), None)
-        if fresh is None or fresh[0] > length:
+        if fresh is None:
             break
         length, current = fresh
         seen.add(current)
@@ -90,7 +91,8 @@ def _neighbours(ring: Ring, element: PolyElement, length: tuple[int, int]) -> It
 
 
 Angle = tuple[int, int]  # places of sine and cosine
-FoldedTerms = dict[Monomial, Fraction]
+Number = int | Fraction
+FoldedTerms = dict[Monomial, Number]
 
 
 class Rule(NamedTuple):
@@ -125,7 +127,7 @@ def _of_two(a: Angle, b: Angle, expressions: Sequence[sp.Expr]) -> Iterator[Rule
     yield Rule((s, cosine), (c, sine), -1, sp.sin, minus)
 
 
-def folded(terms: Mapping[Monomial, Fraction], found: Iterable[Rule]) -> FoldedTerms:
+def folded(terms: Mapping[Monomial, Number], found: Iterable[Rule]) -> FoldedTerms:
     """The terms with each pair of an addition theorem made one.
 
     Places for all rules are added, unless no rule can apply.
@@ -160,7 +162,7 @@ def _fold_at(terms: FoldedTerms, monomial: Monomial, rule: Rule, place: int) -> 
         value = terms.pop(monomial)
         del terms[other]
         target = _times(rest, (place,), 1)
-        terms[target] = terms.get(target, Fraction(0)) + value
+        terms[target] = terms.get(target, 0) + value
 
 
 def _times(monomial: Monomial, places: Iterable[int], power: int) -> Monomial:
@@ -176,12 +178,12 @@ Weights = Mapping[int, int]  # place of a generator -> operations that one use o
 class FactoredTerm(NamedTuple):
     """coefficient · generators^powers · (sum of the factors in `bracket`, where there is one)."""
 
-    coefficient: Fraction
+    coefficient: Number
     powers: Monomial
     bracket: tuple[FactoredTerm, ...] = ()
 
 
-def collect(terms: Mapping[Monomial, Fraction], weights: Weights) -> tuple[FactoredTerm, ...]:
+def collect(terms: Mapping[Monomial, Number], weights: Weights) -> tuple[FactoredTerm, ...]:
     """The terms as a sum of products with common factors taken out."""
     factor = _best_factor(terms, weights) if len(terms) > 1 else None
     if factor is None:
@@ -192,7 +194,7 @@ def collect(terms: Mapping[Monomial, Fraction], weights: Weights) -> tuple[Facto
     return (_take_out(inside, weights), *(collect(outside, weights) if outside else ()))
 
 
-def _best_factor(terms: Mapping[Monomial, Fraction], weights: Weights) -> tuple[int, int] | None:
+def _best_factor(terms: Mapping[Monomial, Number], weights: Weights) -> tuple[int, int] | None:
     """(generator, sign of its power) that saves most, of those that occur in several terms.
 
     A term saves the factor where its lowest power takes all of it; what is taken out is written
@@ -210,12 +212,12 @@ def _best_factor(terms: Mapping[Monomial, Fraction], weights: Weights) -> tuple[
     return best if best and savings[best] else None
 
 
-def _take_out(terms: Mapping[Monomial, Fraction], weights: Weights) -> FactoredTerm:
+def _take_out(terms: Mapping[Monomial, Number], weights: Weights) -> FactoredTerm:
     """All that the terms have in common, times what is left of them."""
     common = reduce(_common_powers, terms)
     number = _content(terms.values())
     rest = {
-        tuple(a - b for a, b in zip(monomial, common, strict=True)): coefficient / number
+        tuple(map(sub, monomial, common)): coefficient if number == 1 else coefficient / number
         for monomial, coefficient in terms.items()
     }
     return FactoredTerm(number, common, collect(rest, weights))
@@ -229,7 +231,7 @@ def _common_powers(first: Monomial, second: Monomial) -> Monomial:
     )
 
 
-def _content(coefficients: Iterable[Fraction]) -> Fraction:
+def _content(coefficients: Iterable[Number]) -> Fraction:
     """The common factor of the coefficients, negative where that leaves fewer minus signs."""
     values = list(coefficients)
     size = Fraction(

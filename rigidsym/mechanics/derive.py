@@ -223,6 +223,8 @@ class _Inputs(NamedTuple):
         inputs = step.quantity.inputs
         if self.is_driven and "t" not in inputs and depends_on_time(step.expression):
             inputs += ("t",)
-        if not step.expression.free_symbols.isdisjoint(self.constants):
+        if self.constants and not step.expression.free_symbols.isdisjoint(self.constants):
             inputs += ("parameters",)
+        if inputs == step.quantity.inputs:
+            return step
         return replace(step, quantity=step.quantity._replace(inputs=inputs))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cache
 
 from sympy.polys.rings import PolyElement
 
@@ -42,6 +42,8 @@ class Kinematics(ABC):
     def __init__(self, model: RotationModel) -> None:
         self.model = model
         self.symbol = COSINES if model.passive else ROTATION
+        self.is_square = len(model.coordinates) == 3
+        self.laws = _laws(model.passive, self.is_square)
 
     def steps(self, only: Collection[str] = ()) -> Iterator[tuple[str, Found]]:
         """(name, what was found) of the quantities that are wanted and that the model has.
@@ -59,41 +61,42 @@ class Kinematics(ABC):
     def find(self, name: str) -> Found | None:
         """One quantity with its proofs; None if the model does not have it."""
 
-    @cached_property
-    def laws(self) -> Mapping[str, Sequence[Law]]:
-        """What is to be proved of each quantity."""
-        symbol, spin = self.symbol, claims.spin_of(self.symbol)
-        whole_rate = Rate(Bracket(claims.spin_of(ROTATION)))
-        skew = [("skew", claims.skew(spin))]
-        if self.model.passive:
-            skew.append(("passive_operator", claims.is_operator(BODY.omega, spin, "-")))
-        found: dict[str, Sequence[Law]] = {
-            "rotation_matrix": [
-                ("orthogonal", claims.orthogonal(symbol)),
-                ("proper", claims.proper(symbol)),
-            ],
-            "rotation_rate": [("skew", claims.stays_orthogonal(symbol))],
-            "spin_matrix": skew,
-            "angular_velocity_space": [IS_OPERATOR],
-        }
-        of_frames = {
-            "angular_velocity_body": claims.rotates(ROTATION, BODY.omega, SPACE.omega),
-            "angular_acceleration_space": claims.is_operator(ALPHA, whole_rate),
-            "angular_acceleration_body": claims.rotates(ROTATION, ALPHA_BODY, ALPHA),
-        }
-        for name, frame in FRAMES.items():
-            inverse = self.inverse_symbol(frame)
-            of_frames |= {
-                f"rate_matrix_{name}": equal(row(frame.matrix, RATES), frame.omega),
-                f"inverse_rate_matrix_{name}": claims.inverse_of(frame.matrix, inverse),
-                f"rates_from_angular_velocity_{name}": claims.solves(
-                    frame.matrix, inverse, frame.omega
-                ),
-            }
-        return found | {name: [(name, claim)] for name, claim in of_frames.items()}
-
     def inverse_symbol(self, frame: Frame) -> Formula:
-        return frame.inverse if len(self.model.coordinates) == 3 else frame.right_inverse
+        return frame.inverse if self.is_square else frame.right_inverse
+
+
+@cache
+def _laws(passive: bool, is_square: bool) -> Mapping[str, Sequence[Law]]:
+    """What is to be proved of each quantity."""
+    symbol = COSINES if passive else ROTATION
+    spin, whole_rate = claims.spin_of(symbol), Rate(Bracket(claims.spin_of(ROTATION)))
+    skew = [("skew", claims.skew(spin))]
+    if passive:
+        skew.append(("passive_operator", claims.is_operator(BODY.omega, spin, "-")))
+    found: dict[str, Sequence[Law]] = {
+        "rotation_matrix": [
+            ("orthogonal", claims.orthogonal(symbol)),
+            ("proper", claims.proper(symbol)),
+        ],
+        "rotation_rate": [("skew", claims.stays_orthogonal(symbol))],
+        "spin_matrix": skew,
+        "angular_velocity_space": [IS_OPERATOR],
+    }
+    of_frames = {
+        "angular_velocity_body": claims.rotates(ROTATION, BODY.omega, SPACE.omega),
+        "angular_acceleration_space": claims.is_operator(ALPHA, whole_rate),
+        "angular_acceleration_body": claims.rotates(ROTATION, ALPHA_BODY, ALPHA),
+    }
+    for name, frame in FRAMES.items():
+        inverse = frame.inverse if is_square else frame.right_inverse
+        of_frames |= {
+            f"rate_matrix_{name}": equal(row(frame.matrix, RATES), frame.omega),
+            f"inverse_rate_matrix_{name}": claims.inverse_of(frame.matrix, inverse),
+            f"rates_from_angular_velocity_{name}": claims.solves(
+                frame.matrix, inverse, frame.omega
+            ),
+        }
+    return found | {name: [(name, claim)] for name, claim in of_frames.items()}
 
 
 def kind_and_frame(name: str) -> tuple[str, str]:
@@ -114,7 +117,7 @@ class Expanded(Kinematics):
         if found is None:
             return None
         matrix, below = found
-        proofs = [self._holds(law, claim, below) for law, claim in self.laws[name]]
+        proofs = [self._holds(law, claim, matrix, below) for law, claim in self.laws[name]]
         form = self._form(name, matrix, below) if self.model.vector else None
         if form is not None:
             proofs.append(form.proof)
@@ -141,19 +144,19 @@ class Expanded(Kinematics):
             case "rate_matrix":
                 matrix = values.rate_matrix(frame)
             case "angular_acceleration":
-                matrix = values.omega(frame).dt()
+                matrix = values.alpha_space if frame == "space" else values.omega_body.dt()
             case _:
                 raise LookupError(f"no rule finds {kind}")
         return matrix, values.ring.one
 
-    def _holds(self, law: str, claim: Formula, below: PolyElement) -> Proof:
-        prove = self.values.prove
+    def _holds(self, law: str, claim: Formula, matrix: RingMatrix, below: PolyElement) -> Proof:
+        prove, residual = self.values.prove, self._residual(law, matrix, below)
         if law in ("orthogonal", "proper"):
-            return prove.is_rotation(self._residual(law, below), claim)
-        return prove.vanishes(self._residual(law, below), claim, divided_by=below)
+            return prove.is_rotation(residual, claim)
+        return prove.vanishes(residual, claim, divided_by=below)
 
-    def _residual(self, law: str, below: PolyElement) -> RingMatrix:
-        """What vanishes if a law holds."""
+    def _residual(self, law: str, found: RingMatrix, below: PolyElement) -> RingMatrix:
+        """What vanishes if a law of a quantity, found / below, holds."""
         values, (kind, frame) = self.values, kind_and_frame(law)
         match law:
             case "orthogonal":
@@ -169,15 +172,13 @@ class Expanded(Kinematics):
             case "angular_velocity_body":
                 return values.R @ values.omega_body - values.omega_space
             case "angular_acceleration_space":
-                return values.spin.dt() - hat(values.omega_space.dt())
+                return values.spin.dt() - hat(found)
             case "angular_acceleration_body":
-                return values.R @ values.omega_body.dt() - values.omega_space.dt()
-        matrix, found = values.rate_matrix(frame), self._value(law)
-        assert found is not None
+                return values.R @ found - values.alpha_space
         if kind == "rate_matrix":
-            return matrix @ values.argument("q_dot") - values.omega(frame)
+            return found @ values.argument("q_dot") - values.omega(frame)
         whole = values.one if kind == "inverse_rate_matrix" else values.argument(f"omega_{frame}")
-        return matrix @ found[0] - whole.scale(below)
+        return values.rate_matrix(frame) @ found - whole.scale(below)
 
     def _form(self, name: str, matrix: RingMatrix, below: PolyElement) -> VectorForm | None:
         """The quantity as a function of the vector of the coordinates, if it is one."""

@@ -102,6 +102,10 @@ class Values:
         return self.R.T @ self.omega_space
 
     @cached_property
+    def alpha_space(self) -> RingMatrix:
+        return self.omega_space.dt()
+
+    @cached_property
     def rate_matrix_space(self) -> RingMatrix:
         return self._jacobian(self.omega_space)
 

@@ -129,8 +129,9 @@ def _vector(
     )
 
 
+@lru_cache(maxsize=1024)
 def _moving(
-    name: str, functions: Sequence[sp.Expr], order: int, units: Sequence[str], about: str
+    name: str, functions: tuple[sp.Expr, ...], order: int, units: tuple[str, ...], about: str
 ) -> Argument:
     """Functions of time, or their derivatives of an order."""
     plain = [function.func.__name__ for function in functions]

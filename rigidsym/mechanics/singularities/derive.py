@@ -59,8 +59,8 @@ class _Study:
         # rank, kernel and minors are the same in every frame: between the middle ones of the turns
         # each axis has been moved by few turns, and W is shortest
         turns = self.model.turns[: len(self.model.turns) // 2]
-        frame = (values.encoded(turn.matrix) for turn in turns)
-        self.to_space = reduce(operator.matmul, frame, values.one)
+        frame = [values.encoded(turn.matrix) for turn in turns]
+        self.to_space = reduce(operator.matmul, frame or [values.one])
         self.to_body = values.R.T @ self.to_space
         here = self.to_space.T @ values.rate_matrix_space
         self.solver = solver_for(values.codec, self.coordinates)
@@ -191,10 +191,18 @@ class _Study:
         return first, second
 
 
-def _rank_and_minors(matrix: RingMatrix, most: int = 9) -> tuple[int, list[PolyElement]]:
-    """The generic rank, or `most` if that is less, and the minors of that size but zeros."""
-    for size in range(min(*matrix.shape, most), 0, -1):
-        minors = [minor for minor in _minors(matrix, size) if minor]
+def _rank_and_minors(matrix: RingMatrix, most: int | None = None) -> tuple[int, list[PolyElement]]:
+    """The generic rank, or `most` if that is less, and the minors of that size but zeros.
+
+    With `most`, one minor that is a number is enough: the rank is then the same everywhere.
+    """
+    largest = min(matrix.shape) if most is None else min(*matrix.shape, most)
+    for size in range(largest, 0, -1):
+        minors: list[PolyElement] = []
+        for minor in filter(None, _minors(matrix, size)):
+            if most is not None and minor.is_ground:
+                return size, [minor]
+            minors.append(minor)
         if minors:
             return size, minors
     return 0, []
