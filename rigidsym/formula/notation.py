@@ -13,17 +13,7 @@ from types import MappingProxyType
 from typing import Any, Protocol
 
 from rigidsym.errors import ModelError
-from rigidsym.formula.tree import (
-    Bracket,
-    Differential,
-    Formula,
-    Fraction,
-    Power,
-    Rate,
-    Row,
-    Sign,
-    Symbol,
-)
+from rigidsym.formula import tree
 
 CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -100,7 +90,7 @@ class Notation:
         """The same for the words among the spans of a text."""
         return self.words(span) if isinstance(span, str) else span
 
-    def applied(self, formula: Formula) -> Formula:
+    def applied(self, formula: tree.Formula) -> tree.Formula:
         """The formula in this notation; twice is the same as once."""
         return formula if self.is_default else _applied(formula, self)
 
@@ -121,31 +111,31 @@ class Notation:
 
 
 @lru_cache(maxsize=4096)
-def _applied(node: Formula, notation: Notation) -> Formula:
+def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
     match node:
-        case Symbol():
+        case tree.Symbol():
             return _symbol(node, notation)
-        case Power(Symbol(prime="′"), exponent) if notation.body == "superscript":
-            return Power(Bracket(_applied(node.base, notation)), exponent)
-        case Power(Symbol(dots=dots), exponent) if dots and notation.rates == "fraction":
-            return Power(Bracket(_applied(node.base, notation)), exponent)
-        case Fraction(above, Row((Differential("∂"), by))):
-            below = Row((Differential("∂"), _on_a_line(_applied(by, notation))))
-            return Fraction(_applied(above, notation), below)
+        case tree.Power(tree.Symbol(prime="′"), exponent) if notation.body == "superscript":
+            return tree.Power(tree.Bracket(_applied(node.base, notation)), exponent)
+        case tree.Power(tree.Symbol(dots=dots), exponent) if dots and notation.rates == "fraction":
+            return tree.Power(tree.Bracket(_applied(node.base, notation)), exponent)
+        case tree.Fraction(above, tree.Row((tree.Differential("∂"), by))):
+            below = tree.Row((tree.Differential("∂"), _on_a_line(_applied(by, notation))))
+            return tree.Fraction(_applied(above, notation), below)
     changed = {field.name: _within(getattr(node, field.name), notation) for field in fields(node)}
     return replace(node, **changed)
 
 
 def _within(value: Any, notation: Notation) -> Any:
     """The same of the children of a node, which are formulas or tuples of them."""
-    if isinstance(value, Formula):
+    if isinstance(value, tree.Formula):
         return _applied(value, notation)
     if isinstance(value, tuple):
         return tuple(_within(item, notation) for item in value)
     return value
 
 
-def _symbol(symbol: Symbol, notation: Notation) -> Formula:
+def _symbol(symbol: tree.Symbol, notation: Notation) -> tree.Formula:
     index = symbol.index and _applied(symbol.index, notation)
     symbol = replace(symbol, index=index)
     if symbol.letter == "v" and symbol.face == "bold":
@@ -157,15 +147,19 @@ def _symbol(symbol: Symbol, notation: Notation) -> Formula:
     if notation.vectors == "arrow" and symbol.face == "bold" and symbol.letter in _VECTORS:
         symbol = replace(symbol, face="arrow")
     if notation.rates == "fraction" and symbol.dots:
-        return Rate(replace(symbol, dots=0), symbol.dots)
+        return tree.Rate(replace(symbol, dots=0), symbol.dots)
     return symbol
 
 
-def _on_a_line(below: Formula) -> Formula:
+def _on_a_line(below: tree.Formula) -> tree.Formula:
     """A rate below ∂, as (dq/dt): a fraction within a fraction would be hard to read."""
-    if not isinstance(below, Rate):
+    if not isinstance(below, tree.Rate):
         return below
-    return Bracket(Row((Differential(), below.of, Sign("/"), Differential(), Symbol("t"))))
+    return tree.Bracket(
+        tree.Row(
+            (tree.Differential(), below.of, tree.Sign("/"), tree.Differential(), tree.Symbol("t"))
+        )
+    )
 
 
 def _checked(frames: Sequence[str]) -> tuple[str, str]:

@@ -13,23 +13,8 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import ClassVar, NamedTuple, Self
 
+from rigidsym.formula import tree
 from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.formula.tree import (
-    Apply,
-    Bracket,
-    Differential,
-    Formula,
-    Fraction,
-    Gap,
-    Numeral,
-    Power,
-    Rate,
-    Row,
-    Sign,
-    Symbol,
-    Words,
-    row,
-)
 
 DIVISOR = 50  # a divisor's brackets are as deep as so many others: 1/(1 + n²) is broken last
 RELATIONS = "=≤<⇔"
@@ -104,7 +89,7 @@ class Pen:
 
     blank: ClassVar[float] = 0.0  # width of the blank between two chunks
     sign: Callable[..., Piece]  # of a Sign; with is_binary where it stands between two parts
-    between: Callable[[Formula, Formula], Piece]  # the space between two factors
+    between: Callable[[tree.Formula, tree.Formula], Piece]  # the space between two factors
     around: Callable[..., Piece]  # a piece in brackets of a kind
 
     def __init__(
@@ -114,7 +99,7 @@ class Pen:
         self.loose = loose  # whether a line may end within high brackets
         self.short = short  # whether s_θ and c_θ stand for sine and cosine
 
-    def write(self, formula: Formula) -> Piece:
+    def write(self, formula: tree.Formula) -> Piece:
         """The formula in the notation of this pen."""
         pen: Callable[..., Pen] = type(self)
         return _written(pen, self.notation, self.loose, self.short, formula)
@@ -123,7 +108,7 @@ class Pen:
         """The same pen, which lets lines end within high brackets, or abbreviates functions."""
         return type(self)(self.notation, loose=loose or self.loose, short=short or self.short)
 
-    def node(self, formula: Formula) -> Piece:
+    def node(self, formula: tree.Formula) -> Piece:
         """One node, whose notation is settled; raises TypeError for a kind without a method."""
         kind = type(formula).__name__
         method = getattr(self, kind.lower(), None)
@@ -131,29 +116,33 @@ class Pen:
             raise TypeError(f"no pen for {kind}")
         return method(formula)
 
-    def row(self, node: Row, *, is_tight: bool = False) -> Piece:
+    def row(self, node: tree.Row, *, is_tight: bool = False) -> Piece:
         """Factors, and signs at which a line may end; `is_tight` in an index."""
         pieces: list[Piece] = []
-        before: Formula | None = None
+        before: tree.Formula | None = None
         for place, part in enumerate(node.parts):
-            if isinstance(part, Sign):
-                is_binary = before is not None and not isinstance(before, Sign)
+            if isinstance(part, tree.Sign):
+                is_binary = before is not None and not isinstance(before, tree.Sign)
                 sign = self.sign(part, is_binary=is_binary and not is_tight)
                 if is_binary and part.character in _BREAKS:
                     sign = sign._replace(chunks=(_EMPTY, *sign.chunks))
                 pieces.append(sign)
             else:
-                if before is not None and not isinstance(before, Sign | Gap) and not is_tight:
+                if (
+                    before is not None
+                    and not isinstance(before, tree.Sign | tree.Gap)
+                    and not is_tight
+                ):
                     pieces.append(self.between(before, part))
                 is_alone = _is_alone(node.parts, place)
                 pieces.append(self.node(part) if is_alone else self.factor(part))
             before = part
         return self.glued(pieces, _binding(node.parts))
 
-    def indices(self, index: Formula) -> Piece:
+    def indices(self, index: tree.Formula) -> Piece:
         """An index, whose parts stand close together, and whose fractions on one line."""
         flat = _on_a_line(index)
-        return self.row(flat if isinstance(flat, Row) else Row((flat,)), is_tight=True)
+        return self.row(flat if isinstance(flat, tree.Row) else tree.Row((flat,)), is_tight=True)
 
     def glued(self, pieces: Iterable[Piece], binding: Binding = Binding.CALL) -> Piece:
         """Pieces side by side, which break where each of them does."""
@@ -171,52 +160,57 @@ class Pen:
         """A piece in brackets, whose signs stand deeper by `level`."""
         return self.glued((opening, inside.deeper(level), closing), Binding.BRACKET)
 
-    def factor(self, part: Formula) -> Piece:
+    def factor(self, part: tree.Formula) -> Piece:
         """One of several factors."""
         return self.node(part)
 
-    def apply(self, node: Apply) -> Piece:
+    def apply(self, node: tree.Apply) -> Piece:
         applied = self.around(self.node(node.inside), "()")
         return self.glued((self.node(node.head), applied), Binding.BRACKET)
 
-    def differentials(self, rate: Rate) -> tuple[Piece, Piece]:
+    def differentials(self, rate: tree.Rate) -> tuple[Piece, Piece]:
         """What stands above and below the line: d²x and dt²."""
-        d, time = Differential(), Symbol("t")
+        d, time = tree.Differential(), tree.Symbol("t")
         if rate.order == 1:
-            return self.node(row(d, rate.of)), self.node(row(d, time))
-        order = Numeral(str(rate.order))
-        return self.node(row(Power(d, order), rate.of)), self.node(row(d, Power(time, order)))
+            return self.node(tree.row(d, rate.of)), self.node(tree.row(d, time))
+        order = tree.Numeral(str(rate.order))
+        return self.node(tree.row(tree.Power(d, order), rate.of)), self.node(
+            tree.row(d, tree.Power(time, order))
+        )
 
 
 @lru_cache(maxsize=16384)
 def _written(
-    pen: Callable[..., Pen], notation: Notation, loose: bool, short: bool, formula: Formula
+    pen: Callable[..., Pen], notation: Notation, loose: bool, short: bool, formula: tree.Formula
 ) -> Piece:
     return pen(notation, loose=loose, short=short).node(notation.applied(formula))
 
 
-def _on_a_line(index: Formula) -> Formula:
+def _on_a_line(index: tree.Formula) -> tree.Formula:
     """√2/2 in place of a fraction, also within brackets."""
     match index:
-        case Fraction(above, below):
-            return row(above, Sign("/"), below)
-        case Bracket(inside):
+        case tree.Fraction(above, below):
+            return tree.row(above, tree.Sign("/"), below)
+        case tree.Bracket(inside):
             return replace(index, inside=_on_a_line(inside))
-        case Row(parts):
-            return row(*map(_on_a_line, parts))
+        case tree.Row(parts):
+            return tree.row(*map(_on_a_line, parts))
     return index
 
 
-def _is_alone(parts: Sequence[Formula], place: int) -> bool:
+def _is_alone(parts: Sequence[tree.Formula], place: int) -> bool:
     """Whether a part stands between signs, with no other factor beside it."""
     beside = [parts[k] for k in (place - 1, place + 1) if 0 <= k < len(parts)]
-    return all(isinstance(part, Sign | Gap | Words) and part != Sign("·") for part in beside)
+    return all(
+        isinstance(part, tree.Sign | tree.Gap | tree.Words) and part != tree.Sign("·")
+        for part in beside
+    )
 
 
-def _binding(parts: Sequence[Formula]) -> Binding:
-    if len(parts) == 2 and isinstance(parts[0], Differential):
+def _binding(parts: Sequence[tree.Formula]) -> Binding:
+    if len(parts) == 2 and isinstance(parts[0], tree.Differential):
         return Binding.CALL
-    signs = {part.character for part in parts if isinstance(part, Sign)}
+    signs = {part.character for part in parts if isinstance(part, tree.Sign)}
     if signs - {"/"}:
         return Binding.SUM
     return Binding.QUOTIENT if signs else Binding.PRODUCT

@@ -21,31 +21,7 @@ from sympy.printing.conventions import split_super_sub
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.errors import AlgebraError
-from rigidsym.formula.tree import (
-    MINUS,
-    TRANSPOSE,
-    Apply,
-    Big,
-    Bracket,
-    Differential,
-    Face,
-    Formula,
-    Fraction,
-    FunctionCall,
-    Gap,
-    Indexed,
-    Matrix,
-    Numeral,
-    Power,
-    Prime,
-    Radical,
-    Rate,
-    Row,
-    Sign,
-    Symbol,
-    Words,
-    row,
-)
+from rigidsym.formula import tree
 
 FUNCTIONS = ("sin", "cos", "tan", "cot", "det", "exp", "arctan")
 _TOKEN = re.compile(
@@ -53,28 +29,28 @@ _TOKEN = re.compile(
     r"|\\begin\{(?P<begin>\w+)\}|\\end\{(?P<end>\w+)\}"
     r"|#\d|\\\\(?:\[\w+\])?|\\[A-Za-z]+|\\.|\d+|\s+|."
 )
-_ATOMS: dict[str, Formula] = {
-    **{sign: Sign(sign) for sign in "+=/,;<"},
-    "…": Symbol("…"),
-    "-": MINUS,
-    r"\times": Sign("×"),
-    r"\cdot": Sign("·"),
-    r"\pm": Sign("±"),
-    r"\le": Sign("≤"),
-    r"\in": Sign("∈"),
-    r"\Leftrightarrow": Sign("⇔"),
-    r"\ldots": Symbol("…"),
-    r"\perp": Symbol("⊥"),
-    r"\parallel": Symbol("∥"),
-    r"\ast": Symbol("∗"),
-    r"\varphi": Symbol("φ"),
-    r"\sum": Big("∑"),
-    r"\int": Big("∫"),
-    r"\partial": Differential("∂"),
-    r"\quad": Gap(),
-    r"\qquad": Gap(),
+_ATOMS: dict[str, tree.Formula] = {
+    **{sign: tree.Sign(sign) for sign in "+=/,;<"},
+    "…": tree.Symbol("…"),
+    "-": tree.MINUS,
+    r"\times": tree.Sign("×"),
+    r"\cdot": tree.Sign("·"),
+    r"\pm": tree.Sign("±"),
+    r"\le": tree.Sign("≤"),
+    r"\in": tree.Sign("∈"),
+    r"\Leftrightarrow": tree.Sign("⇔"),
+    r"\ldots": tree.Symbol("…"),
+    r"\perp": tree.Symbol("⊥"),
+    r"\parallel": tree.Symbol("∥"),
+    r"\ast": tree.Symbol("∗"),
+    r"\varphi": tree.Symbol("φ"),
+    r"\sum": tree.Big("∑"),
+    r"\int": tree.Big("∫"),
+    r"\partial": tree.Differential("∂"),
+    r"\quad": tree.Gap(),
+    r"\qquad": tree.Gap(),
 }
-_FACES: dict[str, Face] = {
+_FACES: dict[str, tree.Face] = {
     r"\mathbf": "bold",
     r"\boldsymbol": "bold",
     r"\mathrm": "upright",
@@ -87,7 +63,7 @@ _NORMAL = {r"\left": r"\,", r"\bigl": r"\,", r"\bigr": r"\right"}  # such a brac
 
 
 @lru_cache(maxsize=4096)
-def formula(text: str, *parts: Formula) -> Formula:
+def formula(text: str, *parts: tree.Formula) -> tree.Formula:
     """The tree of a typed formula, with `parts` in place of #1, #2, ...
 
     Raises AlgebraError, showing the rest, where it cannot be read.
@@ -113,7 +89,7 @@ def greek_letter(name: str) -> str:
 class _TexReader:
     """Reads tokens from left to right; a blank parts a bracket from a letter."""
 
-    def __init__(self, text: str, parts: tuple[Formula, ...]) -> None:
+    def __init__(self, text: str, parts: tuple[tree.Formula, ...]) -> None:
         self.text = text
         self.parts = parts
         found = (match[0] for match in _TOKEN.finditer(text))
@@ -123,48 +99,52 @@ class _TexReader:
         left = "".join(reversed(self.tokens)) or "the end"
         return AlgebraError(f"no formula: {self.text!r}, at {left!r}")
 
-    def row(self, ends: tuple[str, ...]) -> Formula:
+    def row(self, ends: tuple[str, ...]) -> tree.Formula:
         """Parts up to one of `ends`, which is left; or up to the end of all."""
-        parts: list[Formula] = []
+        parts: list[tree.Formula] = []
         while self.tokens and self.tokens[-1] not in ends:
             token = self.tokens[-1]
             if token.isspace() or token in _IGNORED:
                 self.tokens.pop()
             else:
                 parts.append(self._scripted())
-        return row(*parts)
+        return tree.row(*parts)
 
-    def _scripted(self) -> Formula:
+    def _scripted(self) -> tree.Formula:
         """A part with its primes, index and exponent, and the argument of a symbol."""
         base = self._part()
         while self._next() in ("'", "_", "^"):
             base = self._script(base, self.tokens.pop())
-        is_applied = isinstance(base, Symbol) or (
-            isinstance(base, Power) and isinstance(base.base, Symbol)
+        is_applied = isinstance(base, tree.Symbol) or (
+            isinstance(base, tree.Power) and isinstance(base.base, tree.Symbol)
         )
         if is_applied and self._next() == "(":
             inside = self._part()
-            assert isinstance(inside, Bracket)
-            base = Apply(base, inside.inside)
+            assert isinstance(inside, tree.Bracket)
+            base = tree.Apply(base, inside.inside)
             while self._next() in ("'", "_", "^"):
                 base = self._script(base, self.tokens.pop())
         return base
 
-    def _script(self, base: Formula, mark: str) -> Formula:
+    def _script(self, base: tree.Formula, mark: str) -> tree.Formula:
         if mark == "^":
             exponent = self._argument()
-            if exponent == Symbol("T"):
-                exponent = TRANSPOSE
-            return replace(base, above=exponent) if isinstance(base, Big) else Power(base, exponent)
-        if isinstance(base, Power):  # d^⊥_i
-            return Power(self._script(base.base, mark), base.exponent)
-        if isinstance(base, Big):
+            if exponent == tree.Symbol("T"):
+                exponent = tree.TRANSPOSE
+            return (
+                replace(base, above=exponent)
+                if isinstance(base, tree.Big)
+                else tree.Power(base, exponent)
+            )
+        if isinstance(base, tree.Power):  # d^⊥_i
+            return tree.Power(self._script(base.base, mark), base.exponent)
+        if isinstance(base, tree.Big):
             return replace(base, below=self._argument())
-        if not isinstance(base, Symbol):
-            return Indexed(base, self._argument())
+        if not isinstance(base, tree.Symbol):
+            return tree.Indexed(base, self._argument())
         return replace(base, prime="′") if mark == "'" else replace(base, index=self._argument())
 
-    def _argument(self) -> Formula:
+    def _argument(self) -> tree.Formula:
         """What stands in braces, or one token."""
         while self._next().isspace():
             self.tokens.pop()
@@ -175,7 +155,7 @@ class _TexReader:
         self._expect("}")
         return inside
 
-    def _part(self) -> Formula:
+    def _part(self) -> tree.Formula:
         token = self.tokens.pop() if self.tokens else ""
         if token in _ATOMS:
             return _ATOMS[token]
@@ -183,31 +163,31 @@ class _TexReader:
             kind = _OPEN[token]
             inside = self.row((kind[1],))
             self._expect(kind[1])
-            return Bracket(inside, kind)
+            return tree.Bracket(inside, kind)
         if token == "{":
             self.tokens.append(token)
             return self._argument()
         if token.isdigit():
-            return Numeral(token)
+            return tree.Numeral(token)
         if token.startswith("#"):
             return self.parts[int(token[1:]) - 1]
         if token == "d" and (self._next()[:1].isalpha() or self._next()[:1] in ("\\", "#")):
-            return Differential() if self._next() != r"\," else Symbol("d")
+            return tree.Differential() if self._next() != r"\," else tree.Symbol("d")
         found = self._macro(token) if token.startswith("\\") else None
         if len(token) == 1 and token.isalpha():
-            found = Symbol(token)
+            found = tree.Symbol(token)
         if found is None:
             self.tokens.append(token)
             raise self.error()
         return found
 
-    def _macro(self, token: str) -> Formula | None:
+    def _macro(self, token: str) -> tree.Formula | None:
         match = _TOKEN.fullmatch(token)
         assert match
         if match["text"] is not None:
-            return Words(match["text"])
+            return tree.Words(match["text"])
         if match["word"]:
-            return Symbol(match["word"])
+            return tree.Symbol(match["word"])
         if match["name"] or token[1:] in FUNCTIONS:
             return self._call(match["name"] or token[1:])
         if match["begin"] == "pmatrix":
@@ -216,33 +196,33 @@ class _TexReader:
             return _faced(self._argument(), _FACES[token])
         if token in _DOTS:
             inside = self._argument()
-            if not isinstance(inside, Symbol):
+            if not isinstance(inside, tree.Symbol):
                 raise self.error()
             return replace(inside, dots=inside.dots + _DOTS[token])
         if token in (r"\frac", r"\tfrac"):
             return _quotient(self._argument(), self._argument())
         if token == r"\sqrt":
-            return Radical(self._argument())
+            return tree.Radical(self._argument())
         letter = greek_letter(token[1:])
-        return Symbol(letter) if letter else None
+        return tree.Symbol(letter) if letter else None
 
-    def _call(self, function: str) -> Formula:
+    def _call(self, function: str) -> tree.Formula:
         """The function of the next part; a power is that of the value."""
         exponent = 1
         if self._next() == "^":
             self.tokens.pop()
             power = self._argument()
-            assert isinstance(power, Numeral)
+            assert isinstance(power, tree.Numeral)
             exponent = int(power.digits)
         while self._next().isspace() or self._next() == r"\,":
             self.tokens.pop()
         argument = self._part()
         while self._next() in ("'", "_", "^"):
             argument = self._script(argument, self.tokens.pop())
-        return FunctionCall(function, argument, exponent)
+        return tree.FunctionCall(function, argument, exponent)
 
-    def _matrix(self) -> Formula:
-        rows: list[list[Formula]] = [[]]
+    def _matrix(self) -> tree.Formula:
+        rows: list[list[tree.Formula]] = [[]]
         ends = ("&", r"\end{pmatrix}", r"\\")
         while True:
             rows[-1].append(self.row(ends))
@@ -250,7 +230,7 @@ class _TexReader:
                 raise self.error()
             end = self.tokens.pop()
             if end == r"\end{pmatrix}":
-                return Matrix(tuple(map(tuple, rows)))
+                return tree.Matrix(tuple(map(tuple, rows)))
             if end == r"\\":
                 rows.append([])
 
@@ -265,31 +245,31 @@ class _TexReader:
         self.tokens.pop()
 
 
-def _faced(inside: Formula, face: Face) -> Formula:
+def _faced(inside: tree.Formula, face: tree.Face) -> tree.Formula:
     """A letter, a word, or a bold 1 or 0, in another face."""
-    if isinstance(inside, Numeral):
-        return Symbol(inside.digits, face)
-    if isinstance(inside, Row):
-        letters = (part.letter for part in inside.parts if isinstance(part, Symbol))
-        return Symbol("".join(letters), face)
-    return replace(inside, face=face) if isinstance(inside, Symbol) else inside
+    if isinstance(inside, tree.Numeral):
+        return tree.Symbol(inside.digits, face)
+    if isinstance(inside, tree.Row):
+        letters = (part.letter for part in inside.parts if isinstance(part, tree.Symbol))
+        return tree.Symbol("".join(letters), face)
+    return replace(inside, face=face) if isinstance(inside, tree.Symbol) else inside
 
 
-def _quotient(above: Formula, below: Formula) -> Formula:
+def _quotient(above: tree.Formula, below: tree.Formula) -> tree.Formula:
     """A fraction, or the derivative with respect to time."""
-    by_time = row(Differential(), Symbol("t"))
+    by_time = tree.row(tree.Differential(), tree.Symbol("t"))
     if below != by_time:
-        return Fraction(above, below)
-    if isinstance(above, Row) and above.parts[0] == Differential():
-        return Rate(row(*above.parts[1:]))
-    return Fraction(above, below)
+        return tree.Fraction(above, below)
+    if isinstance(above, tree.Row) and above.parts[0] == tree.Differential():
+        return tree.Rate(tree.row(*above.parts[1:]))
+    return tree.Fraction(above, below)
 
 
 _VARIANTS = {"varphi": "φ", "vartheta": "ϑ", "varepsilon": "ε", "varrho": "ϱ", "varsigma": "ς"}
 
 
 @lru_cache(maxsize=1024)
-def named(label: str, order: int = 0) -> Formula:
+def named(label: str, order: int = 0) -> tree.Formula:
     """A name, or its derivative with respect to time: φ̇₁, and d yaw₁/dt.
 
     A dot above a word would stand above one of its letters, as if they were factors, and so the
@@ -297,23 +277,23 @@ def named(label: str, order: int = 0) -> Formula:
     """
     head, above, below = split_super_sub(label)
     index = tuple(map(_part, below))
-    prime: Prime = "′" if head.endswith("'") else ""  # I'_12: of the body
+    prime: tree.Prime = "′" if head.endswith("'") else ""  # I'_12: of the body
     head = head.removesuffix("'")
-    symbol = Symbol(
+    symbol = tree.Symbol(
         _letter(head),
         prime=prime,
-        index=(index[0] if len(index) == 1 else Row(index)) if index else None,
+        index=(index[0] if len(index) == 1 else tree.Row(index)) if index else None,
         macro=_macro(head),
     )
     is_word = len(symbol.letter) > 1 and not symbol.macro
     if not is_word:
         symbol = replace(symbol, dots=order)
-    raised = Power(symbol, Row(tuple(map(_part, above)))) if above else symbol
-    return Rate(raised, order) if is_word and order else raised
+    raised = tree.Power(symbol, tree.Row(tuple(map(_part, above)))) if above else symbol
+    return tree.Rate(raised, order) if is_word and order else raised
 
 
-def _part(text: str) -> Formula:
-    return Numeral(text) if text.isdigit() else Symbol(_letter(text), macro=_macro(text))
+def _part(text: str) -> tree.Formula:
+    return tree.Numeral(text) if text.isdigit() else tree.Symbol(_letter(text), macro=_macro(text))
 
 
 def _letter(name: str) -> str:

@@ -12,6 +12,7 @@ from functools import lru_cache
 
 import sympy as sp
 
+from rigidsym.formula import tree
 from rigidsym.formula.letters import (
     FUNCTIONS,
     Letters,
@@ -20,24 +21,6 @@ from rigidsym.formula.letters import (
     ordered_factors,
     ordered_terms,
     power_of,
-)
-from rigidsym.formula.tree import (
-    MINUS,
-    PLUS,
-    Bracket,
-    Formula,
-    Fraction,
-    FunctionCall,
-    Numeral,
-    Power,
-    Radical,
-    Rate,
-    Row,
-    Sign,
-    Symbol,
-    equal,
-    joined,
-    row,
 )
 
 
@@ -53,16 +36,16 @@ class Bound(IntEnum):
 
 
 _BOUND = {
-    FunctionCall: Bound.CALL,
-    Numeral: Bound.NUMBER,
-    Fraction: Bound.FRACTION,
-    Rate: Bound.FRACTION,
-    Power: Bound.PRODUCT,
+    tree.FunctionCall: Bound.CALL,
+    tree.Numeral: Bound.NUMBER,
+    tree.Fraction: Bound.FRACTION,
+    tree.Rate: Bound.FRACTION,
+    tree.Power: Bound.PRODUCT,
 }
 
 
 @lru_cache(maxsize=8192)
-def formula_of(expression: sp.Expr, letters: Letters) -> Formula:
+def formula_of(expression: sp.Expr, letters: Letters) -> tree.Formula:
     """The expression as a tree; raises AlgebraError for a node without a printed form."""
     return _ScalarWalk(letters).expression(signs_outside(letters.shortened(expression)))
 
@@ -122,8 +105,8 @@ def _constants_in_all(entries: Sequence[sp.Expr]) -> sp.Expr:
 
 
 def listed_entries(
-    names: Sequence[Formula], matrix: sp.ImmutableMatrix
-) -> list[tuple[Formula, sp.Expr]]:
+    names: Sequence[tree.Formula], matrix: sp.ImmutableMatrix
+) -> list[tuple[tree.Formula, sp.Expr]]:
     """Each entry with its name, row by row; of a symmetric matrix six in place of nine.
 
     Two entries that are equal by symmetry have both names: I₁₂ = I₂₁.
@@ -133,13 +116,13 @@ def listed_entries(
     if matrix != matrix.T:
         return [*zip(names, matrix, strict=True)]
     return [
-        (equal(*dict.fromkeys((names[columns * i + j], names[columns * j + i]))), matrix[i, j])
+        (tree.equal(*dict.fromkeys((names[columns * i + j], names[columns * j + i]))), matrix[i, j])
         for i, j in places
         if i <= j
     ]
 
 
-def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> list[list[Formula]]:
+def matrix_of(matrix: sp.MatrixBase, letters: Letters) -> list[list[tree.Formula]]:
     """The entries of a matrix, row by row."""
     return [[formula_of(entry, letters) for entry in line] for line in matrix.tolist()]
 
@@ -150,7 +133,7 @@ class _ScalarWalk:
     def __init__(self, letters: Letters) -> None:
         self.letters = letters
 
-    def expression(self, node: sp.Expr) -> Formula:
+    def expression(self, node: sp.Expr) -> tree.Formula:
         if node.is_Rational:
             return _rational(node)
         if node.is_Add:
@@ -163,24 +146,26 @@ class _ScalarWalk:
             return self._call(node)
         if is_application(node):
             arguments = [self.expression(argument) for argument in node.args]
-            return FunctionCall(node.func.__name__, Bracket(joined(arguments, Sign(","))))
+            return tree.FunctionCall(
+                node.func.__name__, tree.Bracket(tree.joined(arguments, tree.Sign(",")))
+            )
         return self.letters.name(node)
 
-    def _sum(self, node: sp.Add) -> Formula:
+    def _sum(self, node: sp.Add) -> tree.Formula:
         first, *others = ordered_terms(node.args, self.letters)
         parts = [self.expression(first)]
         for term in others:
             minus = is_negative(term)
-            parts += [MINUS if minus else PLUS, self._term(-term if minus else term)]
-        return row(*parts)
+            parts += [tree.MINUS if minus else tree.PLUS, self._term(-term if minus else term)]
+        return tree.row(*parts)
 
-    def _term(self, term: sp.Expr) -> Formula:
+    def _term(self, term: sp.Expr) -> tree.Formula:
         """Within a sum; one that is a sum itself is bracketed."""
         return _at_least(Bound.PRODUCT, self.expression(term))
 
-    def _product(self, node: sp.Expr) -> Formula:
+    def _product(self, node: sp.Expr) -> tree.Formula:
         if is_negative(node):
-            return row(MINUS, self._term(-node))
+            return tree.row(tree.MINUS, self._term(-node))
         coefficient, rest = node.as_coeff_Mul()
         factors = ordered_factors(sp.Mul.make_args(rest), self.letters)
         below = [sp.Pow(f.base, -f.exp) for f in factors if _is_reciprocal(f)]
@@ -193,72 +178,74 @@ class _ScalarWalk:
 
     def _goes_above(self, factor: sp.Expr) -> bool:
         """Whether θ/2 and √2/2 are written so; ½ dθ/dt and ½ sin θ are not."""
-        is_name = _is_name(factor) and isinstance(self.expression(factor), Symbol)
+        is_name = _is_name(factor) and isinstance(self.expression(factor), tree.Symbol)
         is_dotted = self.letters.notation.rates == "fraction" and bool(
             self.letters.places.get(factor, (0, 0))[0]
         )
         return (is_name and not is_dotted) or _is_root(factor)
 
-    def _quotient(self, above: Sequence[sp.Expr], below: Sequence[sp.Expr]) -> Formula:
+    def _quotient(self, above: Sequence[sp.Expr], below: Sequence[sp.Expr]) -> tree.Formula:
         numerator = self._many(above)
-        return Fraction(numerator, self._many(below)) if below else numerator
+        return tree.Fraction(numerator, self._many(below)) if below else numerator
 
-    def _many(self, factors: Sequence[sp.Expr]) -> Formula:
+    def _many(self, factors: Sequence[sp.Expr]) -> tree.Formula:
         """The product of factors in order; a single factor is not bracketed."""
         if len(factors) < 2:
             return self.expression(factors[0] if factors else sp.S.One)
-        return row(*(self._factor(factor) for factor in factors))
+        return tree.row(*(self._factor(factor) for factor in factors))
 
-    def _factor(self, node: sp.Expr) -> Formula:
+    def _factor(self, node: sp.Expr) -> tree.Formula:
         if node.is_Rational and not node.is_Integer:
-            return Fraction(Numeral(str(node.p)), Numeral(str(node.q)))
+            return tree.Fraction(tree.Numeral(str(node.p)), tree.Numeral(str(node.q)))
         return _at_least(Bound.PRODUCT, self.expression(node))
 
-    def _power(self, node: sp.Pow) -> Formula:
+    def _power(self, node: sp.Pow) -> tree.Formula:
         base, exponent = node.base, node.exp
         if exponent == sp.Rational(1, 2):
-            return Radical(self.expression(base))
+            return tree.Radical(self.expression(base))
         if not exponent.is_Rational:
             self.letters.name(node)  # raises: a general power has no name
         if (base.func in FUNCTIONS or is_application(base)) and exponent.is_Integer:
             call = self.expression(base)
-            assert isinstance(call, FunctionCall)
+            assert isinstance(call, tree.FunctionCall)
             return replace(call, exponent=int(exponent))
         whole = _at_least(Bound.NAME, self.expression(base))
-        raised = Numeral(str(exponent.p)) if exponent.is_Integer else _on_a_line(exponent)
-        return Power(whole, raised)
+        raised = tree.Numeral(str(exponent.p)) if exponent.is_Integer else _on_a_line(exponent)
+        return tree.Power(whole, raised)
 
-    def _call(self, node: sp.Function) -> FunctionCall:
+    def _call(self, node: sp.Function) -> tree.FunctionCall:
         angle = node.args[0]
         argument = self.expression(angle)
         if not _is_multiple(angle):
             argument = _at_least(Bound.NUMBER, argument)
-        return FunctionCall(FUNCTIONS[node.func], argument)
+        return tree.FunctionCall(FUNCTIONS[node.func], argument)
 
 
-def _rational(number: sp.Rational) -> Formula:
+def _rational(number: sp.Rational) -> tree.Formula:
     if number.is_negative:
-        return row(MINUS, _rational(-number))
+        return tree.row(tree.MINUS, _rational(-number))
     if number.is_Integer:
-        return Numeral(str(number))
-    return Fraction(Numeral(str(number.p)), Numeral(str(number.q)))
+        return tree.Numeral(str(number))
+    return tree.Fraction(tree.Numeral(str(number.p)), tree.Numeral(str(number.q)))
 
 
-def _on_a_line(exponent: sp.Rational) -> Formula:
-    sign = (MINUS,) if exponent.is_negative else ()
-    return Row((*sign, Numeral(str(abs(exponent.p))), Sign("/"), Numeral(str(exponent.q))))
+def _on_a_line(exponent: sp.Rational) -> tree.Formula:
+    sign = (tree.MINUS,) if exponent.is_negative else ()
+    return tree.Row(
+        (*sign, tree.Numeral(str(abs(exponent.p))), tree.Sign("/"), tree.Numeral(str(exponent.q)))
+    )
 
 
-def _bound(formula: Formula) -> Bound:
-    if isinstance(formula, Row):
-        signed = any(isinstance(part, Sign) for part in formula.parts)
+def _bound(formula: tree.Formula) -> Bound:
+    if isinstance(formula, tree.Row):
+        signed = any(isinstance(part, tree.Sign) for part in formula.parts)
         return Bound.SUM if signed else Bound.PRODUCT
     return _BOUND.get(type(formula), Bound.NAME)
 
 
-def _at_least(bound: Bound, formula: Formula) -> Formula:
+def _at_least(bound: Bound, formula: tree.Formula) -> tree.Formula:
     """The formula, in brackets where it is held together less tightly."""
-    return formula if _bound(formula) >= bound else Bracket(formula)
+    return formula if _bound(formula) >= bound else tree.Bracket(formula)
 
 
 def _scaled(number: sp.Expr, factors: Sequence[sp.Expr]) -> list[sp.Expr]:

@@ -5,28 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Literal, NamedTuple
 
-from rigidsym.formula import widths
+from rigidsym.formula import tree, widths
 from rigidsym.formula.pen import Binding, Height, Pen, Piece, atom
-from rigidsym.formula.tree import (
-    Big,
-    Bracket,
-    Differential,
-    Formula,
-    Fraction,
-    FunctionCall,
-    Gap,
-    Indexed,
-    Matrix,
-    Numeral,
-    Power,
-    Radical,
-    Rate,
-    Sign,
-    Symbol,
-    Words,
-    is_differential,
-    row,
-)
 
 Size = Literal["flat", "large", "stretched"]
 
@@ -53,13 +33,15 @@ class SheetPen(Pen):
     """Subclasses spell, from the texts of the parts; widths are those of the note's font in ems."""
 
     wide_gap: str
-    spelt_symbol: Callable[[Symbol, str | None], str]  # with its index
+    spelt_symbol: Callable[[tree.Symbol, str | None], str]  # with its index
     spelt_index: Callable[[str, str], str]
     spelt_number: Callable[[str], str]
     spelt_sign: Callable[[str, bool], str]  # whether it is binary
-    spelt_gap: Callable[[Formula, Formula, bool], str]  # between two factors, whether it is thin
+    spelt_gap: Callable[
+        [tree.Formula, tree.Formula, bool], str
+    ]  # between two factors, whether it is thin
     spelt_function: Callable[[str, int, Piece], str]  # with its exponent, before the argument
-    spelt_power: Callable[[Formula, str, str], str]  # base, its text, exponent
+    spelt_power: Callable[[tree.Formula, str, str], str]  # base, its text, exponent
     spelt_fraction: Callable[[str, str], str]
     spelt_bracket: Callable[[str, Size, bool], str]  # whether it opens
     spelt_root: Callable[[str], str]
@@ -73,14 +55,14 @@ class SheetPen(Pen):
     aligned: Callable[[Sequence[Aligned], bool], str]
     gathered: Callable[[Sequence[str], bool], str]
 
-    def inline(self, formulas: Iterable[Formula]) -> dict[Formula, Inline]:
+    def inline(self, formulas: Iterable[tree.Formula]) -> dict[tree.Formula, Inline]:
         """Each formula as it stands among words."""
         pieces = ((formula, self.write(formula)) for formula in formulas)
         return {
             formula: Inline((p.text,), p.height > Height.FLAT, p.width) for formula, p in pieces
         }
 
-    def symbol(self, node: Symbol) -> Piece:
+    def symbol(self, node: tree.Symbol) -> Piece:
         index = None
         width = widths.letter_width(node)
         if node.prime:
@@ -91,27 +73,27 @@ class SheetPen(Pen):
             width += widths.SCRIPT * written.width
         return atom(self.spelt_symbol(node, index), width)
 
-    def indexed(self, node: Indexed) -> Piece:
+    def indexed(self, node: tree.Indexed) -> Piece:
         base, index = self.node(node.base), self.indices(node.index)
         width = base.width + widths.SCRIPT * index.width
         return atom(self.spelt_index(base.text, index.text), width, height=base.height)
 
-    def numeral(self, node: Numeral) -> Piece:
+    def numeral(self, node: tree.Numeral) -> Piece:
         width = widths.DIGIT * len(node.digits)
         return atom(self.spelt_number(node.digits), width, Binding.NUMBER)
 
-    def sign(self, node: Sign, *, is_binary: bool = False) -> Piece:
+    def sign(self, node: tree.Sign, *, is_binary: bool = False) -> Piece:
         text = self.spelt_sign(node.character, is_binary)
         return atom(text, widths.sign_width(node.character))
 
-    def between(self, before: Formula, after: Formula) -> Piece:
+    def between(self, before: tree.Formula, after: tree.Formula) -> Piece:
         is_thin = _is_thin(before, after) or self._is_short(after)
         return atom(self.spelt_gap(before, after, is_thin), widths.THIN if is_thin else 0.0)
 
-    def functioncall(self, node: FunctionCall) -> Piece:
+    def functioncall(self, node: tree.FunctionCall) -> Piece:
         if self._is_short(node):
-            letter = Symbol(node.function[0], index=node.argument)
-            power = Power(letter, Numeral(str(node.exponent)))
+            letter = tree.Symbol(node.function[0], index=node.argument)
+            power = tree.Power(letter, tree.Numeral(str(node.exponent)))
             return self.node(letter if node.exponent == 1 else power)
         width = widths.function_width(node.function)
         if node.exponent != 1:
@@ -120,13 +102,15 @@ class SheetPen(Pen):
         head = self.spelt_function(node.function, node.exponent, argument)
         return self.glued((atom(head, width), argument))
 
-    def _is_short(self, part: Formula) -> bool:
+    def _is_short(self, part: tree.Formula) -> bool:
         """Whether a function is abbreviated to a letter, and so stands as one among factors."""
-        return self.short and isinstance(part, FunctionCall) and part.function in ("sin", "cos")
+        return (
+            self.short and isinstance(part, tree.FunctionCall) and part.function in ("sin", "cos")
+        )
 
-    def power(self, node: Power) -> Piece:
+    def power(self, node: tree.Power) -> Piece:
         base, raised = node.base, self.node(node.exponent)
-        if isinstance(base, Bracket):
+        if isinstance(base, tree.Bracket):
             within = self.node(base.inside)
             if self.size_around(within) != "stretched":
                 return self.around(within, base.kind, raised)
@@ -135,21 +119,21 @@ class SheetPen(Pen):
         width = inside.width + widths.SCRIPT * raised.width
         return atom(text, width, Binding.POWER, inside.height)
 
-    def fraction(self, node: Fraction) -> Piece:
+    def fraction(self, node: tree.Fraction) -> Piece:
         above, below = self.node(node.above), self.node(node.below)
         return self._quotient(above, below, max(above.height, below.height, Height.TALL))
 
-    def rate(self, node: Rate) -> Piece:
+    def rate(self, node: tree.Rate) -> Piece:
         """The quotient of differentials; the whole of a bracket stands behind it."""
-        if isinstance(node.of, Bracket):
-            return self.glued((self.rate(Rate(row(), node.order)), self.node(node.of)))
+        if isinstance(node.of, tree.Bracket):
+            return self.glued((self.rate(tree.Rate(tree.row(), node.order)), self.node(node.of)))
         return self._quotient(*self.differentials(node), Height.RATE)
 
     def _quotient(self, above: Piece, below: Piece, height: Height) -> Piece:
         width = max(above.width, below.width) + widths.FRACTION
         return atom(self.spelt_fraction(above.text, below.text), width, height=height)
 
-    def bracket(self, node: Bracket) -> Piece:
+    def bracket(self, node: tree.Bracket) -> Piece:
         return self.around(self.node(node.inside), node.kind)
 
     def around(self, inside: Piece, kind: str, exponent: Piece | None = None) -> Piece:
@@ -158,7 +142,7 @@ class SheetPen(Pen):
         left = atom(self.spelt_bracket(kind[0], size, True), width)
         end = self.spelt_bracket(kind[1], size, False)
         if exponent is not None:  # the last line may hold nothing else of the bracket
-            end = self.spelt_power(Bracket(row()), end, exponent.text)
+            end = self.spelt_power(tree.Bracket(tree.row()), end, exponent.text)
             width += widths.SCRIPT * exponent.width
         whole = self.within(left, inside, atom(end, width))
         return whole.solid() if size == "stretched" else whole
@@ -169,38 +153,42 @@ class SheetPen(Pen):
             return "flat"
         return "large" if inside.height == Height.RATE or self.loose else "stretched"
 
-    def radical(self, node: Radical) -> Piece:
+    def radical(self, node: tree.Radical) -> Piece:
         inside = self.node(node.inside)
         height = Height.ROOTED if inside.height >= Height.TALL else inside.height
         return atom(self.spelt_root(inside.text), inside.width + widths.ROOT, height=height)
 
-    def matrix(self, node: Matrix) -> Piece:
+    def matrix(self, node: tree.Matrix) -> Piece:
         rows = [[self.write(entry) for entry in line] for line in node.rows]
         columns = [max(entry.width for entry in column) for column in zip(*rows, strict=True)]
         gaps = widths.COLUMN_GAP * (len(columns) - 1)
         width = sum(columns) + gaps + widths.TALL_BRACKETS
         return atom(self.spelt_matrix(rows), width, Binding.BRACKET, Height.TALL)
 
-    def big(self, node: Big) -> Piece:
+    def big(self, node: tree.Big) -> Piece:
         below, above = (self.node(b).text if b else "" for b in (node.below, node.above))
         return atom(self.spelt_big(node.sign, below, above), widths.BIG)
 
-    def words(self, node: Words) -> Piece:
+    def words(self, node: tree.Words) -> Piece:
         return atom(self.spelt_words(node.words), widths.words_width(node.words))
 
-    def differential(self, node: Differential) -> Piece:
+    def differential(self, node: tree.Differential) -> Piece:
         return atom(self.spelt_differential(node.letter), 0.62)
 
-    def gap(self, _: Gap) -> Piece:
+    def gap(self, _: tree.Gap) -> Piece:
         return atom(self.wide_gap, 2 * widths.QUAD)
 
 
-def _is_thin(before: Formula, after: Formula) -> bool:
+def _is_thin(before: tree.Formula, after: tree.Formula) -> bool:
     """A thin space stands between letters; numbers, functions and signs bring their own."""
-    if isinstance(before, Words) or isinstance(after, Words | FunctionCall):
+    if isinstance(before, tree.Words) or isinstance(after, tree.Words | tree.FunctionCall):
         return False
-    if isinstance(before, Bracket) and isinstance(after, Bracket):
+    if isinstance(before, tree.Bracket) and isinstance(after, tree.Bracket):
         return False
-    if is_differential(before):
-        return isinstance(after, Symbol) and len(after.letter) > 1 and before == Differential()
-    return not isinstance(before, Numeral)
+    if tree.is_differential(before):
+        return (
+            isinstance(after, tree.Symbol)
+            and len(after.letter) > 1
+            and before == tree.Differential()
+        )
+    return not isinstance(before, tree.Numeral)

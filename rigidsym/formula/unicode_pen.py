@@ -6,31 +6,12 @@ import unicodedata
 from functools import cache
 from typing import ClassVar
 
+from rigidsym.formula import tree
 from rigidsym.formula.pen import DIVISOR, Binding, Pen, Piece, atom
-from rigidsym.formula.tree import (
-    Apply,
-    Big,
-    Bracket,
-    Differential,
-    Formula,
-    Fraction,
-    FunctionCall,
-    Gap,
-    Indexed,
-    Matrix,
-    Numeral,
-    Power,
-    Radical,
-    Rate,
-    Sign,
-    Symbol,
-    Words,
-    is_differential,
-)
 
 _DOTS = ("", "\u0307", "\u0308")
-_FRACTIONS: dict[Formula, str] = {
-    Fraction(Numeral(above), Numeral(below)): short
+_FRACTIONS: dict[tree.Formula, str] = {
+    tree.Fraction(tree.Numeral(above), tree.Numeral(below)): short
     for above, below, short in ("12½", "13⅓", "23⅔", "14¼", "34¾", "18⅛")
 }
 _ABOVE = str.maketrans("0123456789-−+TB", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻⁺ᵀᴮ")
@@ -55,7 +36,7 @@ def _character_columns(character: str) -> int:
 class UnicodePen(Pen):
     blank: ClassVar[float] = 1.0
 
-    def symbol(self, node: Symbol) -> Piece:
+    def symbol(self, node: tree.Symbol) -> Piece:
         head, tail = node.letter[0], node.letter[1:]
         arrow = "\u20d7" if node.face == "arrow" else ""
         text = head + tail + arrow
@@ -64,20 +45,20 @@ class UnicodePen(Pen):
         text += node.prime
         return _atom(text if node.index is None else self._with_index(text, node.index))
 
-    def indexed(self, node: Indexed) -> Piece:
+    def indexed(self, node: tree.Indexed) -> Piece:
         return _atom(self._with_index(self.node(node.base).text, node.index))
 
-    def _with_index(self, base: str, index: Formula) -> str:
+    def _with_index(self, base: str, index: tree.Formula) -> str:
         """An index in small figures, or behind a low line."""
         written = self.indices(index).text
         close = written.replace(" ", "")
         is_small = all(ord(c) in _BELOW for c in close)
         return base + (close.translate(_BELOW) if is_small else f"_{written}")
 
-    def numeral(self, node: Numeral) -> Piece:
+    def numeral(self, node: tree.Numeral) -> Piece:
         return _atom(node.digits, Binding.NUMBER)
 
-    def sign(self, node: Sign, *, is_binary: bool = False) -> Piece:
+    def sign(self, node: tree.Sign, *, is_binary: bool = False) -> Piece:
         character = node.character
         if character in ",;":
             return _atom(f"{character} " if is_binary else character)
@@ -86,17 +67,17 @@ class UnicodePen(Pen):
         starts_a_line = character in "+−±=≤<⇔"
         return _atom(f"{character} " if starts_a_line else f" {character} ")
 
-    def between(self, before: Formula, after: Formula) -> Piece:
+    def between(self, before: tree.Formula, after: tree.Formula) -> Piece:
         return _atom(_space(before, after))
 
-    def factor(self, part: Formula) -> Piece:
+    def factor(self, part: tree.Formula) -> Piece:
         """A quotient beside another factor is ½, or stands in brackets."""
-        if isinstance(part, Fraction):
+        if isinstance(part, tree.Fraction):
             short = _FRACTIONS.get(part)
             return _atom(short, Binding.NUMBER) if short else self.around(self.node(part))
         return self.node(part)
 
-    def functioncall(self, node: FunctionCall) -> Piece:
+    def functioncall(self, node: tree.FunctionCall) -> Piece:
         head = node.function + (str(node.exponent).translate(_ABOVE) if node.exponent != 1 else "")
         argument = self.node(node.argument)
         if argument.binding == Binding.QUOTIENT:
@@ -104,17 +85,17 @@ class UnicodePen(Pen):
         gap = "" if argument.binding == Binding.BRACKET else " "
         return self.glued((_atom(head + gap), argument))
 
-    def power(self, node: Power) -> Piece:
+    def power(self, node: tree.Power) -> Piece:
         written = self._at_least(Binding.NAME, self.node(node.base))
         text = self.node(node.exponent).text
         if all(ord(c) in _ABOVE for c in text):
             raised = text.translate(_ABOVE)
         else:
-            is_word = isinstance(node.exponent, Symbol | Numeral)
+            is_word = isinstance(node.exponent, tree.Symbol | tree.Numeral)
             raised = f"^{text}" if is_word else f"^({text})"
         return self.glued((written, _atom(raised)), Binding.POWER)
 
-    def fraction(self, node: Fraction) -> Piece:
+    def fraction(self, node: tree.Fraction) -> Piece:
         top, below = self._at_least(Binding.PRODUCT, self.node(node.above)), self.node(node.below)
         if below.binding < Binding.POWER:
             below = self.within(_atom("("), below, _atom(")"), DIVISOR)
@@ -122,35 +103,35 @@ class UnicodePen(Pen):
             below = below.deeper(DIVISOR - 1)
         return self.glued((top, _atom("/"), below), Binding.QUOTIENT)
 
-    def rate(self, node: Rate) -> Piece:
+    def rate(self, node: tree.Rate) -> Piece:
         above, below = self.differentials(node)
         return self.glued((above, _atom("/"), below))
 
-    def bracket(self, node: Bracket) -> Piece:
+    def bracket(self, node: tree.Bracket) -> Piece:
         return self.around(self.node(node.inside), node.kind)
 
     def around(self, inside: Piece, kind: str = "()") -> Piece:
         return self.within(_atom(kind[0]), inside, _atom(kind[1]))
 
-    def radical(self, node: Radical) -> Piece:
+    def radical(self, node: tree.Radical) -> Piece:
         inside = self.node(node.inside)
         is_bare = inside.binding in (Binding.NAME, Binding.NUMBER)
         return self.glued((_atom("√"), inside if is_bare else self.around(inside)), Binding.POWER)
 
-    def matrix(self, node: Matrix) -> Piece:
+    def matrix(self, node: tree.Matrix) -> Piece:
         rows = (", ".join(self.node(entry).text for entry in line) for line in node.rows)
         return _atom(f"({'; '.join(rows)})", Binding.BRACKET)
 
-    def big(self, node: Big) -> Piece:
+    def big(self, node: tree.Big) -> Piece:
         return _atom("Σ" if node.sign == "∑" else node.sign)
 
-    def words(self, node: Words) -> Piece:
+    def words(self, node: tree.Words) -> Piece:
         return _atom(node.words)
 
-    def differential(self, node: Differential) -> Piece:
+    def differential(self, node: tree.Differential) -> Piece:
         return _atom(node.letter)
 
-    def gap(self, _: Gap) -> Piece:
+    def gap(self, _: tree.Gap) -> Piece:
         return _atom("")
 
     def _at_least(self, binding: Binding, piece: Piece) -> Piece:
@@ -162,18 +143,20 @@ def _atom(text: str, binding: Binding = Binding.NAME) -> Piece:
     return atom(text, columns(text), binding)
 
 
-def _space(before: Formula, after: Formula) -> str:
+def _space(before: tree.Formula, after: tree.Formula) -> str:
     """Factors stand apart, but for a number before its unit and a d before its letter."""
-    if isinstance(before, Words) or isinstance(after, Words):
+    if isinstance(before, tree.Words) or isinstance(after, tree.Words):
         return ""
-    if is_differential(before):
-        is_word = isinstance(after, Symbol) and len(after.letter) > 1
+    if tree.is_differential(before):
+        is_word = isinstance(after, tree.Symbol) and len(after.letter) > 1
         return " " if is_word else ""
-    if isinstance(before, Rate) and isinstance(after, Symbol | Power | Apply):
+    if isinstance(before, tree.Rate) and isinstance(after, tree.Symbol | tree.Power | tree.Apply):
         return "·"
-    if isinstance(before, Bracket) and isinstance(after, Bracket):
+    if isinstance(before, tree.Bracket) and isinstance(after, tree.Bracket):
         return ""
-    is_number = isinstance(before, Numeral) or before in _FRACTIONS
-    if is_number and not isinstance(after, FunctionCall | Rate | Fraction | Big):
-        return " " if isinstance(after, Symbol) and after.letter.isdigit() else ""
+    is_number = isinstance(before, tree.Numeral) or before in _FRACTIONS
+    if is_number and not isinstance(
+        after, tree.FunctionCall | tree.Rate | tree.Fraction | tree.Big
+    ):
+        return " " if isinstance(after, tree.Symbol) and after.letter.isdigit() else ""
     return " "

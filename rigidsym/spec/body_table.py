@@ -12,25 +12,13 @@ from typing import TYPE_CHECKING, Any
 import sympy as sp
 
 from rigidsym.errors import BodyError, MissingExtra, RigidsymError
+from rigidsym.models import distribution
 from rigidsym.models.body import (
     BodyDescription,
     RigidBody,
     general_inertia,
     given_inertia,
     principal_moments,
-)
-from rigidsym.models.distribution import (
-    UPRIGHT,
-    Composite,
-    Distribution,
-    Known,
-    Outline,
-    Part,
-    Particle,
-    Particles,
-    Polyhedron,
-    Solid,
-    outline_from,
 )
 from rigidsym.models.placement import turned_by
 from rigidsym.models.solids import SHAPES, Length, check_lengths, shape_of, shaped
@@ -70,7 +58,7 @@ def read_body(body: Table, parameters: Table | None, name: str, folder: Path | N
     if kind is None:
         return None
     reader, allow = BodyReader(body, declared, folder), bool(body.flag("allow"))
-    given: RigidBody | Distribution | None = None
+    given: RigidBody | distribution.Distribution | None = None
     with body.noting(kind):
         is_given = kind == "inertia" and body.value("outline") is None
         if kind == "principal_moments" or is_given:
@@ -152,7 +140,7 @@ def _mass_or_density(reader: BodyReader) -> dict[str, sp.Expr]:
 # shapes
 
 
-def _read_shape(reader: BodyReader) -> Distribution:
+def _read_shape(reader: BodyReader) -> distribution.Distribution:
     name = reader.table.text("shape") or ""
     if name in ("given", "polyhedron"):
         return _read_given(reader) if name == "given" else _read_polyhedron(reader)
@@ -179,7 +167,7 @@ def _lengths(reader: BodyReader, length: Length) -> list[sp.Expr]:
     return values
 
 
-def _read_given(reader: BodyReader) -> Distribution:
+def _read_given(reader: BodyReader) -> distribution.Distribution:
     """A solid by its coordinates, its place in terms of them, bounds, and a density."""
     table = reader.table
     names = [*table.texts("coordinates", "one to three names").values()] or [*_AXES]
@@ -190,7 +178,7 @@ def _read_given(reader: BodyReader) -> Distribution:
     slots = [(f"low_{k}", f"high_{k}") for k in range(len(names))]
     bounds = reader.rows("bounds", slots, f"{len(names)} pairs of bounds, the outermost first")
     has_element = table.value("element") is not None
-    return Solid(
+    return distribution.Solid(
         title="Given solid",
         coordinates=coordinates,
         place=sp.ImmutableMatrix(place),
@@ -200,7 +188,7 @@ def _read_given(reader: BodyReader) -> Distribution:
     )
 
 
-def _read_polyhedron(reader: BodyReader) -> Distribution:
+def _read_polyhedron(reader: BodyReader) -> distribution.Distribution:
     points = reader.rows("vertices", 3, "a list of points of three coordinates")
     value = reader.table.value("faces")
     faces = value if isinstance(value, list) else []
@@ -209,7 +197,7 @@ def _read_polyhedron(reader: BodyReader) -> Distribution:
         expected = "a list of faces, each a list of corner numbers"
         reader.table.mistyped(value, expected, "faces")
         faces = []
-    return Polyhedron(
+    return distribution.Polyhedron(
         vertices=tuple(map(sp.ImmutableMatrix, points)),
         faces=tuple(map(tuple, faces)),
         **_mass_or_density(reader),
@@ -219,7 +207,7 @@ def _read_polyhedron(reader: BodyReader) -> Distribution:
 # particles and parts
 
 
-def _read_particles(reader: BodyReader) -> Distribution:
+def _read_particles(reader: BodyReader) -> distribution.Distribution:
     """particles = [{ mass = "m", at = ["a", 0, 0] }, ...], or a file; numbers stay exact."""
     if isinstance(reader.table.value("particles"), str):
         return _read_cloud(reader)
@@ -230,11 +218,11 @@ def _read_particles(reader: BodyReader) -> Distribution:
         own = reader.inside(table, f"_{place}", exact=True)
         mass = own.single("mass", "m", positive=True)
         at = own.row("at", _AXES, _POINT)
-        particles.append(Particle(mass=mass, position=sp.ImmutableMatrix(at)))
-    return Particles(particles=tuple(particles))
+        particles.append(distribution.Particle(mass=mass, position=sp.ImmutableMatrix(at)))
+    return distribution.Particles(particles=tuple(particles))
 
 
-def _read_parts(reader: BodyReader) -> Distribution:
+def _read_parts(reader: BodyReader) -> distribution.Distribution:
     """parts = [{ shape = ..., at = [...], turned = "z(pi/4)", hole = true }, ...]."""
     conditions: list[sp.Expr] = []
     tables = reader.table.tables("parts", "a list of tables, each with a shape or particles")
@@ -243,16 +231,16 @@ def _read_parts(reader: BodyReader) -> Distribution:
         for place, table in enumerate(tables, start=1)
     ]
     found = tuple(part for part in parts if part is not None)
-    return Composite(parts=found, conditions=tuple(conditions))
+    return distribution.Composite(parts=found, conditions=tuple(conditions))
 
 
-def _read_part(reader: BodyReader, conditions: list[sp.Expr]) -> Part | None:
+def _read_part(reader: BodyReader, conditions: list[sp.Expr]) -> distribution.Part | None:
     table = reader.table
     kind = _kind_of(table, _OF_PARTS, ("at", "turned", "hole", "label"))
     if kind is None:
         return None
-    what: Distribution | None = None
-    turned = UPRIGHT
+    what: distribution.Distribution | None = None
+    turned = distribution.UPRIGHT
     with table.noting(kind):
         what = _READERS[kind](reader)
     with table.noting("turned"):
@@ -263,7 +251,7 @@ def _read_part(reader: BodyReader, conditions: list[sp.Expr]) -> Part | None:
         at = reader.row("at", _AXES, _POINT)
     if what is None:
         return None
-    return Part(
+    return distribution.Part(
         what=what,
         at=sp.ImmutableMatrix(at),
         turned=turned,
@@ -279,7 +267,7 @@ def _turned(reader: BodyReader) -> tuple[sp.ImmutableMatrix, tuple[sp.Expr, ...]
         return turned_by(value)
     inner = reader.table.table("turned")
     if inner is None:
-        return UPRIGHT, ()
+        return distribution.UPRIGHT, ()
     inner.refuse_others(("rotation", "values"))
     values, text = inner.value("values"), inner.text("rotation")
     if text is None or not isinstance(values, list):
@@ -291,7 +279,7 @@ def _turned(reader: BodyReader) -> tuple[sp.ImmutableMatrix, tuple[sp.Expr, ...]
 # numbers; the derivation stays exact, since they become parameters that have a value
 
 
-def _read_known(reader: BodyReader) -> Known:
+def _read_known(reader: BodyReader) -> distribution.Known:
     """inertia = [[...], [...], [...]] about the centre of mass, with mass and centre."""
     note = reader.declared.note
     drawn = reader.table.table("outline")
@@ -304,11 +292,11 @@ def _read_known(reader: BodyReader) -> Known:
     note([*chain.from_iterable(inertia)], "product of inertia, with its sign", "kg m^2")
     note(centre, "coordinate of the centre of mass", "m")
     note([mass], "mass", "kg")
-    return Known(
+    return distribution.Known(
         mass=mass,
         centre=sp.ImmutableMatrix(centre),
         inertia=sp.ImmutableMatrix(inertia),
-        outline=Outline() if drawn is None else outline_from(drawn.data),
+        outline=distribution.Outline() if drawn is None else distribution.outline_from(drawn.data),
     )
 
 
@@ -319,7 +307,7 @@ def _readers() -> tuple[Any, Any]:
     return point_masses, mesh
 
 
-def _read_cloud(reader: BodyReader) -> Known:
+def _read_cloud(reader: BodyReader) -> distribution.Known:
     """particles = "cloud.npy": particles in NPY, CSV or Parquet."""
     columns = [*reader.table.texts("columns", "names of the columns").values()] or None
     allow = bool(reader.table.flag("allow"))
@@ -329,7 +317,7 @@ def _read_cloud(reader: BodyReader) -> Known:
     return _in_file(reader, "particles", lambda path: (particles.inertia_of(path, **options), {}))
 
 
-def _read_mesh(reader: BodyReader) -> Known:
+def _read_mesh(reader: BodyReader) -> distribution.Known:
     """mesh = "part.stl", with its mass or density, and its length unit in metres as `scale`."""
     table = reader.table
     mass, density, scale = (table.number(key) for key in ("mass", "density", "scale"))
@@ -344,7 +332,9 @@ def _read_mesh(reader: BodyReader) -> Known:
     return _in_file(reader, "mesh", measured)
 
 
-def _in_file(reader: BodyReader, key: str, measure: Callable[[Path], Measured]) -> Known:
+def _in_file(
+    reader: BodyReader, key: str, measure: Callable[[Path], Measured]
+) -> distribution.Known:
     """The body in the file that a key names, read as if the table itself held its numbers.
 
     The record keeps the numbers, so that it can be checked without the file. A file outside the
@@ -378,7 +368,7 @@ def _described(path: Path) -> str:
     return f"a file of {status.st_size} bytes"
 
 
-_READERS: Mapping[str, Callable[[BodyReader], Distribution]] = {
+_READERS: Mapping[str, Callable[[BodyReader], distribution.Distribution]] = {
     "shape": _read_shape,
     "particles": _read_particles,
     "mesh": _read_mesh,

@@ -15,16 +15,7 @@ from rigidsym.formula.sentence import Sentence, sentence
 from rigidsym.mechanics.conversions.function import NamedValues, Vector, Where, square
 from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim, in_order
 from rigidsym.mechanics.conversions.unit_quaternions import rotation_of, shepperd, short_way, unit
-from rigidsym.models.parametrisations import (
-    AxisAngle,
-    CayleyKlein,
-    DirectionCosines,
-    GibbsVector,
-    ModifiedRodrigues,
-    Quaternion,
-    RotationVector,
-    UnitQuaternion,
-)
+from rigidsym.models import parametrisations
 from rigidsym.models.rotation import RotationModel
 
 
@@ -291,12 +282,12 @@ def _cosines(q: Vector) -> ClosedForm:  # noqa: ARG001  (as the others)
 
 
 _FORMS: tuple[tuple[Callable[..., RotationModel], int, Callable[[Vector], ClosedForm]], ...] = (
-    (Quaternion, 4, _quaternion),
-    (UnitQuaternion, 4, _unit),
-    (CayleyKlein, 4, _cayley_klein),
-    (AxisAngle, 4, _axis_angle),
-    (RotationVector, 3, _rotation_vector),
-    (GibbsVector, 3, _gibbs),
-    (ModifiedRodrigues, 3, _modified),
-    (DirectionCosines, 9, _cosines),
+    (parametrisations.Quaternion, 4, _quaternion),
+    (parametrisations.UnitQuaternion, 4, _unit),
+    (parametrisations.CayleyKlein, 4, _cayley_klein),
+    (parametrisations.AxisAngle, 4, _axis_angle),
+    (parametrisations.RotationVector, 3, _rotation_vector),
+    (parametrisations.GibbsVector, 3, _gibbs),
+    (parametrisations.ModifiedRodrigues, 3, _modified),
+    (parametrisations.DirectionCosines, 9, _cosines),
 )
