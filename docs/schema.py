@@ -283,6 +283,7 @@ def _output() -> Schema:
             "language": text("of the note, en by default", *VOCABULARY.languages),
             "conversions": flag("add functions to and from quaternions and matrices"),
             "derivatives": texts('Jacobians, such as "angular_velocity_body by q"'),
+            "degrees": flag("functions take and return degrees, in files NAME_deg"),
         },
     )
 

@@ -83,6 +83,7 @@ class Motion(Derivation):
         *,
         conversions: bool = False,
         derivatives: Asked = (),
+        degrees: bool = False,
         **options: str | bool,
     ) -> KernelModule:
         """The functions in one language: `.source`, `.load()`, `.write(path)`.
@@ -91,11 +92,21 @@ class Motion(Derivation):
         `unwrap`. `derivatives` adds functions that return a quantity and its derivative:
         {"angular_velocity_body": ("q", "q_dot")} adds `angular_velocity_body_jacobian_q` and
         `angular_velocity_body_jacobian_q_dot`; "q jvp" and "q vjp" are products with a vector.
+        With `degrees`, angles are in degrees, rates and angular velocities in deg/s, angular
+        accelerations in deg/s^2, as arguments and as results; all else stays in SI units. The name
+        of the module then ends in _deg.
         `options` are those of the target: `kernels("c", precision="double", arrays=False,
         libm=True)` is lean C for firmware.
         Raises KernelError for an unknown target, option or derivative.
         """
-        return generate(self, target, conversions=conversions, derivatives=derivatives, **options)
+        return generate(
+            self,
+            target,
+            conversions=conversions,
+            derivatives=derivatives,
+            degrees=degrees,
+            **options,
+        )
 
     def equality(self, left: sp.MatrixBase, right: sp.MatrixBase) -> Proof:
         """The proof that two matrices in coordinates, rates and other inputs are equal.
@@ -311,10 +322,11 @@ def kernels(
     body: Body | None = None,
     conversions: bool = False,
     derivatives: Asked = (),
+    degrees: bool = False,
 ) -> ModuleType:
     """The functions of a rotation, loaded: `rs.kernels("ZYX").angular_velocity_body(q, q_dot)`.
 
     `derive`, `Motion.kernels` and `load` in one step; raises what they raise.
     """
-    motion = derive(model, only, body=body)
-    return motion.kernels(target, conversions=conversions, derivatives=derivatives).load()
+    options = {"conversions": conversions, "derivatives": derivatives, "degrees": degrees}
+    return derive(model, only, body=body).kernels(target, **options).load()

@@ -185,6 +185,7 @@ def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
             target,
             conversions=spec.conversions,
             derivatives=spec.derivatives,
+            degrees=spec.degrees,
             **spec.target_options.get(target, {}),
         )
         yield from module.files.items()
@@ -194,7 +195,7 @@ def _printed(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
 
 def _notes(motion: Motion, spec: DerivationSpec) -> Iterator[tuple[str, str]]:
     note = motion.note(
-        with_kernels="numpy" in spec.kernels,
+        with_kernels="numpy" in spec.kernels and not spec.degrees,  # the note is in radians
         conversions=spec.conversions,
         style=spec.style,
         text=cast("OwnText | None", spec.text),

@@ -56,5 +56,5 @@ def _built(source: str, options: BuildOptions) -> Iterator[Path]:
             )
         output = output_of(with_existing_files(replace(single, kernels=("c",)), options.out))
         write(output, options.out, force=options.force)
-        source_file = options.out / single.name / f"{single.name}.c"
-        yield build(source_file, portable=options.portable)
+        main = next(name for name in output.files if Path(name).suffix == ".c")
+        yield build(options.out / single.name / main, portable=options.portable)

@@ -149,9 +149,17 @@ class KernelOptions(SelectionOptions):
         "and :vjp add products with a vector. May be repeated.",
     )
 
+    degrees: bool = option(
+        "--degrees",
+        is_flag=True,
+        help="Functions that take and return degrees, in files NAME_deg.",
+    )
+
     def selected(self, spec: DerivationSpec) -> DerivationSpec:
-        """The specification with the quantities, conversions and derivatives chosen here."""
-        return replace(super().selected(spec), derivatives=self._derivatives(spec))
+        """The specification with the quantities, conversions, derivatives and unit chosen here."""
+        chosen = super().selected(spec)
+        degrees = spec.degrees or self.degrees
+        return replace(chosen, derivatives=self._derivatives(spec), degrees=degrees)
 
     def _derivatives(self, spec: DerivationSpec) -> tuple[str, ...]:
         """Those of the specification, then those of the command line, each once."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,8 +28,8 @@ def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
         return spec
     return replace(
         spec,
-        kernels=(*spec.kernels, *_kept(before.kernels, spec.kernels, folder)),
-        note=(*spec.note, *_kept(before.note, spec.note, folder)),
+        kernels=(*spec.kernels, *_kept(before.kernels, before, spec, folder)),
+        note=(*spec.note, *_kept(before.note, before, spec, folder)),
     )
 
 
@@ -71,7 +71,7 @@ def _report_other_files(output: Output, folder: Path) -> None:
         return
     if before.models != now.models:
         message(f"overwriting {folder}, which held a different rotation (use --out to keep both)")
-    left = [*_kept(before.kernels, now.kernels, folder), *_kept(before.note, now.note, folder)]
+    left = list(_kept((*before.kernels, *before.note), before, now, folder))
     if left:
         message(
             f"{folder} keeps files made with other options, "
@@ -101,17 +101,21 @@ def content_of(record: Path) -> dict[str, Any]:
     return content if isinstance(content, dict) else {}
 
 
-def _kept(before: tuple[str, ...], now: tuple[str, ...], folder: Path) -> Iterator[str]:
-    """Outputs that are there and not asked for; a PDF is slow to make and never compared."""
-    for output in before:
-        if output not in (*now, PDF) and _file(output, folder).is_file():
+def _kept(
+    outputs: Iterable[str], before: DerivationSpec, now: DerivationSpec, folder: Path
+) -> Iterator[str]:
+    """Outputs of `before` that are there and not asked for; a PDF is never compared."""
+    written = {_file(output, now, folder) for output in (*now.kernels, *now.note)}
+    for output in outputs:
+        file = _file(output, before, folder)
+        if output != PDF and file not in written and file.is_file():
             yield output
 
 
-def _file(output: str, folder: Path) -> Path:
+def _file(output: str, spec: DerivationSpec, folder: Path) -> Path:
     """The main file of a target or a format."""
     name = folder.name
     if output in TARGETS:
-        return folder / f"{name}{TARGETS[output].ending}"
+        return folder / f"{name}{'_deg' * spec.degrees}{TARGETS[output].ending}"
     assert output in note_formats()
     return folder / (page_name(name) if output == PAGE else f"{name}.{output}")

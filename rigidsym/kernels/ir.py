@@ -171,7 +171,8 @@ class KernelArgument(NamedTuple):
     components: tuple[str, ...]
     units: tuple[str, ...]
     about: str
-    is_matrix: bool = False  # (3, 3), else a vector
+    matrix: tuple[int, ...] = ()  # its shape, if it is one; else a vector
+    may_be_flat: bool = False  # whether its rows may also come one after the other
     is_optional: bool = False  # zero if left out
     is_scalar: bool = False  # a number, such as the time
 
@@ -179,7 +180,11 @@ class KernelArgument(NamedTuple):
     def shape(self) -> tuple[int, ...]:
         if self.is_scalar:
             return ()
-        return (3, 3) if self.is_matrix else (len(self.components),)
+        return self.matrix or (len(self.components),)
+
+    @property
+    def is_matrix(self) -> bool:
+        return bool(self.matrix)
 
 
 class Assignment(NamedTuple):
@@ -353,3 +358,4 @@ class Program(NamedTuple):
     kernels: tuple[Kernel, ...]
     remarks: tuple[str, ...] = ()  # paragraphs for the head of the module
     unwrapping: Unwrapping | None = None
+    units: str = "radians"  # of angles

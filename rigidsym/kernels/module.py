@@ -66,6 +66,7 @@ def generate(
     *,
     conversions: bool = False,
     derivatives: Asked = (),
+    degrees: bool = False,
     **options: str | bool,
 ) -> KernelModule:
     """The kernels of all quantities of a derivation, for one target.
@@ -77,11 +78,15 @@ def generate(
     5. The files, printed.
 
     `conversions` adds those between the coordinates, the unit quaternion and the matrix,
-    `derivatives` those that are asked for: ["angular_velocity_body by q"]; `options` are those of
-    the target. Raises KernelError for an unknown target, option or derivative, for an expression
-    that kernels cannot hold, and if no derived quantity depends on any input.
+    `derivatives` those that are asked for: ["angular_velocity_body by q"]. With `degrees`, angles
+    are in degrees, as arguments and as results, and the name of the module ends in _deg.
+    `options` are those of the target. Raises KernelError for an unknown target, option or
+    derivative, for an expression that kernels cannot hold, and if no derived quantity depends on
+    any input.
     """
     check_options(target, options)
+    if type(degrees) is not bool:
+        raise KernelError(f"degrees: expected True or False, got {degrees!r}")
     language = printer(target)
     asked = derivatives_of(derivation, read_requests(derivatives))
     added = NO_CONVERSIONS
@@ -89,12 +94,11 @@ def generate(
         from rigidsym.mechanics.conversions.conversion_functions import converted
 
         added = converted(derivation)
-    program = lower(derivation, language.RESERVED, asked, added)
+    program = lower(derivation, language.RESERVED, asked, added, degrees=degrees)
     if not program.kernels:
         raise _nothing_to_write(derivation)
-    return KernelModule(
-        name=derivation.name, target=target, files=language.render(program, **options)
-    )
+    files = language.render(program, **options)
+    return KernelModule(name=program.name, target=target, files=files)
 
 
 def _nothing_to_write(derivation: Derivation) -> KernelError:

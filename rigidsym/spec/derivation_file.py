@@ -31,7 +31,10 @@ _DYNAMICS = (
 _FORMER = ("measured",)  # in old records: errors that were printed with the kernels
 _LINES = ("author", "course", "date")
 _SENTENCES = ("before", "after", "sources")
-_OUTPUT = ("quantities", "kernels", "note", "style", "language", "conversions", "derivatives")
+_OUTPUT = (
+    *("quantities", "kernels", "note", "style", "language"),
+    *("conversions", "derivatives", "degrees"),
+)
 
 
 def read_file(file: str, words: Vocabulary) -> DerivationSpec:
@@ -193,6 +196,7 @@ class _Reader:
             "style": table.choice("style", words.styles),
             "language": table.choice("language", words.languages),
             "conversions": table.flag("conversions"),
+            "degrees": table.flag("degrees"),
         }
         chosen["target_options"] = self.target_options(table) or None
         chosen["derivatives"] = self.derivatives(table, chosen["quantities"] or words.quantities)

@@ -47,6 +47,7 @@ class DerivationSpec:
     language: str = "en"  # of the note
     conversions: bool = False  # to and from quaternion and matrix
     derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
+    degrees: bool = False  # angles in kernels
     notation: NotationChoice | None = None  # of notes and terminal; None: the default
     text: TextChoice | None = None  # the user's own, in the note
     source: Source | None = field(default=None, compare=False, repr=False)  # where it was read
@@ -86,6 +87,7 @@ class DerivationSpec:
             "language": self.language if self.language != "en" else "",
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),
+            "degrees": self.degrees,
             "notation": self._notation_data(),
             "text": {k: v for k, v in asdict(self.text).items() if v} if self.text else {},
         }

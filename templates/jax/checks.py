@@ -9,12 +9,7 @@ def _components(**arguments):
 
 def _checked(name, value):
     """The argument as an array of floats, or an error that names it."""
-    names = _COMPONENTS[name]
-    try:
-        array = jnp.asarray(value)
-    except (TypeError, ValueError) as error:
-        dtype = getattr(value, "dtype", type(value).__name__)
-        raise TypeError(f"{name}: JAX takes no array of {dtype}") from error
+    names, array = _COMPONENTS[name], _plain(name, value)
     if not jnp.issubdtype(array.dtype, jnp.floating):
         if not jnp.issubdtype(array.dtype, jnp.integer):
             raise TypeError(f"{name}: got dtype {array.dtype}; expected floats")
@@ -25,6 +20,14 @@ def _checked(name, value):
             f"the last axis {', '.join(names)}"
         )
     return array
+
+
+def _plain(name, value):
+    try:
+        return jnp.asarray(value)
+    except (TypeError, ValueError) as error:
+        dtype = getattr(value, "dtype", type(value).__name__)
+        raise TypeError(f"{name}: JAX takes no array of {dtype}") from error
 
 
 def _together(like, shape, *values):

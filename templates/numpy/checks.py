@@ -1,13 +1,6 @@
 def _checked(name, value):
     """The argument as a plain array of native floats or of integers, or an error."""
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
-        raise TypeError(
-            f"{name}: got masked entries; fill them, or leave their rows out"
-        )
-    try:
-        array = np.asarray(value)
-    except ValueError as error:
-        raise ValueError(f"{name}: not an array; {_expected(name)}") from error
+    array = _plain(name, value)
     if array.dtype.char not in "fd" and array.dtype.kind not in "iu":
         raise TypeError(
             f"{name}: got dtype {array.dtype}; expected float64, float32 or integers"
@@ -17,8 +10,22 @@ def _checked(name, value):
     return array.astype(_SINGLE, copy=False) if array.dtype.char == "f" else array
 
 
-def _expected(name):
+def _plain(name, value, shape=None):
+    """The argument as a plain array, or an error; a matrix has a shape."""
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise TypeError(
+            f"{name}: got masked entries; fill them, or leave their rows out"
+        )
+    try:
+        return np.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name}: not an array; {_expected(name, shape)}") from error
+
+
+def _expected(name, shape=None):
     components = _COMPONENTS[name]
+    if shape:
+        return f"expected (..., {', '.join(map(str, shape))})"
     return f"expected (..., {len(components)}), the last axis {', '.join(components)}"
 
 

@@ -1,9 +1,8 @@
-def _entries(matrix):
+def _entries(name, value, shape, or_flat=False):
     """The entries of matrices on one axis, row by row, or an error."""
-    try:
-        array = np.asarray(matrix)
-    except ValueError as error:
-        raise ValueError("matrix: not an array; expected (..., 3, 3)") from error
-    if array.shape[-2:] != (3, 3):
-        raise ValueError(f"matrix: got shape {array.shape}; expected (..., 3, 3)")
-    return array.reshape(*array.shape[:-2], 9)
+    array = _plain(name, value, shape)
+    if array.shape[-2:] == shape:
+        return array.reshape(*array.shape[:-2], len(_COMPONENTS[name]))
+    if or_flat and array.shape[-1:] == (len(_COMPONENTS[name]),):
+        return array
+    raise ValueError(f"{name}: got shape {array.shape}; {_expected(name, shape)}")

@@ -3,12 +3,17 @@ def _exceptional(block, shape, *vectors):
     points = [np.array(vector, np.float64)[:, np.newaxis] for vector in vectors]
     with np.errstate(all="ignore"):
         values = block(*points)
-    flat = np.array([np.ravel(value)[0] for value in values])
-    return _tuples(flat.reshape(shape).tolist())
+    return _nested([float(np.ravel(value)[0]) for value in values], shape)
 
 
-def _tuples(value):
-    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+def _nested(values, shape):
+    """Numbers in the tuples of a shape, or of two shapes, one after the other."""
+    if shape and isinstance(shape[0], tuple):
+        place = prod(shape[0])
+        return _nested(values[:place], shape[0]), _nested(values[place:], shape[1])
+    for length in reversed(shape[1:]):
+        values = tuple(zip(*[iter(values)] * length))
+    return tuple(values) if shape else values[0]
 
 
 def _sin_cos(*angles):

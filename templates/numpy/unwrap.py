@@ -13,27 +13,27 @@ def _unwrapped_quaternion(q):
     return _with_gaps(samples * _signs(samples)[..., np.newaxis], lost)
 
 
-def _unwrapped_axis_angle(q):
+def _unwrapped_axis_angle(q, turn=2.0 * np.pi):
     """Axis and angle, the axis without a turn of more than a quarter from sample to sample."""
     samples, lost = _samples(q)
     axis, angle = samples[..., :3], samples[..., 3]
     axis = _filled(axis, (angle == 0.0)[..., np.newaxis])
     signs = _signs(axis)
     angle = signs * angle
-    angle = angle + _whole_turns(angle)
+    angle = angle + _whole_turns(angle, turn)
     parts = (axis * signs[..., np.newaxis], angle[..., np.newaxis])
     return _with_gaps(np.concatenate(parts, axis=-1), lost)
 
 
-def _unwrapped_rotation_vector(q):
-    """Rotation vectors, whose length goes on beyond pi."""
+def _unwrapped_rotation_vector(q, turn=2.0 * np.pi):
+    """Rotation vectors, whose length goes on beyond half a turn."""
     samples, lost = _samples(q)
     length = np.sqrt((samples * samples).sum(axis=-1))
     none = length == 0.0
     axis = samples / np.where(none, 1.0, length)[..., np.newaxis]
     axis = _filled(axis, none[..., np.newaxis])
     signs = _signs(axis)
-    turns = _whole_turns(signs * length)
+    turns = _whole_turns(signs * length, turn)
     return _with_gaps(samples + axis * (signs * turns)[..., np.newaxis], lost)
 
 
@@ -144,10 +144,10 @@ def _after(first, others):
     return np.concatenate((first[:1], others), axis=0)
 
 
-def _whole_turns(angle):
+def _whole_turns(angle, turn=2.0 * np.pi):
     """What makes steps of an angle along the first axis half a turn at most."""
-    turns = np.round(np.diff(angle, axis=0) / (2.0 * np.pi))
-    return -2.0 * np.pi * _after(np.zeros_like(angle), np.cumsum(turns, axis=0))
+    turns = np.round(np.diff(angle, axis=0) / turn)
+    return -turn * _after(np.zeros_like(angle), np.cumsum(turns, axis=0))
 
 
 def _signs(vectors):

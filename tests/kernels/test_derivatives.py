@@ -10,11 +10,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+import sympy as sp
 from click.testing import CliRunner
 from numpy.testing import assert_allclose, assert_array_equal
 
 import rigidsym as rs
 from helpers.motions import derived
+from helpers.target_modules import EVERY
 from helpers.witness import evaluate, mp
 from rigidsym.algebra.series import FIRST_SERIES, series_of
 from rigidsym.commands.cli import commands
@@ -365,3 +367,81 @@ def test_the_jacobian_of_a_unit_quaternion_is_that_of_the_expression_as_written(
     w, x, y, z = q
     assert_allclose(jacobian[0, 0], [0, 0, -4 * y, -4 * z], atol=1e-15)  # of 1 - 2y² - 2z²
     assert_allclose(jacobian[0, 1], [-2 * z, 2 * y, 2 * x, -2 * w], atol=1e-15)
+
+
+@cache
+def products(target: str):
+    """Kernels of a product with a matrix, and of one with the right inverse, (4, 3)."""
+    asked = ["inverse_rate_matrix_body by q vjp", "inverse_rate_matrix_body by q"]
+    return rs.derive("quaternion", "inverse_rate_matrix_body").kernels(target, derivatives=asked)
+
+
+@pytest.mark.parametrize("target", EVERY)
+def test_weights_have_the_shape_of_the_quantity_or_its_rows_in_one(target):
+    function = products(target).load().inverse_rate_matrix_body_vjp_q
+    random = np.random.default_rng(2)
+    q, weights = random.normal(size=(5, 4)), random.normal(size=(5, 4, 3))
+    value, jacobian = products("numpy").load().inverse_rate_matrix_body_jacobian_q(q)
+    expected = np.einsum("kij,kijl->kl", weights, jacobian)
+    tolerance = 1e-13 if target != "jax" else 1e-5  # JAX computes in float32 by default
+    for given in (weights, weights.reshape(5, 12)):
+        same, found = function(q, given)
+        assert_allclose(same, value, atol=tolerance)
+        assert_allclose(found, expected, atol=tolerance)
+    one = function(q[0], weights[0])[1]
+    assert_allclose(one, expected[0], atol=tolerance)
+
+
+@pytest.mark.parametrize("target", [t for t in EVERY if t.values != ("javascript",)])
+def test_weights_of_another_shape_are_refused(target):
+    function = products(target).load().inverse_rate_matrix_body_vjp_q
+    q = np.array([0.5, 0.5, 0.5, 0.5])
+    for shape in ((3, 4), (4, 4), (3,), (2, 11), ()):
+        message = r"inverse_rate_matrix_body_weights: got shape .*; expected \(\.\.\., 4, 3\)"
+        with pytest.raises(ValueError, match=message):
+            function(q, np.zeros(shape))
+
+
+@pytest.mark.skipif(bool(TARGETS["javascript"].missing), reason=TARGETS["javascript"].missing)
+def test_javascript_refuses_rows_of_another_length(tmp_path):
+    products("javascript").write(tmp_path)
+    main = products("javascript").main
+    script = f"""import {{ inverse_rate_matrix_body_vjp_q as f }} from "./{main}";
+    const rows = (m, n) => Array.from({{ length: m }}, () => new Float64Array(n));
+    for (const given of [rows(3, 4), rows(3, 3), [[1, 2, 3], 4, 5, 6], rows(4, 3)]) {{
+      try {{ console.log(f([1, 0, 0, 0], given)[1].length); }}
+      catch (error) {{ console.log(error.message); }}
+    }}"""
+    (tmp_path / "try.mjs").write_text(script)
+    done = subprocess.run(["node", "try.mjs"], cwd=tmp_path, capture_output=True, text=True)
+    *wrong, right = done.stdout.splitlines()
+    assert [line.split(":")[0] for line in wrong] == ["inverse_rate_matrix_body_weights"] * 3
+    assert right == "4"
+
+
+@pytest.mark.parametrize("target", ["numpy", "c", "numba"])
+def test_scalar_twins_return_value_and_derivative_in_their_shapes(target):
+    if TARGETS[target].missing:
+        pytest.skip(TARGETS[target].missing)
+    asked = ["rotation_matrix by q", "rotation_matrix by q vjp", "rotational_energy by q_dot"]
+    A, B, C = sp.symbols("A B C", positive=True)
+    names = ("rotation_matrix", "rotational_energy")
+    motion = rs.derive("ZXZ", names, body=rs.principal_moments(A, B, C))
+    module = motion.kernels(target, derivatives=asked).load()
+    q, weights = [0.3, 0.4, 0.5], [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]]
+    moments = [1.0, 2.0, 2.5] if len(motion.argument("parameters").names) == 3 else [1, 1, 2, 2.5]
+    for name, given in {
+        "rotation_matrix_jacobian_q": (q,),
+        "rotation_matrix_vjp_q": (q, weights),
+        "rotational_energy_jacobian_q_dot": (q, q, moments),
+    }.items():
+        for first in (q[0], float("inf")):  # Python's floats raise an error at infinity
+            given[0][0] = first
+            flat = [float(x) for array in given for x in np.ravel(array)]
+            found = getattr(module, f"{name}_scalar")(*flat)
+            assert type(found) is tuple
+            for part, expected in zip(found, getattr(module, name)(*given), strict=True):
+                assert np.shape(part) == np.shape(expected)
+                assert_allclose(part, expected, atol=1e-14)
+                assert not isinstance(part, list | np.ndarray)
+        given[0][0] = 0.3

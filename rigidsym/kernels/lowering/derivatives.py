@@ -184,5 +184,5 @@ def _cotangent(step: Step) -> Argument:
         names=names,
         notation=(),  # it is in no note
         units=("",) * len(names),
-        about=f"a weight for each entry of {step.quantity.name}, row by row",
+        about=f"a weight for each entry of {step.quantity.name}",
     )

@@ -19,6 +19,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.present import halved
 from rigidsym.algebra.stumpff import Stumpff, at_zero, rewriter_of
 from rigidsym.kernels import ir
+from rigidsym.kernels.lowering.degrees import ABOUT, in_degrees, is_angle, powers_in, powers_of
 from rigidsym.kernels.lowering.derivatives import Derivative
 from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names
@@ -49,14 +50,16 @@ def lower(
     reserved: Iterable[str] = (),
     derivatives: Iterable[Derivative] = (),
     added: Converted = NO_CONVERSIONS,
+    *,
+    degrees: bool = False,
 ) -> ir.Program:
     """The kernels of a derivation: its quantities in the order of equations, derivatives,
     then what conversions have `added`.
 
-    `reserved` are the words of the target that no name may be. Raises KernelError for an
-    expression that kernels cannot hold.
+    `reserved` are the words of the target that no name may be. With `degrees`, angles are in
+    degrees: see `degrees.py`. Raises KernelError for an expression that kernels cannot hold.
     """
-    kernels = _Lowering(derivation, Names(reserved))
+    kernels = _Lowering(derivation, Names(reserved), degrees=degrees)
     # a tensor given in numbers takes no arguments, and is no function
     steps = (*derivation.steps, *derivation.functions.values())
     found = tuple(kernels.of_step(step) for step in steps if step.quantity.inputs)
@@ -67,9 +70,11 @@ def lower(
     used = {argument.name for kernel in found for argument in kernel.arguments}
     model = derivation.model
     return ir.Program(
-        name=derivation.name,
+        name=derivation.name + ("_deg" if degrees else ""),
+        units="degrees" if degrees else "radians",
         title=derivation.title,
         convention=(
+            *([ABOUT] if degrees else []),
             *_convention(model),
             *body_in_words(derivation.body, about_fixed_point=derivation.about_fixed_point),
         ),
@@ -106,9 +111,11 @@ def _roots(derivation: Derivation) -> list[sp.Expr]:
 class _Lowering:
     """The kernels of one derivation, over the same names."""
 
-    def __init__(self, derivation: Derivation, names: Names) -> None:
+    def __init__(self, derivation: Derivation, names: Names, *, degrees: bool) -> None:
         self.derivation = derivation
         self._names = names
+        self._has_degrees = degrees
+        self._in_degrees: set[str] = set()  # the names of components in degrees
         self._known: dict[sp.Expr, str] = {}  # the names of components
         self.arguments: dict[str, ir.KernelArgument] = {}
         for vector in derivation.arguments:
@@ -119,26 +126,40 @@ class _Lowering:
         self._given = [*model.matrix, *inputs, *_roots(derivation)]
         self._rewriter = rewriter_of(self._given, model.constraints)
 
-    def _argument(self, vector: Vector, **kinds: bool) -> ir.KernelArgument:
-        """The argument; components of another keep their names."""
+    def _argument(
+        self, vector: Vector, *, is_scaled: bool = True, **kinds: Any
+    ) -> ir.KernelArgument:
+        """The argument; components of another keep their names.
+
+        What multiplies a derivative is not scaled, since the derivative is.
+        """
+        is_scaled = is_scaled and self._has_degrees
         if vector.name not in self.arguments:
-            for symbol, name in zip(vector.symbols, vector.names, strict=True):
-                if symbol not in self._known:
+            for symbol, name, unit in zip(vector.symbols, vector.names, vector.units, strict=True):
+                if symbol not in self._known and is_scaled and is_angle(unit):
+                    self._known[symbol] = self._names.fresh(f"{name}_deg")
+                    self._in_degrees.add(self._known[symbol])
+                elif symbol not in self._known:
                     self._known[symbol] = self._names.fresh(name)
             self.arguments[vector.name] = ir.KernelArgument(
                 name=vector.name,
                 components=tuple(self._known[symbol] for symbol in vector.symbols),
-                units=vector.units,
+                units=tuple(map(self._unit, vector.units)),
                 about=vector.about,
                 is_scalar=vector.is_scalar,
                 **kinds,
             )
         return self.arguments[vector.name]
 
+    def _unit(self, unit: str) -> str:
+        return unit.replace("rad", "deg") if self._has_degrees else unit
+
     def of_step(self, step: Step) -> ir.Kernel:
         """The kernel of one quantity."""
         quantity = step.quantity
         entries = self.rewritten(map(self._over_squares, step.expression))
+        if self._has_degrees:
+            entries = in_degrees(entries, powers_of(step, self.derivation.argument))
         return self._kernel(
             quantity.name,
             list(map(self.derivation.argument, quantity.inputs)),
@@ -148,14 +169,20 @@ class _Lowering:
             symbol=quantity.symbol.text,
             definition=quantity.definition.text,
             about=quantity.about,
-            unit=quantity.unit,
+            unit=self._unit(quantity.unit),
         )
 
     def of_derivative(self, derivative: Derivative) -> ir.Kernel:
         """The kernel of a value and its derivative, one after the other."""
         step, count = derivative.step, len(derivative.step.expression)
         entries = self.rewritten([*step.expression, *derivative.jacobian()])
+        if self._has_degrees:
+            entries = in_degrees(entries, self._powers(derivative))
         entries = [*entries[:count], *derivative.results(entries[count:])]
+        if derivative.given:
+            is_matrix = derivative.request.kind == "vjp" and len(step.shape) == 2
+            kinds = {"matrix": step.shape, "may_be_flat": True} if is_matrix else {}
+            self._argument(derivative.given, is_scaled=False, **kinds)
         return self._kernel(
             derivative.request.name,
             derivative.vectors,
@@ -163,21 +190,34 @@ class _Lowering:
             shape=(len(entries),),
             symbol=f"{step.quantity.symbol.text} by {derivative.by.name}",
             about=derivative.about,
-            unit=step.quantity.unit,
+            unit=self._unit(step.quantity.unit),
             parts=derivative.parts,
         )
+
+    def _powers(self, derivative: Derivative) -> list[int]:
+        """Of the angle in the units of the value's entries, and of those of its Jacobian."""
+        rows = powers_of(derivative.step, self.derivation.argument)
+        columns = [int(is_angle(unit)) for unit in derivative.by.units]
+        return [*rows, *(row - column for row in rows for column in columns)]
 
     def of_function(self, function: ConversionFunction) -> ir.Kernel:
         """The kernel of a conversion: its values one by one, as they are written."""
         arguments = tuple(
-            self._argument(given.argument, is_matrix=given.is_matrix, is_optional=given.is_optional)
+            self._argument(
+                given.argument,
+                matrix=(3, 3) if given.is_matrix else (),
+                is_optional=given.is_optional,
+            )
             for given in function.inputs
         )
         reader = self._reader(function.name, [given.argument for given in function.inputs])
         reader.graph.share([reader.define(symbol, value) for symbol, value in function.shared])
         for symbol, value in function.values:
             reader.hold(symbol, value)
-        weighted = list(map(reader.weighted, function.outputs))
+        entries = list(function.outputs)
+        if self._has_degrees:
+            entries = in_degrees(entries, powers_in(function.unit, len(entries)))
+        weighted = list(map(reader.weighted, entries))
         assignments, outputs = write(reader.graph, weighted, self._names.copy())
         return ir.Kernel(
             name=function.name,
@@ -188,12 +228,12 @@ class _Lowering:
             symbol=function.symbol,
             about=function.about,
             remarks=function.remarks,
-            unit=function.unit,
+            unit=self._unit(function.unit),
         )
 
     def _reader(self, name: str, vectors: Iterable[Vector]) -> Reader:
         inputs = {symbol: self._known[symbol] for vector in vectors for symbol in vector.symbols}
-        return Reader(name, inputs, self._definitions)
+        return Reader(name, inputs, self._definitions, self._in_degrees)
 
     def unwrapping(self, found: Continuity) -> ir.Unwrapping:
         return ir.Unwrapping(
@@ -266,7 +306,14 @@ class _Lowering:
         inputs = tuple((s, self._known[s]) for vector in vectors for s in vector.symbols)
         definitions = tuple(self._definitions.items())
         return _kernel(
-            name, arguments, inputs, definitions, tuple(entries), self._names.taken, **words
+            name,
+            arguments,
+            inputs,
+            definitions,
+            tuple(entries),
+            self._names.taken,
+            frozenset(self._in_degrees),
+            **words,
         )
 
 
@@ -278,10 +325,11 @@ def _kernel(
     definitions: tuple[tuple[sp.Expr, sp.Expr], ...],
     entries: tuple[sp.Expr, ...],
     taken: frozenset[str],
+    in_degrees: frozenset[str],
     **words: Any,
 ) -> ir.Kernel:
     """A kernel whose common subexpressions are shared, with its divisors guarded."""
-    reader = Reader(name, dict(inputs), dict(definitions))
+    reader = Reader(name, dict(inputs), dict(definitions), in_degrees)
     weighted = [reader.weighted(entry) for entry in entries]
     reader.graph.share(node for _, node in weighted)
     names = Names(taken)

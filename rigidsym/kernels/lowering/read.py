@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from fractions import Fraction
 from math import nan
 from types import MappingProxyType
@@ -12,6 +12,7 @@ import sympy as sp
 from rigidsym.algebra.stumpff import Stumpff
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.cse import CHOICE, Factors, Graph, Weighted
+from rigidsym.kernels.lowering.degrees import DEGREE, FACTORS
 from rigidsym.mechanics.conversions.function import Epsilon, Where
 
 Monomial = tuple[Fraction, Factors]  # a number times nodes of the graph, ~node dividing
@@ -27,13 +28,14 @@ _QUOTIENTS: Mapping[type, tuple[str, str]] = {  # numerator and denominator; "" 
 
 
 class Reader:
-    """From SymPy to one graph; inputs are its atoms, by their names."""
+    """From SymPy to one graph; inputs are its atoms, by their names, some of them in degrees."""
 
     def __init__(
         self,
         kernel: str,
         inputs: Mapping[sp.Expr, str],
         definitions: Mapping[sp.Expr, sp.Expr] = MappingProxyType({}),
+        in_degrees: Collection[str] = (),
     ) -> None:
         self.graph = Graph()
         self._kernel = kernel
@@ -42,6 +44,11 @@ class Reader:
         self._known: dict[sp.Expr, Monomial] = {
             symbol: (Fraction(1), (self.graph.input(name),)) for symbol, name in inputs.items()
         }
+        for factor, value in FACTORS.items() if in_degrees else ():
+            self._known[factor] = Fraction(1), (self.graph.irrational(value),)
+        for symbol, name in inputs.items():
+            if name in in_degrees:
+                self._known[symbol] = self._times(map(self._known.__getitem__, (DEGREE, symbol)))
 
     def weighted(self, expression: sp.Expr) -> Weighted:
         """The expression as one node of the graph with a number before it."""

@@ -76,7 +76,9 @@ class Rounding(NamedTuple):
 
 
 def rounding(kernel: Kernel) -> Rounding | None:
-    """The bound of a kernel; None where there is none: it divides, or takes roots."""
+    """The bound of a kernel; None where there is none: it divides, takes roots, or degrees."""
+    if any(unit.startswith("deg") for a in kernel.arguments for unit in a.units):
+        return None
     plain, exact = numbers_and_angles(kernel)
     try:
         error = largest_error(kernel, dict.fromkeys(plain, Bounded(1.0, 0.0)), exact)

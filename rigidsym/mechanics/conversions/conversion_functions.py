@@ -288,6 +288,7 @@ def _of_turns(
         [placed.get(place, q) for place, q in enumerate(model.coordinates)],
         "coordinates",
         symbol="",
+        unit=_unit(model),
     )
     remarks = [_TWO_SETS if relation else _WHOLE_TURNS]
     if len(rule.places) < len(model.coordinates):

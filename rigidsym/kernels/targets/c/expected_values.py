@@ -37,7 +37,9 @@ def samples_of(function: Function) -> Iterator[dict[str, Any]]:
     precision, arguments = function.precision, function.kernel.arguments
     found = 0
     for point in range(_TRIED):
-        inputs = [_row(a.is_matrix, len(a.components), point + k) for k, a in enumerate(arguments)]
+        inputs = [
+            _row(a.shape == (3, 3), len(a.components), point + k) for k, a in enumerate(arguments)
+        ]
         values = _values(function.kernel, [x for row in inputs for x in row], precision.eps)
         if found < _POINTS and all(map(isfinite, values)):
             found += 1
@@ -52,9 +54,9 @@ def samples_of(function: Function) -> Iterator[dict[str, Any]]:
             }
 
 
-def _row(is_matrix: bool, count: int, point: int) -> list[float]:
+def _row(is_rotation: bool, count: int, point: int) -> list[float]:
     """A rotation matrix, or components in (0.2, 1.2) that are exact in both types."""
-    if is_matrix:
+    if is_rotation:
         first = 3 * (point % 3)
         return [*_ROTATION[first:], *_ROTATION[:first]]
     return [(13 + (29 * point + 17 * k) % 64) / 64 for k in range(count)]

@@ -160,7 +160,7 @@ def _about(program: Program, contents: Contents) -> list[remarks.Paragraph]:
     return remarks.about_module(
         program,
         "functions in C99",
-        "Arguments, in radians and SI units:",
+        f"Arguments, in {program.units} and SI units:",
         [f"  {a.name}[{len(a.components)}]  {a.about}" for a in program.arguments],
         f"Matrices are filled row by row. {floats}{first}",
         *others,

@@ -6,7 +6,7 @@ import json
 import re
 import shutil
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from math import prod
 from pathlib import Path
@@ -23,6 +23,7 @@ from rigidsym.system import resources
 _EXPORTED = re.compile(
     r"^export function (\w+)\((.*)\) \{\n(?:  const values = .*\n  return (\[))?", re.MULTILINE
 )  # name, parameters, and whether two results are returned
+_MATRIX = re.compile(r'_flat\("\w+", (\w+?)_*, (\d+)\), (\d+)')  # parameter, columns, entries
 
 Numbers = NDArray[np.float64]
 Run = Callable[[list[Numbers]], list[Numbers]]
@@ -40,24 +41,28 @@ def module(name: str, source: str) -> ModuleType:
             "no program `node` (on Debian: apt install nodejs) to run JavaScript with"
         )
     made = ModuleType(name)
+    shapes = {n: (int(size) // int(c), int(c)) for n, c, size in _MATRIX.findall(source)}
     for function, listed, parted in _EXPORTED.findall(source):
         names = [name.split(" ")[0].rstrip("_") for name in listed.split(", ")]
         time = str(names.index("t")) if "t" in names else ""
         run = partial(_run, source, function, time, parted)
         is_flat = function.endswith("_batch")
-        setattr(made, function, _caller(run, names, is_flat=is_flat))
+        setattr(made, function, _caller(run, names, shapes, is_flat=is_flat))
         if is_flat:
-            setattr(made, f"{function}_each", _caller(run, names, is_flat=False))
+            setattr(made, f"{function}_each", _caller(run, names, shapes, is_flat=False))
     return made
 
 
-def _caller(run: Run, names: list[str], *, is_flat: bool) -> Callable[..., Any]:
+def _caller(
+    run: Run, names: list[str], shapes: Mapping[str, tuple[int, int]], *, is_flat: bool
+) -> Callable[..., Any]:
     def call(*vectors: ArrayLike) -> Any:
         arrays = [np.asarray(vector, float) for vector in vectors]
         if is_flat:
             return run([array.reshape(1, -1) for array in arrays])[0][0]
-        if names[0] == "matrix":
-            arrays[0] = arrays[0].reshape(*arrays[0].shape[:-2], 9)
+        for k, (name, array) in enumerate(zip(names, arrays, strict=False)):
+            if name in shapes and array.shape[-2:] == shapes[name]:
+                arrays[k] = array.reshape(*array.shape[:-2], prod(shapes[name]))
         arrays = [a[..., None] if n == "t" else a for n, a in zip(names, arrays, strict=False)]
         leading = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
         rows = [

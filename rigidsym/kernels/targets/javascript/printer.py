@@ -17,6 +17,7 @@ from rigidsym.kernels.ir import (
     Expression,
     Guarded,
     Kernel,
+    KernelArgument,
     Program,
     functions_of,
     last_order,
@@ -114,8 +115,7 @@ def _function(kernel: Kernel) -> dict[str, object]:
     vectors = [names.fresh(argument.name) for argument in arguments]
     places = [names.fresh(f"{vector}_at") for vector in vectors]
     sizes = [len(argument.components) for argument in arguments]
-    forms = ["_flat({})" if a.is_matrix else "[{}]" if a.is_scalar else "{}" for a in arguments]
-    of_one = [form.format(vector) for form, vector in zip(forms, vectors, strict=True)]
+    of_one = [_of_one(vector, a) for vector, a in zip(vectors, arguments, strict=True)]
     each = list(zip(vectors, places, sizes, arguments, of_one, strict=True))
     taken = [
         f"  const {name} = {vector}[{_placed(place, k)}];"
@@ -138,6 +138,13 @@ def _function(kernel: Kernel) -> dict[str, object]:
         "returned": _returned(kernel),
         "count": len(kernel.outputs),
     }
+
+
+def _of_one(vector: str, argument: KernelArgument) -> str:
+    """The components of the argument of one orientation."""
+    if argument.is_matrix:
+        return f'_flat("{argument.name}", {vector}, {argument.shape[1]})'
+    return f"[{vector}]" if argument.is_scalar else vector
 
 
 def _placed(place: str, count: int) -> str:
@@ -192,7 +199,7 @@ def _about(program: Program) -> list[remarks.Paragraph]:
     return remarks.about_module(
         program,
         "functions of plain arrays",
-        "Arguments, arrays of numbers in radians and SI units:",
+        f"Arguments, arrays of numbers in {program.units} and SI units:",
         remarks.table(rows),
         "Vectors are arrays, and matrices are arrays of rows.",
         "Each function has a twin ..._batch for many orientations. Its arguments and its result "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Mapping, Sequence
+from math import prod
 from types import ModuleType
 
 from rigidsym.kernels import loaded
@@ -39,6 +40,7 @@ _BY_SIZE = (
     "Small batches, of fewer than 240 rows at most, take sines and cosines by another formula than "
     "larger ones, so that the last bits of a row may depend on the number of rows."
 )
+_NESTING = ("a float", "a tuple", "a tuple of rows", "a tuple of matrices")
 _LONG = 96  # assignments of a kernel whose twin shares the function of arrays
 _SPELLED = len("float, float, float, float")  # longer types are those of tuples of any length
 
@@ -142,23 +144,26 @@ def _is_shared(kernel: Kernel) -> bool:
 
 def _fitted(kernel: Kernel) -> Kernel:
     """The kernel in lines that fit: a scalar twin's assignments and the rows of its outputs."""
-    deepest = 8 + 4 * len(kernel.shape)
+    depth = 1 + max(map(len, kernel.parts)) if kernel.parts else len(kernel.shape)
+    deepest = 8 + 4 * depth
     return narrowed(kernel, infix, line=WIDTH - 8, output=WIDTH - deepest - len(","))
 
 
 def _function(kernel: Kernel, at_once: str) -> dict[str, str]:
     """The pieces of text that stand for one kernel in the template."""
     block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
+    results = kernel.parts or (kernel.shape,)
+    shape = str(kernel.parts or kernel.shape)
     floats = [
         f"{name}: float{' = 0.0' if argument.is_optional else ''}"
         for argument in kernel.arguments
         for name in argument.components
     ]
-    shape = str(kernel.shape)
-    given = [block, scalar, shape, "out", "threads", *python.passed(kernel, "np")]
+    numbers = f"_in_a_row({scalar})" if kernel.parts else scalar
+    given = [block, numbers, str(kernel.shape), "out", "threads", *python.passed(kernel, "np")]
     margin = 4 if _is_shared(kernel) else 8
     points = [_row(argument.components, margin) for argument in kernel.arguments]
-    nesting = ("a float", "a tuple", "a tuple of rows")[len(kernel.shape)]
+    nesting = " and ".join(_NESTING[len(each)] for each in results)
     twin = [f"`{kernel.name}` of one orientation; floats to {nesting}."]
     return {
         "signature": bracketed(
@@ -170,13 +175,20 @@ def _function(kernel: Kernel, at_once: str) -> dict[str, str]:
         "about": docstring(python.about_function(kernel), indent=4),
         "body": _body(kernel, given, at_once.format(kernel.name)),
         "ufunc": python.ufunc(kernel),
-        "scalar_signature": bracketed(
-            0, f"def {scalar}(", floats, f") -> {_floats(kernel.shape)}:"
-        ),
+        "scalar_signature": bracketed(0, f"def {scalar}(", floats, f") -> {_type(results)}:"),
         "scalar_about": docstring(twin, indent=4),
         "scalar_body": _scalar_body(kernel, [block, shape, *points]),
         "block": _block(kernel),
     }
+
+
+def _type(results: Sequence[Sequence[int]]) -> str:
+    """The type of a value in floats, or of two."""
+    each = list(map(_floats, results))
+    if len(each) < 2:
+        return each[0]
+    line = f"tuple[{', '.join(each)}]"
+    return line if len(line) <= WIDTH - len(") -> :") else exploded(0, "tuple[", each, "]")
 
 
 def _floats(shape: Sequence[int]) -> str:
@@ -195,7 +207,7 @@ def _body(kernel: Kernel, arguments: Sequence[str], at_once: str) -> str:
     """
     result = "both" if kernel.parts else "result"
     lines = [bracketed(4, f"{result} = _apply(", arguments, ")")]
-    if at_once:
+    if at_once and not any(argument.is_matrix for argument in kernel.arguments):
         vectors = [argument.name for argument in kernel.arguments]
         lines = [
             f"    {result} = None",
@@ -307,13 +319,28 @@ def _gathered(kernel: Kernel) -> dict[str, list[Name]]:
 
 def _scalar_return(kernel: Kernel) -> str:
     outputs = list(map(infix, kernel.outputs))
+    if kernel.parts:
+        first, second = kernel.parts
+        place = prod(first)
+        both = [_nested(outputs[:place], first, 8), _nested(outputs[place:], second, 8)]
+        return _tuple(8, "return ", both)
     if not kernel.shape:
         return f"        return {outputs[0]}"
-    if len(kernel.shape) == 1:
-        return _tuple(8, "return ", outputs)
-    columns = kernel.shape[1]
-    rows = [outputs[start : start + columns] for start in range(0, len(outputs), columns)]
-    return _tuple(8, "return ", [_row(row) for row in rows])
+    return _tuple(8, "return ", _parts(outputs, kernel.shape, 8))
+
+
+def _nested(items: Sequence[str], shape: Sequence[int], margin: int) -> str:
+    """Numbers in the tuples of a shape, as an item of brackets that open at a margin."""
+    if len(shape) < 2:
+        return _row(items, margin) if shape else items[0]
+    return _tuple(margin + 4, "", _parts(items, shape, margin + 4)).lstrip()
+
+
+def _parts(items: Sequence[str], shape: Sequence[int], margin: int) -> list[str]:
+    """The same without the outermost brackets."""
+    size = prod(shape[1:])
+    rows = (items[start : start + size] for start in range(0, len(items), size))
+    return [_nested(row, shape[1:], margin) for row in rows]
 
 
 def _row(items: Sequence[str], margin: int = 8) -> str:
@@ -334,7 +361,7 @@ def _about(program: Program, *, is_plain: bool) -> list[remarks.Paragraph]:
     return remarks.about_module(
         program,
         "functions of NumPy arrays",
-        python.ARGUMENTS,
+        python.ARGUMENTS.format(program.units),
         python.about_arguments(program),
         "Leading axes broadcast; inputs need not be contiguous. The result is float32 if every "
         "argument is float32, else float64; integers are converted to float64. `out`, an array of "

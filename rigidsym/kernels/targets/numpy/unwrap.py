@@ -20,6 +20,8 @@ def unwrap_text(unwrapping: Unwrapping, block: Callable[[Kernel], str]) -> str:
     given = [f"_{kernel.name}" for kernel in kernels]
     if unwrapping.coordinates is not None:
         given.append(str(len(unwrapping.coordinates.arguments[-1].components)))
+    if any("deg" in unit for unit in unwrapping.arguments[0].units) and not kernels:
+        checked.append("360.0")
     function = f"_unwrapped_{unwrapping.kind}"
     head = bracketed(0, "def unwrap(", [f"{name}: ArrayLike" for name in taken], ") -> Array:")
     body = bracketed(4, f"return {function}(", [*given, *checked], ")")

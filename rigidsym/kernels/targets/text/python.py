@@ -34,7 +34,7 @@ from rigidsym.system import resources
 MANY = 8  # components
 _UNWELCOME = ("l", "O", "I")  # linters refuse these names
 RESERVED = frozenset({*FUNCTIONS, *_UNWELCOME, "nan", "max", "min"})
-ARGUMENTS = "Arguments, with the components on the last axis, in radians and SI units:"
+ARGUMENTS = "Arguments, with the components on the last axis, in {} and SI units:"
 
 
 class Statements(NamedTuple):
@@ -131,7 +131,10 @@ def passed(kernel: Kernel, library: str) -> list[str]:
     for argument in kernel.arguments:
         name = value = argument.name
         if argument.is_matrix:
-            value = f"_entries({name})"
+            items = [f'"{name}"', name, str(argument.shape)]
+            items += ["or_flat=True"] if argument.may_be_flat else []
+            text = bracketed(8, f"{name}=_entries(", items, "),")
+            value = text[text.index("=") + 1 : -1]
         if argument.is_scalar:
             value = f"{library}.asarray({name})[..., None]"
         if argument.is_optional:
@@ -183,7 +186,13 @@ def ufunc(kernel: Kernel) -> str:
 
 def about_arguments(program: Program) -> list[str]:
     """Lines that describe the arguments of all functions."""
-    return table([(a.name, _leading(a.shape), a.about) for a in program.arguments])
+    return table([(a.name, _shapes(a), a.about) for a in program.arguments])
+
+
+def _shapes(argument: KernelArgument) -> str:
+    """The shape of an argument, and the one that its rows in one have if they may be."""
+    flat = f" or {_leading((len(argument.components),))}" if argument.may_be_flat else ""
+    return _leading(argument.shape) + flat
 
 
 def _leading(shape: Sequence[int]) -> str:
@@ -199,8 +208,7 @@ def _listed(names: Sequence[str]) -> str:
 def about_function(kernel: Kernel) -> list[Paragraph]:
     """The paragraphs of a function's docstring."""
     rows = [
-        (a.name, _leading(a.shape), _listed(a.components) + in_units(a.units))
-        for a in kernel.arguments
+        (a.name, _shapes(a), _listed(a.components) + in_units(a.units)) for a in kernel.arguments
     ]
     results = ", ".join(map(_leading, kernel.parts or (kernel.shape,)))
     rows.append(("returns", results, f"in {kernel.unit}" if kernel.unit else ""))
