@@ -328,5 +328,8 @@ def kernels(
 
     `derive`, `Motion.kernels` and `load` in one step; raises what they raise.
     """
-    options = {"conversions": conversions, "derivatives": derivatives, "degrees": degrees}
-    return derive(model, only, body=body).kernels(target, **options).load()
+    motion = derive(model, only, body=body)
+    module = motion.kernels(
+        target, conversions=conversions, derivatives=derivatives, degrees=degrees
+    )
+    return module.load()
