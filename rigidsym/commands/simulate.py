@@ -14,6 +14,7 @@ import numpy as np
 
 from rigidsym.commands.command import FILE, NAMED_NUMBER, command as make, option, with_options
 from rigidsym.data.writers import check_ending, table_writer
+from rigidsym.errors import DerivationError
 from rigidsym.models.example import OMEGA, OMEGA_COMPONENTS, Example, initial_values
 from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
@@ -109,7 +110,8 @@ def command(source: str, options: SimulationOptions) -> None:
     """Simulate the motion of a derivation file with [dynamics].
 
     NAME is a shipped derivation such as heavy_symmetric_top. The report shows how far each first
-    integral drifts.
+    integral drifts. If the motion cannot be followed to its end, everything up to that time is
+    written, and the exit code is 1.
     """
     if options.out is not None:
         check_ending(options.out, _ARCHIVE)
@@ -140,6 +142,7 @@ def command(source: str, options: SimulationOptions) -> None:
         click.echo(found.plot(options.plot))
     if options.animate is not None:
         click.echo(_animated(motion, found, constants, options.animate))
+    _check_end(found)
 
 
 def _animated(
@@ -191,6 +194,13 @@ def _ensemble(motion: Motion, options: SimulationOptions) -> None:
             progress=progress,
         )
     _reported(found, options.out)
+    _check_end(found)
+
+
+def _check_end(found: Trajectory | Ensemble) -> None:
+    """What was computed is written before. Raises DerivationError if that is not all."""
+    if found.ended:
+        raise DerivationError(f"{found.name}: {found.ended}")
 
 
 def _reported(found: Trajectory | Ensemble, out: Path | None) -> None:

@@ -15,13 +15,13 @@ from rigidsym.models.body import Parameter, RigidBody
 from rigidsym.models.example import Example, examples_of
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.models.so3 import TIME, depends_on_time, symbolic
+from rigidsym.models.so3 import TIME, as_typed, depends_on_time, symbolic
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 
 METHODS = ("lagrange", "euler")
 OMEGA_BODY = tuple(sp.Symbol(f"Omega_body_{k}") for k in (1, 2, 3))
-_LONG, _ALIKE = 4, 0.85  # letters of a name, and the share that two names have in common
+_LONG, _ALIKE = 4, 0.8  # letters of a name, and the share that two names have in common
 _NONE: Mapping[Any, sp.Expr] = MappingProxyType({})
 
 
@@ -77,13 +77,14 @@ class Forces:
         depend on the time.
         """
         if self.potential.has(sp.Derivative):
-            raise ModelError(f"the potential {self.potential} depends on rates; expected V(q, t)")
+            shown = as_typed(self.potential)
+            raise ModelError(f"the potential {shown} depends on rates; expected V(q, t)")
         moving = (e for part in self.parts for e in (*part.velocity, *part.inertia))
         for expression in (*self.frame_rate, *moving):
             if depends_on_time(expression):
                 raise ModelError(
-                    f"{expression} depends on t; expected a part, or a rate of the frame, that "
-                    "does not"
+                    f"{as_typed(expression)} depends on t; expected a part, or a rate of the "
+                    "frame, that does not"
                 )
         known = {p.symbol for p in body.parameters} | {*model.constants, *OMEGA_BODY, TIME}
         symbols = set().union(*(expression.free_symbols for expression in self._given())) - known

@@ -11,7 +11,7 @@ from rigidsym.algebra.adjoin import TIME
 from rigidsym.errors import ModelError
 
 __all__ = ["AXES", "TIME", "elementary", "hat", "rodrigues", "symbolic", "time_function"]
-__all__ += ["depends_on_time"]
+__all__ += ["as_typed", "depends_on_time"]
 
 AXES = ("x", "y", "z")
 
@@ -25,6 +25,13 @@ def depends_on_time(value: sp.Basic) -> bool:
     """Whether t occurs in it by itself, not only as the argument of a coordinate."""
     moving = value.atoms(sp.Derivative, AppliedUndef)
     return bool(value.xreplace({function: sp.Dummy() for function in moving}).has(TIME))
+
+
+def as_typed(value: sp.Basic) -> str:
+    """The expression as in a derivation file: theta, and theta_dot for its rate."""
+    rates = {rate: sp.Symbol(f"{rate.expr.func}_dot") for rate in value.atoms(sp.Derivative)}
+    plain = value.xreplace(rates)
+    return str(plain.xreplace({q: sp.Symbol(str(q.func)) for q in plain.atoms(AppliedUndef)}))
 
 
 def symbolic(value: object, what: str) -> sp.Expr:

@@ -21,6 +21,7 @@ from rigidsym.simulation.sampled_motion import Array
 
 _WANTED = ("rotation_matrix", "angular_velocity_body", "torque_body", "energy", "state_derivative")
 _ANGLE = 0.05  # radians, of a step in the group
+_MOST_STEPS = 100_000  # from one time to the next
 _SMALL = 1e-4  # rad: below it, series to second order are exact in double precision
 
 
@@ -73,6 +74,8 @@ class Attitude:
     def in_group(self, times: Array, progress: Callable[[float], None] | None) -> Array:
         """(quaternion, Ω′) at the times, by Runge-Kutta-Munthe-Kaas steps of order 8.
 
+        It ends before the time at which the body turns too fast for steps, or beyond all numbers.
+
         H. Munthe-Kaas, High order Runge-Kutta methods on manifolds (1999), with the coefficients
         of DOP853.
         """
@@ -84,10 +87,16 @@ class Attitude:
         found = [state]
         for start, end in zip(times[:-1].tolist(), times[1:].tolist(), strict=True):
             size = float(np.linalg.norm(found[-1][4:]))
-            count = max(1, int(np.ceil((end - start) * size / _ANGLE)))
-            for k in range(count):
-                h = (end - start) / count
-                quaternion, momentum = step(start + k * h, h, quaternion, momentum)
+            wanted = np.ceil((end - start) * size / _ANGLE)
+            if not wanted <= _MOST_STEPS:
+                break
+            count = max(1, int(wanted))
+            h = (end - start) / count
+            try:
+                for k in range(count):
+                    quaternion, momentum = step(start + k * h, h, quaternion, momentum)
+            except (ArithmeticError, ValueError):  # of the sine of infinity
+                break
             found.append(np.concatenate([quaternion, step.omega(quaternion, momentum)]))
             if progress is not None:
                 progress(end / times[-1])

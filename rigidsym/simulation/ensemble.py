@@ -43,16 +43,23 @@ class Ensemble:
     states: Array  # (n, m, k)
     drift: Mapping[str, Array]  # (m,) of each first integral: the largest relative change
 
+    @property
+    def ended(self) -> str:
+        """Why motions have no state at the end, if some have none."""
+        lost = int(np.count_nonzero(~np.isfinite(self.states[-1]).all(axis=1)))
+        why = f"{lost} of them came to a pole of the coordinates or left the numbers"
+        return why if lost else ""
+
     def report(self) -> str:
         """How many motions there are, and the largest drift of each first integral."""
-        lost = int(np.count_nonzero(~np.isfinite(self.states[-1]).all(axis=1)))
         lines = [f"{self.name}: {self.states.shape[1]} motions from 0 to {self.t[-1]:g} s"]
-        if lost:
-            lines.append(f"{lost} of them came to a pole of the coordinates or left the numbers")
+        lines += [self.ended] if self.ended else []
         width = max(map(len, self.drift), default=0)
+        known = {name: values[np.isfinite(values)] for name, values in self.drift.items()}
         lines += [
-            f"  {name:{width}}  largest drift {np.nanmax(values):.1e}"
-            for name, values in self.drift.items()
+            f"  {name:{width}}  largest drift {values.max():.1e}"
+            for name, values in known.items()
+            if len(values)
         ]
         return "\n".join(lines)
 

@@ -62,7 +62,10 @@ def simulate(
     if method == "lie":
         attitude = Attitude(problem)
         states = attitude.states(problem.start[None], attitude.in_group(times, progress))
-        return problem.trajectory(times, states)
+        times = times[: len(states)]
+        is_whole = len(states) == samples
+        why = f"the motion ended at t = {times[-1]:.6g} s: the body turns too fast for steps"
+        return problem.trajectory(times, states, "" if is_whole else why)
     return _integrated(problem, times, progress, {"method": method, "rtol": rtol, "atol": atol})
 
 
@@ -152,7 +155,7 @@ def _ending(solved: Any) -> str:
     """Why a motion ends before its time."""
     if solved.status >= 0:
         return ""
-    return f"ended at t = {solved.t[-1]:.6g} s: {solved.message}"
+    return f"the motion ended at t = {solved.t[-1]:.6g} s: {solved.message}"
 
 
 def _exact(problem: Problem, times: Array) -> Trajectory:

@@ -231,3 +231,60 @@ def test_a_film_without_ffmpeg_is_refused_and_says_what_to_install(tmp_path, mon
         found.animate(tmp_path / "free.mp4")
     assert caught.value.exit_code == 4
     assert not (tmp_path / "free.mp4").exists()
+
+
+BLOWN_UP = """[rotation]
+sequence = "ZXZ"
+angles = ["phi", "theta", "psi"]
+[body]
+principal_moments = [1, 1, 1]
+[dynamics]
+forces = { psi = "psi_dot**2" }
+[[dynamics.examples]]
+initial = { theta = 0.5, psi_dot = 1 }
+time = 3
+"""
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ((), "the motion ended at t = 0.2"),
+        (("--method=lie",), "the body turns too fast for steps"),
+        (("--ensemble=2",), "2 of them came to a pole of the coordinates or left the numbers"),
+    ],
+)
+def test_a_motion_without_end_is_written_as_far_as_it_goes(options, message, tmp_path):
+    (tmp_path / "blown.toml").write_text(BLOWN_UP, encoding="utf-8")
+    given = ["simulate", "blown.toml", "--samples=200", "--out=out.csv", *options]
+    done = call(*given, cwd=tmp_path, status=1)
+    assert message in done.stderr
+    table = np.genfromtxt(tmp_path / "out.csv", delimiter=",", names=True)
+    assert 1 < table.size < 200
+
+
+def test_a_force_that_depends_on_rates_is_the_same_in_both_forms():
+    free = {"body": rs.principal_moments(*sp.symbols("A A C")), "potential": "k*cos(theta)"}
+    found = []
+    for method in ("lagrange", "euler"):
+        motion = rs.derive("ZXZ", **free, forces={"psi": "-k*psi_dot*phi_dot"}, method=method)
+        start = REST | {"theta": 0.8, "psi_dot": 3, "phi_dot": 0.5}
+        found.append(motion.simulate(start, {"A": 1, "C": 0.7, "k": 0.4}, 2.0, samples=3))
+    assert found[0].q == pytest.approx(found[1].q, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("acting", "message"),
+    [
+        (
+            {"parts": [{"velocity": ["theta_dot**2", "a*phi_dot", "0"], "mass": "m"}]},
+            r"the velocity \(theta_dot\*\*2, a\*phi_dot, 0\) is not linear in the rates",
+        ),
+        ({"potential": "theta_dot*w"}, r"the potential theta_dot\*w depends on rates"),
+        ({"potential": "w*cos(thets)"}, "unknown name thets; did you mean theta?"),
+    ],
+)
+def test_what_cannot_act_is_told_as_it_was_typed(acting, message):
+    body = rs.principal_moments(*sp.symbols("A A C"))
+    with pytest.raises(rs.RigidsymError, match=message):
+        rs.derive("ZXZ", body=body, **acting)

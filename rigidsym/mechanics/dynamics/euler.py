@@ -26,7 +26,7 @@ from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import hat
+from rigidsym.models.so3 import TIME, hat
 
 
 class EulerEquations(Flow):
@@ -48,9 +48,11 @@ class EulerEquations(Flow):
         self._divisor = decode(divisor)
         self._matrix = rotation.model.matrix
         q = model.coordinates
+        turning = self._inverse * sp.Matrix(OMEGA_BODY) / self._divisor
+        rates = {sp.diff(x, TIME): rate for x, rate in zip(q, turning, strict=True)}
         self._gradient = [sp.diff(forces.potential, x) for x in q]
-        self._forces = [forces.generalised.get(x, sp.S.Zero) for x in q]
-        self._torque = forces.torque or (sp.S.Zero,) * 3
+        self._forces = [forces.generalised.get(x, sp.S.Zero).xreplace(rates) for x in q]
+        self._torque = [n.xreplace(rates) for n in forces.torque or (sp.S.Zero,) * 3]
         held = [*self._inverse, self._divisor, *self._matrix, *body.inertia, sp.Rational(1, 2)]
         held += [forces.potential, *self._gradient, *self._forces, *self._torque]
         held += [*OMEGA_BODY, *forces.first_integrals.values()]

@@ -30,7 +30,7 @@ from rigidsym.mechanics.kinematics.workspace import Inverse, Values, encoded
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces, MovingPart
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import TIME
+from rigidsym.models.so3 import TIME, as_typed
 
 
 class Moving(NamedTuple):
@@ -101,7 +101,9 @@ class Lagrange:
         )
         at_rest = velocity.xreplace(dict.fromkeys(self.rates, sp.S.Zero))
         if jacobian.has(*self.rates) or any(at_rest):
-            raise ModelError(f"the velocity {', '.join(map(str, velocity))} is not linear in rates")
+            raise ModelError(
+                f"the velocity ({', '.join(map(as_typed, velocity))}) is not linear in the rates"
+            )
         zero = sp.ImmutableMatrix.zeros(3, 1)
         return Moving(jacobian, zero, sp.ImmutableMatrix(sp.diag(*part.inertia)), turns=False)
 
