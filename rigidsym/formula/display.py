@@ -210,13 +210,19 @@ class _Setter:
         return Display(rows.written(self.pen), width, done, rows)
 
     def _forms(self, sides: Sequence[Formula], matrix: Formula, pen: SheetPen) -> Iterator[Display]:
-        """The equation on one line, and broken before its last equals sign."""
+        """The equation on one line; broken before its last equals sign; and then farther left."""
         whole = pen.write(equal(*sides, matrix))
         yield Display(whole.text, whole.width)
         if len(sides) > 1:
             first, above, last = map(pen.write, (sides[0], equal(*sides[1:]), matrix))
             lines = (Aligned(first.text, above.text, "="), Aligned("", last.text, "="))
             needed = first.width + EQUAL + max(above.width, last.width)
+            yield Display(pen.aligned(lines, True), needed)
+            lines = (
+                Aligned("", self._headed(sides[0], above.text)),
+                Aligned("", self._headed(row(), last.text), indent=1),
+            )
+            needed = EQUAL + max(first.width + above.width, QUAD + last.width)
             yield Display(pen.aligned(lines, True), needed)
 
     def _definitions(

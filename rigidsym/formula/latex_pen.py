@@ -155,12 +155,14 @@ def _letters(letters: str) -> str:
 
 def _tall(entry: Piece) -> str:
     """The entry with its fractions in their full height, but for those within others."""
-    return rf"\displaystyle {entry.text}" if entry.height else entry.text
+    return rf"\displaystyle {entry.text}" if entry.height >= Height.TALL else entry.text
 
 
 def _distance(above: Sequence[Piece], below: Sequence[Piece]) -> int:
     """Points between two rows: dots want some air, fractions more, and roots in them most."""
     upper, lower = (max(entry.height for entry in line) for line in (above, below))
+    if max(upper, lower) == Height.RATE:
+        return 5
     if upper:
         return 13 if Height.ROOTED in (upper, lower) else 10
     return 7 if lower else 2

@@ -194,7 +194,7 @@ def _one(text: str) -> str:
 
 
 def _tall(entry: Piece) -> str:
-    return f'<mrow class="tall">{entry.text}</mrow>' if entry.height else entry.text
+    return f'<mrow class="tall">{entry.text}</mrow>' if entry.height >= Height.TALL else entry.text
 
 
 def _table_row(cells: Sequence[str]) -> str:

@@ -93,20 +93,31 @@ class Pen:
     around: Callable[..., Piece]  # a piece in brackets of a kind
 
     def __init__(
-        self, notation: Notation = DEFAULT, *, loose: bool = False, short: bool = False
+        self,
+        notation: Notation = DEFAULT,
+        *,
+        loose: bool = False,
+        short: bool = False,
+        small: bool = False,
     ) -> None:
         self.notation = notation
+        self.small = small  # whether dφ/dt is in small type, as within a matrix
         self.loose = loose  # whether a line may end within high brackets
         self.short = short  # whether s_θ and c_θ stand for sine and cosine
 
     def write(self, formula: tree.Formula) -> Piece:
         """The formula in the notation of this pen."""
         pen: Callable[..., Pen] = type(self)
-        return _written(pen, self.notation, self.loose, self.short, formula)
+        return _written(pen, self.notation, self.loose, self.short, self.small, formula)
 
-    def but(self, *, loose: bool = False, short: bool = False) -> Self:
+    def but(self, *, loose: bool = False, short: bool = False, small: bool = False) -> Self:
         """The same pen, which lets lines end within high brackets, or abbreviates functions."""
-        return type(self)(self.notation, loose=loose or self.loose, short=short or self.short)
+        return type(self)(
+            self.notation,
+            loose=loose or self.loose,
+            short=short or self.short,
+            small=small or self.small,
+        )
 
     def node(self, formula: tree.Formula) -> Piece:
         """One node, whose notation is settled; raises TypeError for a kind without a method."""
@@ -181,9 +192,14 @@ class Pen:
 
 @lru_cache(maxsize=16384)
 def _written(
-    pen: Callable[..., Pen], notation: Notation, loose: bool, short: bool, formula: tree.Formula
+    pen: Callable[..., Pen],
+    notation: Notation,
+    loose: bool,
+    short: bool,
+    small: bool,
+    formula: tree.Formula,
 ) -> Piece:
-    return pen(notation, loose=loose, short=short).node(notation.applied(formula))
+    return pen(notation, loose=loose, short=short, small=small).node(notation.applied(formula))
 
 
 def _on_a_line(index: tree.Formula) -> tree.Formula:

@@ -127,7 +127,9 @@ class SheetPen(Pen):
         """The quotient of differentials; the whole of a bracket stands behind it."""
         if isinstance(node.of, tree.Bracket):
             return self.glued((self.rate(tree.Rate(tree.row(), node.order)), self.node(node.of)))
-        return self._quotient(*self.differentials(node), Height.RATE)
+        whole = self._quotient(*self.differentials(node), Height.RATE)
+        size = widths.SCRIPT if self.small else 1.0
+        return atom(whole.text, size * whole.width, height=Height.RATE)
 
     def _quotient(self, above: Piece, below: Piece, height: Height) -> Piece:
         width = max(above.width, below.width) + widths.FRACTION
@@ -159,11 +161,16 @@ class SheetPen(Pen):
         return atom(self.spelt_root(inside.text), inside.width + widths.ROOT, height=height)
 
     def matrix(self, node: tree.Matrix) -> Piece:
-        rows = [[self.write(entry) for entry in line] for line in node.rows]
+        rows = [[self._entry(entry) for entry in line] for line in node.rows]
         columns = [max(entry.width for entry in column) for column in zip(*rows, strict=True)]
         gaps = widths.COLUMN_GAP * (len(columns) - 1)
         width = sum(columns) + gaps + widths.TALL_BRACKETS
         return atom(self.spelt_matrix(rows), width, Binding.BRACKET, Height.TALL)
+
+    def _entry(self, entry: tree.Formula) -> Piece:
+        """A rate in a matrix is in small type, unless a fraction beside it is not."""
+        small = self.but(small=True).write(entry)
+        return small if small.height <= Height.RATE else self.write(entry)
 
     def big(self, node: tree.Big) -> Piece:
         below, above = (self.node(b).text if b else "" for b in (node.below, node.above))

@@ -13,7 +13,9 @@ from rigidsym.models.rotation import Citation, RotationModel, Turn, product_of
 from rigidsym.models.so3 import AXES
 
 _NUMBERS = ("Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
-_SOURCE = Citation(text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002), section 4.4")
+_SOURCE = Citation(
+    text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)", section="section 4.4"
+)
 
 
 def chain(

@@ -37,6 +37,7 @@ class Preset:
     source: Citation
     names: tuple[str, ...] = ()
     passive: bool = False
+    z_down: bool = False  # whether its z-axis points to the ground
     options: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -80,7 +81,8 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
             rotation="ZXZ",
             about="Goldstein's Euler angles, his matrix A from space to body axes",
             source=Citation(
-                text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002), section 4.4",
+                text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)",
+                section="section 4.4",
                 equation="4.46",
             ),
             passive=True,
@@ -88,16 +90,18 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
         "landau_lifshitz": Preset(
             rotation="ZXZ",
             about="the Euler angles of Landau and Lifshitz",
-            source=Citation(text="L. Landau, E. Lifshitz, Mechanics (1976), section 35"),
+            source=Citation(text="L. Landau, E. Lifshitz, Mechanics (1976)", section="section 35"),
         ),
         "aerospace": Preset(
             rotation="ZYX",
             about="yaw, pitch, roll; from the reference frame to the axes of the aircraft",
             source=Citation(
-                text="B. Stevens, F. Lewis, Aircraft Control and Simulation (2003), section 1.3"
+                text="B. Stevens, F. Lewis, Aircraft Control and Simulation (2003)",
+                section="section 1.3",
             ),
             names=("psi", "theta", "phi"),
             passive=True,
+            z_down=True,
         ),
         "wertz": Preset(
             rotation="ZXZ",
@@ -111,7 +115,9 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
         "rpy": Preset(
             rotation="xyz",
             about="roll, pitch, yaw about fixed axes, as in robotics",
-            source=Citation(text="J. Craig, Introduction to Robotics (2005), section 2.8"),
+            source=Citation(
+                text="J. Craig, Introduction to Robotics (2005)", section="section 2.8"
+            ),
             names=("roll", "pitch", "yaw"),
         ),
         "davenport": Preset(

@@ -27,7 +27,7 @@ _SCHAUB = Citation(
     text="H. Schaub, J. Junkins, Stereographic Orientation Parameters for Attitude Dynamics, "
     "Journal of the Astronautical Sciences 44 (1996)"
 )
-_GOLDSTEIN = Citation(text="H. Goldstein, Classical Mechanics (1950), section 4-5")
+_GOLDSTEIN = Citation(text="H. Goldstein, Classical Mechanics (1950)", section="section 4-5")
 _SCALAR = {False: "scalar first", True: "scalar last"}
 _QUATERNION = "unit_quaternion({0}, {1}, {2}, {3})"
 _SQUARE = "{0}**2 + {1}**2 + {2}**2"

@@ -139,6 +139,7 @@ class RotationModel:
     passive: bool = False
     pullback: Pullback | None = None  # if the coordinates are bound, in place of constraints
     vector: tuple[sp.Expr, ...] = ()  # the three coordinates that are components of one vector
+    z_down: bool = False  # whether figures show the z-axis of space pointing down
     example: tuple[tuple[sp.Expr, sp.Expr], ...] = ()  # (symbol, value): a real point, if known
     request: Mapping[str, Any] = field(
         default_factory=dict, hash=False

@@ -185,6 +185,7 @@ def _preset(name: str, names: Sequence[str] | None, passive: bool) -> RotationMo
         name=name + ("_transposed" if passive else ""),
         title=preset.about[0].upper() + preset.about[1:] + (", transposed" if passive else ""),
         source=preset.source,
+        z_down=preset.z_down,
     )
 
 

@@ -18,6 +18,7 @@ from rigidsym.models.chain import axis_turn, chain
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.parametrisations import AxisAngle, GibbsVector, RotationVector, UnitQuaternion
 from rigidsym.models.rotation import Citation, RotationModel, Turn
+from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import time_function
 from rigidsym.models.solids import shaped
 from rigidsym.notes.document.document import plain
@@ -250,11 +251,12 @@ def test_a_turn_is_right_handed():
 
 @pytest.mark.parametrize(("azimuth", "elevation"), [(0, 0), (30, 20), (75, -40)])
 def test_a_camera_keeps_the_third_axis_upright(azimuth, elevation):
-    view = camera(azimuth, elevation)
-    across, up = view.project((0.0, 0.0, 1.0))
-    assert across == pytest.approx(0)
-    assert up == pytest.approx(cos(radians(elevation)))
-    assert cross(view.right, view.up) == pytest.approx(view.toward)
+    for z_down in (False, True):
+        view = camera(azimuth, elevation, z_down=z_down)
+        across, up = view.project((0.0, 0.0, -1.0 if z_down else 1.0))
+        assert across == pytest.approx(0)
+        assert up == pytest.approx(cos(radians(elevation)))
+        assert cross(view.right, view.up) == pytest.approx(view.toward)
 
 
 @given(
@@ -315,3 +317,12 @@ def test_a_turn_that_is_none_and_a_distant_body_are_drawn():
     body = rs.body_of(rs.Composite(parts=(rs.Part(what=cone, at=sp.ImmutableMatrix([99, 0, 0])),)))
     motion = rs.derive("z(k*v) x(pi/3-pi/3) [1,2,3](point)", "rotation_matrix", body=body)
     assert "<svg" in motion.note(with_kernels=False).html()
+
+
+def test_the_z_axis_of_an_aircraft_points_down_and_others_up():
+    for name, sign in (("aerospace", -1), ("ZYX", 1)):
+        model = rotation_from(name)
+        figure = figure_of(model, letters_of((), model=model))
+        z = next(label for label in figure.drawing.labels if label.symbol.text == "z")
+        assert sign * z.place[1] > 1
+        assert ("points down" in plain(figure.caption)) is (sign < 0)

@@ -58,7 +58,7 @@ def is_same(a: Vector, b: Vector) -> bool:
 
 
 class Camera(NamedTuple):
-    """Parallel projection; the third axis of space is vertical in the picture."""
+    """Parallel projection; the third axis of space is vertical in the picture, up or down."""
 
     right: Vector
     up: Vector
@@ -72,9 +72,12 @@ class Camera(NamedTuple):
         return dot(self.toward, a)
 
 
-def camera(azimuth: float, elevation: float) -> Camera:
-    """The camera of a viewer at this azimuth and elevation, in degrees."""
-    a, e = radians(azimuth), radians(elevation)
-    toward = (cos(e) * cos(a), cos(e) * sin(a), sin(e))
-    right = (-sin(a), cos(a), 0.0)
+def camera(azimuth: float, elevation: float, *, z_down: bool = False) -> Camera:
+    """The camera of a viewer at this azimuth and elevation, in degrees.
+
+    Where z points down, the viewer is above the ground all the same, at a negative z.
+    """
+    a, e, up = radians(azimuth), radians(elevation), -1 if z_down else 1
+    toward = (cos(e) * cos(a), cos(e) * sin(a), up * sin(e))
+    right = (-up * sin(a), up * cos(a), 0.0)
     return Camera(right, cross(toward, right), toward)

@@ -57,6 +57,7 @@ _VIEWS = (  # angles of the turns, azimuth and elevation in degrees; the cleares
     ((65, 40, 45, 40, 35), 55, 30),
     ((35, 30, 35, 30, 50), 28, 18),
 )
+_VIEWS_DOWN = (((40, 25, 35, 40, 40), -100, 24),)  # from the left wing's side, above the ground
 
 
 class Ray(NamedTuple):
@@ -107,10 +108,11 @@ class View(NamedTuple):
     angles: tuple[float, ...]
     azimuth: int
     elevation: int
+    z_down: bool = False
 
     @property
     def camera(self) -> Camera:
-        return camera(self.azimuth, self.elevation)
+        return camera(self.azimuth, self.elevation, z_down=self.z_down)
 
 
 class Posed(NamedTuple):
@@ -130,6 +132,7 @@ class Scene:
     rays: tuple[Ray, ...]
     turns: tuple[Rotary, ...]
     fixed: tuple[float | None, ...]  # the angles of turns that are constant, in radians
+    z_down: bool = False
 
     def posed(self, angles: Sequence[float]) -> Posed:
         """The scene at these angles, in radians."""
@@ -152,7 +155,7 @@ class Scene:
     @cached_property
     def view(self) -> View:
         """The clearest of the standard views."""
-        return max(map(self._seen, _VIEWS), key=self._clarity)
+        return max(map(self._seen, _VIEWS_DOWN if self.z_down else _VIEWS), key=self._clarity)
 
     def _seen(self, view: tuple[tuple[int, ...], int, int]) -> View:
         acute, azimuth, elevation = view
@@ -160,7 +163,7 @@ class Scene:
             radians(angle) if fixed is None else fixed
             for angle, fixed in zip(acute, self.fixed, strict=False)
         )
-        return View(angles=tuple(angles), azimuth=azimuth, elevation=elevation)
+        return View(tuple(angles), azimuth, elevation, self.z_down)
 
     def _clarity(self, view: View) -> float:
         """How far apart the ends of all axes appear, and how open the arcs: the worst case."""
@@ -221,6 +224,7 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
             for axis, start, radius, turn in zip(axes, starts, RADII, turns, strict=False)
         ),
         fixed=tuple(float(turn.angle) if turn.angle.is_number else None for turn in turns),
+        z_down=model.z_down,
     )
 
 

@@ -22,7 +22,10 @@ def figure_of(model: RotationModel, letters: Letters) -> Figure | None:
     posed = scene.posed(view.angles)
     return Figure(
         drawing=drawn(posed, view.camera),
-        caption=_caption(posed, _between_in_words(model.turns)),
+        caption=(
+            *_caption(posed, _between_in_words(model.turns)),
+            *((" The ", posed.rays[2].name, "-axis points down.") if model.z_down else ()),
+        ),
         description=tuple(chain.from_iterable((*s, " ") for s in _in_words(posed)))[:-1],
     )
 

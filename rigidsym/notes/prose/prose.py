@@ -86,8 +86,8 @@ def motion(*, passive: bool) -> Iterator[NoteBlock]:
             *(_TURNING, spin_of(shown), _MOTION),
         )
     yield said(
-        r"For any vector $\mathbf{u}$ the matrix of $\mathbf{u}\times$ is skew, and so is {}, "
-        "as the derivative of {} shows:",
+        r"The matrix of $\mathbf{u}\times$ is skew for any $\mathbf{u}$, and so is {}, by "
+        "differentiation of {}:",
         *(spin_of(shown), orthogonal(shown)),
     )
     operator = Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))

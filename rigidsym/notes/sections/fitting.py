@@ -34,7 +34,7 @@ from rigidsym.notes.document.document import (
     listed,
     said,
 )
-from rigidsym.notes.prose.short import in_short
+from rigidsym.notes.prose.short import by_the_chain_rule, in_short
 from rigidsym.notes.prose.vector_words import sum_of_vectors
 
 _MOST_LINES = 24  # of one quantity, where there is a short way to say it
@@ -72,6 +72,10 @@ class Fitter:
             yield _without_entries(equation, short)
             return
         form = self._shortest(equation)
+        if form.parts and step.quantity.name == "rotation_rate":  # too long for what it is good for
+            self._namer.forget()
+            yield _without_entries(equation, (by_the_chain_rule(equation.sides[0], self.letters),))
+            return
         if short is not None:
             lines = sum(map(self._lines, self._blocks(form)))
             is_rotation = step.quantity.name == "rotation_matrix"
