@@ -289,7 +289,7 @@ def test_what_was_not_chosen_is_not_taken_for_granted():
 
 def test_a_matrix_of_ones_own_converts_by_what_it_is():
     vector = given(RotationVector().matrix, name="mine")
-    assert Conversions(vector).inverse.rule.rule == "rotation_vector"
+    assert Conversions(vector).inverse.rule == "rotation_vector"
     phi = sp.Function("phi")(sp.Symbol("t"))
     c, s = sp.cos(phi), sp.sin(phi)
     about_z = given(sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]]), name="own")

@@ -90,7 +90,7 @@ def samples(case: Case, q: np.ndarray, *, passive: bool = False) -> Samples:
     names = [symbol.name for symbol in model.constants]
     values = LEAN if "a" not in names else {}
     constants = [[(NUMBERS | values)[name] for name in names]] if names else []
-    rule = Conversions(model).inverse.rule
+    rule = Conversions(model).inverse
     functions = module(case.text, passive=passive)
     assert len(rule.kept) == case.kept
     return Samples(
@@ -344,7 +344,7 @@ def test_every_claim_is_proved_and_said(case):
     assert ("kept at the values given" in branch) is bool(case.kept)
     claims = [proof.claim.text for proof in found.proofs]
     assert "p₊ = e^(e₁ σ) m₊" in claims
-    rule = found.inverse.rule
+    rule = found.inverse
     assert any(claim.startswith("R = ") for claim in claims) is bool(rule.before + rule.right)
 
 

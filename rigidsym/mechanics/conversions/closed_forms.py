@@ -7,7 +7,8 @@ rotation vector converts as one. Nothing cancels on the way back.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 
 import sympy as sp
 
@@ -25,49 +26,52 @@ class ClosedForm(InverseRule):
 
     rule: str  # its name: "quaternion", "rotation_vector", ...
     quaternion: Vector  # scalar first, of length one; empty where it is read off from R
-    because: str  # how the quaternion follows, with formulas between dollar signs
+    forward: str  # how the quaternion follows, with formulas between dollar signs
     back: Callable[[NamedValues, Vector], Vector]  # the coordinates of a scaled quaternion
-    back_because: str
-    branch: str  # which of the possible coordinates are given
+    backward: str  # how they follow
+    choice: str  # which of the possible coordinates are given
     residuals: tuple[Claim, ...] = ()
     has_both_signs: bool = False  # whether p and −p differ
     continuity: str = ""  # a sentence; empty where the coordinates are unique
-    order: tuple[int, ...] = ()  # place, among the model's coordinates, of each that `back` gives
+    order: tuple[int, ...]  # place, among the model's coordinates, of each that `back` gives
 
     @property
     def is_scalar_last(self) -> bool:
         return self.rule == "quaternion" and self.order[0] == 3
 
-    def sentences(self, model: RotationModel) -> tuple[Sentence, Sentence]:  # noqa: ARG002
-        return sentence(self.back_because), sentence(self.branch)
+    @property
+    def because(self) -> Sentence:
+        return sentence(self.backward)
 
-    def claims(self, model: RotationModel) -> Sequence[Claim]:  # noqa: ARG002
+    @property
+    def branch(self) -> Sentence:
+        return sentence(self.choice)
+
+    def claims(self) -> Sequence[Claim]:
         return self.residuals
 
-    def from_quaternion(
-        self,
-        values: NamedValues,
-        model: RotationModel,  # noqa: ARG002
-        quaternion: Vector,
-    ) -> Vector:
+    def from_quaternion(self, values: NamedValues, quaternion: Vector) -> Vector:
         return in_order(self.back(values, quaternion), self.order)
 
-    def from_matrix(self, values: NamedValues, model: RotationModel, matrix: sp.Matrix) -> Vector:
+    def from_matrix(self, values: NamedValues, matrix: sp.Matrix) -> Vector:
         if self.rule == "direction_cosines":
             return in_order(tuple(matrix), self.order)
         quaternion = shepperd(values, matrix)
         if self.has_both_signs:
             quaternion = short_way(values, quaternion)
-        return self.from_quaternion(values, model, quaternion)
+        return self.from_quaternion(values, quaternion)
+
+
+Make = Callable[..., ClosedForm]  # for one model, whose coordinates are in one order
 
 
 def closed_form(model: RotationModel) -> ClosedForm | None:
     """The form of a model that is one of the parametrisations; None where it is none."""
     for build, count, form in _FORMS:
         for order in _orders(len(model.coordinates)):
-            q = [model.coordinates[place] for place in order]
+            q = tuple(model.coordinates[place] for place in order)
             if len(q) == count and _matches(model, build([part.func.__name__ for part in q])):
-                return replace(form(tuple(q)), order=order)
+                return form(partial(ClosedForm, model=model, order=order), q)
     return None
 
 
@@ -103,38 +107,38 @@ _NEARER = "to the sample before: exact, since only signs change."
 _OF_TWO_SIGNS = f"Of p and −p the one nearer {_NEARER}"
 
 
-def _quaternion(q: Vector) -> ClosedForm:
+def _quaternion(make: Make, q: Vector) -> ClosedForm:
     length = sp.sqrt(square(q))
     parts = _along(1 / length, q)
-    return ClosedForm(
+    return make(
         rule="quaternion",
         quaternion=parts,
-        because="The quaternion is divided by its length.",
+        forward="The quaternion is divided by its length.",
         back=unit,
-        back_because="The unit quaternion is one of its multiples.",
-        branch=f"The length is 1. {_KEPT}",
+        backward="The unit quaternion is one of its multiples.",
+        choice=f"The length is 1. {_KEPT}",
         residuals=(_equal(_along(length, parts), q, r"|\mathbf{q}|\,\mathbf{p} = \mathbf{q}"),),
         has_both_signs=True,
         continuity=_OF_TWO_SIGNS,
     )
 
 
-def _unit(q: Vector) -> ClosedForm:
+def _unit(make: Make, q: Vector) -> ClosedForm:
     because = "The coordinates are the unit quaternion."
-    return ClosedForm(
+    return make(
         rule="quaternion",
         quaternion=q,
-        because=because,
+        forward=because,
         back=unit,
-        back_because=because,
-        branch=f"The length is 1. {_KEPT}",
+        backward=because,
+        choice=f"The length is 1. {_KEPT}",
         residuals=(_equal([square(q)], [sp.S.One], r"\mathbf{q}\cdot\mathbf{q} = 1"),),
         has_both_signs=True,
         continuity=_OF_TWO_SIGNS,
     )
 
 
-def _cayley_klein(q: Vector) -> ClosedForm:
+def _cayley_klein(make: Make, q: Vector) -> ClosedForm:
     a, b, c, d = q
     because = (
         r"$\alpha = w + i z$ and $\beta = y + i x$ are the entries of the matrix of the "
@@ -145,20 +149,20 @@ def _cayley_klein(q: Vector) -> ClosedForm:
         w, x, y, z = unit(values, quaternion)
         return w, z, y, x
 
-    return ClosedForm(
+    return make(
         rule="cayley_klein",
         quaternion=(a, d, c, b),
-        because=because,
+        forward=because,
         back=back,
-        back_because=because,
-        branch=rf"$|\alpha|^2 + |\beta|^2 = 1$. {_KEPT}",
+        backward=because,
+        choice=rf"$|\alpha|^2 + |\beta|^2 = 1$. {_KEPT}",
         residuals=(_equal([square(q)], [sp.S.One], r"|\alpha|^2 + |\beta|^2 = 1"),),
         has_both_signs=True,
         continuity=f"Of the parameters and their negatives those nearer {_NEARER}",
     )
 
 
-def _axis_angle(q: Vector) -> ClosedForm:
+def _axis_angle(make: Make, q: Vector) -> ClosedForm:
     *axis, angle = q
     half = sp.sin(angle / 2)
     vector = _along(half, axis)
@@ -169,15 +173,15 @@ def _axis_angle(q: Vector) -> ClosedForm:
         first = values.let("axis_x", Where(none, sp.S.One, x / length))
         return first, y / length, z / length, 2 * sp.atan2(Where(none, sp.S.Zero, length), w)
 
-    return ClosedForm(
+    return make(
         rule="axis_angle",
         quaternion=(sp.cos(angle / 2), *vector),
-        because=r"A turn by $\varphi$ about $\mathbf{e}$ is the quaternion "
+        forward=r"A turn by $\varphi$ about $\mathbf{e}$ is the quaternion "
         r"$\cos\frac{\varphi}{2} + \mathbf{e}\sin\frac{\varphi}{2}$.",
         back=back,
-        back_because="The vector part points along the axis, and its length is "
+        backward="The vector part points along the axis, and its length is "
         r"$\sin\frac{\varphi}{2}$.",
-        branch="The angle is in [0, π]; without a turn, the axis is $x$.",
+        choice="The angle is in [0, π]; without a turn, the axis is $x$.",
         residuals=(
             _equal(vector, vector, r"\mathbf{p}_v = \sin\tfrac{\varphi}{2}\,\mathbf{e}"),
             _equal([square(vector)], [half**2], r"|\mathbf{p}_v|^2 = \sin^2\tfrac{\varphi}{2}"),
@@ -187,7 +191,7 @@ def _axis_angle(q: Vector) -> ClosedForm:
     )
 
 
-def _rotation_vector(q: Vector) -> ClosedForm:
+def _rotation_vector(make: Make, q: Vector) -> ClosedForm:
     angle = sp.sqrt(square(q))
     half = sp.sin(angle / 2)
     vector = _along(half / angle, q)
@@ -199,15 +203,15 @@ def _rotation_vector(q: Vector) -> ClosedForm:
         factor = values.let("factor", Where(none, limit, 2 * sp.atan2(length, w) / length))
         return _along(factor, found)
 
-    return ClosedForm(
+    return make(
         rule="rotation_vector",
         quaternion=(sp.cos(angle / 2), *vector),
-        because=r"With $n = |\mathbf{v}|$, a turn by $n$ about $\mathbf{v}/n$ is the quaternion "
+        forward=r"With $n = |\mathbf{v}|$, a turn by $n$ about $\mathbf{v}/n$ is the quaternion "
         r"$\cos\frac{n}{2} + \frac{\mathbf{v}}{n}\sin\frac{n}{2}$.",
         back=back,
-        back_because=r"The vector part points along $\mathbf{v}$, and its length is "
+        backward=r"The vector part points along $\mathbf{v}$, and its length is "
         r"$\sin\frac{n}{2}$.",
-        branch=f"The length is in [0, π]. {_SHORT}",
+        choice=f"The length is in [0, π]. {_SHORT}",
         residuals=(
             _equal(
                 _along(angle, vector),
@@ -221,7 +225,7 @@ def _rotation_vector(q: Vector) -> ClosedForm:
     )
 
 
-def _gibbs(q: Vector) -> ClosedForm:
+def _gibbs(make: Make, q: Vector) -> ClosedForm:
     length = sp.sqrt(1 + square(q))
     parts = _along(1 / length, (sp.S.One, *q))
 
@@ -231,18 +235,18 @@ def _gibbs(q: Vector) -> ClosedForm:
             part / Where(sp.Eq(w, 0), Where(sp.Eq(part, 0), sp.S.One, w), w) for part in vector
         )
 
-    return ClosedForm(
+    return make(
         rule="gibbs_vector",
         quaternion=parts,
-        because=r"The quaternion $1 + \mathbf{g}$ is divided by its length.",
+        forward=r"The quaternion $1 + \mathbf{g}$ is divided by its length.",
         back=back,
-        back_because="The vector part is divided by the scalar.",
-        branch="Every rotation has one vector. A half turn gives inf, and 0 where its axis has 0.",
+        backward="The vector part is divided by the scalar.",
+        choice="Every rotation has one vector. A half turn gives inf, and 0 where its axis has 0.",
         residuals=(_equal(_along(parts[0], q), parts[1:], r"p_w\,\mathbf{g} = \mathbf{p}_v"),),
     )
 
 
-def _modified(q: Vector) -> ClosedForm:
+def _modified(make: Make, q: Vector) -> ClosedForm:
     size = square(q)
     scalar, vector = (1 - size) / (1 + size), _along(2 / (1 + size), q)
 
@@ -251,14 +255,14 @@ def _modified(q: Vector) -> ClosedForm:
         divisor = values.let("divisor", values.length("length", parts) + parts[0])
         return tuple(part / divisor for part in parts[1:])
 
-    return ClosedForm(
+    return make(
         rule="modified_rodrigues",
         quaternion=(scalar, *vector),
-        because=r"$\cos\frac{n}{2}$ and $\sin\frac{n}{2}$ are rational functions of "
+        forward=r"$\cos\frac{n}{2}$ and $\sin\frac{n}{2}$ are rational functions of "
         r"$\mathbf{s} = \tan\frac{n}{4}\,\mathbf{e}$.",
         back=back,
-        back_because="The vector part is divided by one plus the scalar.",
-        branch=r"Of the two sets, the one with $\mathbf{s}\cdot\mathbf{s} \le 1$, a turn by at "
+        backward="The vector part is divided by one plus the scalar.",
+        choice=r"Of the two sets, the one with $\mathbf{s}\cdot\mathbf{s} \le 1$, a turn by at "
         "most π.",
         residuals=(_equal(_along(1 + scalar, q), vector, r"(1 + p_w)\,\mathbf{s} = \mathbf{p}_v"),),
         continuity="Of the two sets the one whose quaternion is nearer to that of the sample "
@@ -266,22 +270,24 @@ def _modified(q: Vector) -> ClosedForm:
     )
 
 
-def _cosines(q: Vector) -> ClosedForm:  # noqa: ARG001  (as the others)
+def _cosines(make: Make, q: Vector) -> ClosedForm:  # noqa: ARG001  (as the others)
     def back(values: NamedValues, quaternion: Vector) -> Vector:
         size = values.let("square", square(quaternion))
         return tuple(sp.expand(entry) / size for entry in rotation_of(quaternion))
 
-    return ClosedForm(
+    return make(
         rule="direction_cosines",
         quaternion=(),
-        because=r"The quaternion is read off from $\mathbf{R}$.",
+        forward=r"The quaternion is read off from $\mathbf{R}$.",
         back=back,
-        back_because=r"The coordinates are the entries of $\mathbf{R}$.",
-        branch="Every rotation has one matrix.",
+        backward=r"The coordinates are the entries of $\mathbf{R}$.",
+        choice="Every rotation has one matrix.",
     )
 
 
-_FORMS: tuple[tuple[Callable[..., RotationModel], int, Callable[[Vector], ClosedForm]], ...] = (
+_FORMS: tuple[
+    tuple[Callable[..., RotationModel], int, Callable[[Make, Vector], ClosedForm]], ...
+] = (
     (parametrisations.Quaternion, 4, _quaternion),
     (parametrisations.UnitQuaternion, 4, _unit),
     (parametrisations.CayleyKlein, 4, _cayley_klein),

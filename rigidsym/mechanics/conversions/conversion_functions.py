@@ -13,7 +13,7 @@ from rigidsym.mechanics.conversions.closed_forms import ClosedForm
 from rigidsym.mechanics.conversions.conversions import (
     UNIT,
     Conversions,
-    InverseConversion,
+    Rule,
 )
 from rigidsym.mechanics.conversions.davenport_angles import DavenportAngles
 from rigidsym.mechanics.conversions.function import (
@@ -76,7 +76,7 @@ def _quaternion(
 ) -> tuple[tuple[Step, ...], tuple[ConversionFunction, ...]]:
     """The unit quaternion, as a step where it has a formula of its own."""
     number_in_note = len(derivation.steps) + 1
-    rule = conversions.inverse.rule if conversions.inverse else None
+    rule = conversions.inverse
     if isinstance(rule, ClosedForm) and conversions.variants:
         return (), (_of_any_length(derivation, rule, number_in_note),)
     if isinstance(rule, ClosedForm) and rule.rule == "rotation_vector":
@@ -86,13 +86,13 @@ def _quaternion(
     return (), (_quaternion_of_matrix(derivation),)
 
 
-def _inputs(derivation: Derivation, inverse: InverseConversion) -> list[ConversionInput]:
+def _inputs(derivation: Derivation, inverse: Rule) -> list[ConversionInput]:
     """The arguments beside the rotation."""
     found = []
     if "parameters" in inverse.given:
         found.append(ConversionInput(argument=derivation.argument("parameters")))
     if "kept" in inverse.given:
-        kept = _kept(derivation, inverse.rule.kept)
+        kept = _kept(derivation, inverse.kept)
         found.append(ConversionInput(argument=kept, is_optional=True))
     return found
 
@@ -114,17 +114,17 @@ def _kept(derivation: Derivation, places: Sequence[int]) -> Argument:
     )
 
 
-def _from_quaternion(derivation: Derivation, inverse: InverseConversion) -> ConversionFunction:
+def _from_quaternion(derivation: Derivation, inverse: Rule) -> ConversionFunction:
     given = symbols(QUATERNION)
     values = NamedValues(given[0])
     quaternion = scaled(values, given)
-    order = "last" if inverse.rule.is_scalar_last else "first"
-    listed = scalar_last(given) if inverse.rule.is_scalar_last else given
+    order = "last" if inverse.is_scalar_last else "first"
+    listed = scalar_last(given) if inverse.is_scalar_last else given
     rotation = argument_of("quaternion", listed, f"a quaternion of any length, scalar {order}")
     return values.function(
         "from_quaternion",
         [ConversionInput(argument=rotation), *_inputs(derivation, inverse)],
-        inverse.rule.from_quaternion(values, derivation.model, quaternion),
+        inverse.from_quaternion(values, quaternion),
         f"the coordinates of a quaternion, scalar {order}",
         *_remarks(inverse),
         "Its length does not matter; zero gives NaN.",
@@ -132,13 +132,13 @@ def _from_quaternion(derivation: Derivation, inverse: InverseConversion) -> Conv
     )
 
 
-def from_matrix(derivation: Derivation, inverse: InverseConversion) -> ConversionFunction:
+def from_matrix(derivation: Derivation, inverse: Rule) -> ConversionFunction:
     """The function `from_rotation_matrix`."""
     model = derivation.model
     given = symbols(MATRIX)
     values = NamedValues(given[0])
     matrix = sp.Matrix(3, 3, given)
-    outputs = inverse.rule.from_matrix(values, model, matrix.T if model.passive else matrix)
+    outputs = inverse.from_matrix(values, matrix.T if model.passive else matrix)
     shown = "A, the transpose of R" if model.passive else "R"
     rotation = argument_of("matrix", given, f"a rotation matrix {shown}")
     return values.function(
@@ -153,7 +153,7 @@ def from_matrix(derivation: Derivation, inverse: InverseConversion) -> Conversio
     )
 
 
-def _remarks(inverse: InverseConversion) -> tuple[str, ...]:
+def _remarks(inverse: Rule) -> tuple[str, ...]:
     source = (f"Source: {inverse.source}.",) if inverse.source else ()
     return (text_of(inverse.because), text_of(inverse.branch), *source)
 
@@ -223,11 +223,9 @@ def _of_rotation_vector(derivation: Derivation, number_in_note: int) -> Conversi
     )
 
 
-def _shadow_sets(
-    derivation: Derivation, inverse: InverseConversion
-) -> tuple[ConversionFunction, ...]:
+def _shadow_sets(derivation: Derivation, inverse: Rule) -> tuple[ConversionFunction, ...]:
     """The other set of modified Rodrigues parameters, and the shorter of both."""
-    if not isinstance(inverse.rule, ClosedForm) or inverse.rule.rule != "modified_rodrigues":
+    if not isinstance(inverse, ClosedForm) or inverse.rule != "modified_rodrigues":
         return ()
     q = derivation.argument("q")
     shadow, shorter = NamedValues(q.symbols[0]), NamedValues(q.symbols[0])
@@ -253,29 +251,26 @@ def _shadow_sets(
     )
 
 
-def _continuity(derivation: Derivation, inverse: InverseConversion) -> Continuity | None:
+def _continuity(derivation: Derivation, inverse: Rule) -> Continuity | None:
     """The continuity of the coordinates; None if they are unique."""
-    rule = inverse.rule
-    if not isinstance(rule, ClosedForm):
-        return _of_turns(derivation, rule, inverse.given)
-    if not rule.continuity:
+    if not isinstance(inverse, ClosedForm):
+        return _of_turns(derivation, inverse)
+    if not inverse.continuity:
         return None
-    kind = "quaternion" if rule.has_both_signs else rule.rule
-    return Continuity(kind=kind, inputs=("q",), remarks=(rule.continuity,))
+    kind = "quaternion" if inverse.has_both_signs else inverse.rule
+    return Continuity(kind=kind, inputs=("q",), remarks=(inverse.continuity,))
 
 
-def _of_turns(
-    derivation: Derivation, rule: DavenportAngles | TurnChain, given: Sequence[str]
-) -> Continuity:
+def _of_turns(derivation: Derivation, rule: DavenportAngles | TurnChain) -> Continuity:
     model = derivation.model
-    names = ("q", *(name for name in given if name == "parameters"))
+    names = ("q", *(name for name in rule.given if name == "parameters"))
     inputs = [ConversionInput(argument=derivation.argument(name)) for name in names]
     values = NamedValues(model.coordinates[0])
     relation = rule.relation(values)
     turns = values.function(
         "turns_of_coordinates",
         inputs,
-        [*rule.turn_angles(model), *relation],
+        [*rule.turn_angles(), *relation],
         "angles of the turns",
         symbol="",
     )

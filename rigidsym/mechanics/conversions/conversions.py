@@ -7,7 +7,6 @@ model presents the transpose.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, reduce
 
@@ -21,15 +20,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.sentence import Sentence, sentence, text_of
 from rigidsym.mechanics.conversions.closed_forms import ClosedForm, closed_form
 from rigidsym.mechanics.conversions.davenport_angles import DavenportAngles, davenport_angles
-from rigidsym.mechanics.conversions.inverse import Claim, claim
-from rigidsym.mechanics.conversions.three_axes import (
-    half_claims,
-    middle_claims,
-    outer_claims,
-    three_axes,
-    triangle,
-    triangle_claims,
-)
+from rigidsym.mechanics.conversions.inverse import claim, vanishing
 from rigidsym.mechanics.conversions.turn_chain import TurnChain, turn_chain
 from rigidsym.mechanics.conversions.unit_quaternions import (
     half_turn,
@@ -68,38 +59,7 @@ _FACTORS = sentence(
 )
 _TURNS = formula(r"\mathbf{R}(\mathbf{p}) = \mathbf{R}")
 _UNIT = formula(r"\mathbf{p}\cdot\mathbf{p} = 1")
-
-
-@dataclass(frozen=True)
-class InverseConversion:
-    """How the coordinates follow from a quaternion of any length but zero."""
-
-    model: RotationModel
-    rule: DavenportAngles | TurnChain | ClosedForm
-
-    @property
-    def source(self) -> Citation | None:
-        return self.rule.source
-
-    @property
-    def because(self) -> Sentence:
-        """How it follows."""
-        return self.rule.sentences(self.model)[0]
-
-    @property
-    def branch(self) -> Sentence:
-        """Which of the possible coordinates are given."""
-        return self.rule.sentences(self.model)[1]
-
-    @property
-    def given(self) -> tuple[str, ...]:
-        """Arguments that the functions take besides: "parameters", "kept"."""
-        return (*["parameters"] * bool(self.model.constants), *["kept"] * bool(self.rule.kept))
-
-    @cached_property
-    def proofs(self) -> tuple[Proof, ...]:
-        proofs = _vanishing(self.model, self.rule.claims(self.model))
-        return proofs + (_of_any_axes(self.rule) if isinstance(self.rule, TurnChain) else ())
+Rule = DavenportAngles | TurnChain | ClosedForm
 
 
 @dataclass(frozen=True)
@@ -116,7 +76,7 @@ class Conversions:
         return closed_form(self.model)
 
     @cached_property
-    def _rule(self) -> DavenportAngles | TurnChain | ClosedForm | str:
+    def _rule(self) -> Rule | str:
         return self._form or davenport_angles(self.model) or turn_chain(self.model)
 
     @cached_property
@@ -127,11 +87,12 @@ class Conversions:
     @property
     def because(self) -> Sentence:
         """How the quaternion follows."""
-        return sentence(self._form.because) if self._form else _FACTORS
+        return sentence(self._form.forward) if self._form else _FACTORS
 
-    @cached_property
-    def inverse(self) -> InverseConversion | None:
-        return None if isinstance(self._rule, str) else InverseConversion(self.model, self._rule)
+    @property
+    def inverse(self) -> Rule | None:
+        """How the coordinates follow from a quaternion of any length but zero."""
+        return None if isinstance(self._rule, str) else self._rule
 
     @property
     def without(self) -> str:
@@ -158,34 +119,6 @@ class Conversions:
     @property
     def is_proved(self) -> bool:
         return all(proof.is_exact for proof in self.proofs)
-
-
-def _of_any_axes(rule: TurnChain) -> tuple[Proof, ...]:
-    """What solves turns about any axes."""
-    if len(rule.solved) < 3:
-        return _outer_turns()
-    return _outer_turns() + (_middle_turn() if rule.has_two_sets else _middle_of_half())
-
-
-@cache
-def _outer_turns() -> tuple[Proof, ...]:
-    """What solves the outer turns, once for all models."""
-    axes = three_axes()
-    return _vanishing(axes, outer_claims(axes))
-
-
-@cache
-def _middle_of_half() -> tuple[Proof, ...]:
-    """What solves the turn between them where the outer turns are by one angle."""
-    axes = three_axes()
-    return _vanishing(axes, half_claims(axes))
-
-
-@cache
-def _middle_turn() -> tuple[Proof, ...]:
-    """What solves it otherwise."""
-    axes, sides = three_axes(), triangle()
-    return (*_vanishing(axes, middle_claims(axes)), *_vanishing(sides, triangle_claims(sides)))
 
 
 def _unit_variants(model: RotationModel, form: ClosedForm | None) -> tuple[Step, ...]:
@@ -249,7 +182,7 @@ def _step_of_turns(model: RotationModel) -> Step:
 
 def _step(model: RotationModel, form: ClosedForm) -> Step:
     codec = codec_for([*model.matrix, *form.quaternion], constraints=model.constraints, order=0)
-    return _proved_step(model, codec, sp.ImmutableMatrix(form.quaternion), sentence(form.because))
+    return _proved_step(model, codec, sp.ImmutableMatrix(form.quaternion), sentence(form.forward))
 
 
 def _proved_step(
@@ -271,19 +204,6 @@ def _proved_step(
     )
 
 
-def _vanishing(model: RotationModel, claims: Sequence[Claim]) -> tuple[Proof, ...]:
-    """Proofs that the residuals of each claim reduce to zero."""
-    if not claims:
-        return ()
-    residuals = [residual for found, _ in claims for residual in found]
-    codec = codec_for([*model.matrix, *residuals], constraints=model.constraints, order=0)
-    prove = Prover(model, codec)
-    return tuple(
-        prove.vanishes(RingMatrix.column(codec.ring, map(codec.encode, found)), text)
-        for found, text in claims
-    )
-
-
 @cache
 def _read_off() -> Proof:
     """4 p pᵀ = K(R): sums and differences of the entries of R, for every unit quaternion p."""
@@ -291,4 +211,4 @@ def _read_off() -> Proof:
     column = sp.Matrix(model.coordinates)
     text = r"4\,\mathbf{p}\mathbf{p}^{\mathsf T} = \mathbf{K}"
     residual = outer_product(model.matrix) - 4 * column * column.T
-    return _vanishing(model, [claim(text, *residual)])[0]
+    return vanishing(model, [claim(text, *residual)])[0]

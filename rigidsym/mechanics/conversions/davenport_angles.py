@@ -65,19 +65,23 @@ class DavenportAngles(InverseRule):
         along, across = self.lean
         return 2 * sp.atan2(across, along)
 
-    def sentences(self, model: RotationModel) -> tuple[Sentence, Sentence]:
-        names = [named(q.func.__name__) for q in model.coordinates]
+    @property
+    def because(self) -> Sentence:
+        return _BECAUSE
+
+    @property
+    def branch(self) -> Sentence:
+        names = [named(q.func.__name__) for q in self.model.coordinates]
         first, middle, third = (names[place] for place in self.places)
         low, high = -self.offset, sp.pi - self.offset
         if self.sign < 0:
             low, high = -high, -low
-        branch = sentence(
+        return sentence(
             f"{{}} and {{}} are in (−π, π], {{}} is in [{_text(low)}, {_text(high)}]. At a pole, "
             "the ends of that interval, only the sum or the difference of {} and {} is determined: "
             "there {} is 0. Orientations within 8 eps (radians) of a pole count as poles.",
             *(first, third, middle, first, third, names[2]),
         )
-        return _BECAUSE, branch
 
     def _in_frame(self, quaternion: Sequence[sp.Expr]) -> sp.Matrix:
         """The components of p (1 + C) in the frame, (4, 1)."""
@@ -85,10 +89,10 @@ class DavenportAngles(InverseRule):
         whole = product(tuple(quaternion), (scalar, *(part * self.frame[:, 1])))
         return sp.diag(1, self.frame.T) * sp.Matrix(whole)
 
-    def claims(self, model: RotationModel) -> list[Claim]:
+    def claims(self) -> list[Claim]:
         """The four components of p (1 + C) in the frame, for p the product of the three turns."""
-        turns = (half_turn(turn.direction, turn.angle) for turn in model.turns)
-        first, middle, third = (turn.angle for turn in model.turns)
+        turns = (half_turn(turn.direction, turn.angle) for turn in self.model.turns)
+        first, middle, third = (turn.angle for turn in self.model.turns)
         half, (along, across) = self.sign * middle / 2, self.lean
         cosine = along * sp.cos(half) - across * sp.sin(half)
         sine = along * sp.sin(half) + across * sp.cos(half)
@@ -107,21 +111,11 @@ class DavenportAngles(InverseRule):
             )
         ]
 
-    def from_quaternion(
-        self,
-        values: NamedValues,
-        model: RotationModel,  # noqa: ARG002
-        quaternion: Vector,
-    ) -> Vector:
+    def from_quaternion(self, values: NamedValues, quaternion: Vector) -> Vector:
         parts = map(rounded, self._in_frame(quaternion))
         return self._angles(values, values.each(("a0", "a1", "a2", "a3"), parts))
 
-    def from_matrix(
-        self,
-        values: NamedValues,
-        model: RotationModel,  # noqa: ARG002
-        matrix: sp.Matrix,
-    ) -> Vector:
+    def from_matrix(self, values: NamedValues, matrix: sp.Matrix) -> Vector:
         """From the matrix of the two turns about e₁, in the frame."""
         along, across = self.lean
         skew = hat(self.frame[:, 1])
@@ -141,8 +135,8 @@ class DavenportAngles(InverseRule):
         first, last = outer_angles(values, total, difference)
         return in_order((first, middle, last), self.places)
 
-    def turn_angles(self, model: RotationModel) -> Vector:
-        return tuple(model.coordinates[place] for place in self.places)
+    def turn_angles(self) -> Vector:
+        return tuple(self.model.coordinates[place] for place in self.places)
 
     def relation(self, values: NamedValues) -> Vector:  # noqa: ARG002
         """What relates two sets of angles; see `TurnChain.relation`."""
@@ -171,6 +165,7 @@ def davenport_angles(model: RotationModel) -> DavenportAngles | None:
     frame = sp.Matrix.hstack(first, second, first.cross(second)).applyfunc(sp.expand)
     first_place, middle_place, last_place = (model.coordinates.index(angle) for angle in angles)
     return DavenportAngles(
+        model=model,
         frame=sp.ImmutableMatrix(frame),
         lean=lean,
         sign=sign,

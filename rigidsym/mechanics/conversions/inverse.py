@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import sympy as sp
 
+from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.formula.reader import formula
 from rigidsym.formula.sentence import Sentence
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.conversions.function import NamedValues, Vector
 from rigidsym.mechanics.conversions.unit_quaternions import shepperd
+from rigidsym.mechanics.derivation import Proof
+from rigidsym.mechanics.prove import Prover
 from rigidsym.models.rotation import Citation, RotationModel
 
 Claim = tuple[tuple[sp.Expr, ...], Formula]  # what vanishes, and how it is written
@@ -23,9 +29,24 @@ def claim(text: str, *residuals: sp.Expr) -> Claim:
     return residuals, formula(text)
 
 
+def vanishing(model: RotationModel, claims: Sequence[Claim]) -> tuple[Proof, ...]:
+    """Proofs that the residuals of each claim reduce to zero in the ring of the model."""
+    if not claims:
+        return ()
+    residuals = [residual for found, _ in claims for residual in found]
+    codec = codec_for([*model.matrix, *residuals], constraints=model.constraints, order=0)
+    prove = Prover(model, codec)
+    return tuple(
+        prove.vanishes(RingMatrix.column(codec.ring, map(codec.encode, found)), text)
+        for found, text in claims
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class InverseRule(ABC):
     """How the coordinates follow from a quaternion of any length but zero, or from R."""
 
+    model: RotationModel
     source: ClassVar[Citation | None] = None
     kept: tuple[int, ...] = ()  # places of the coordinates that the rotation does not determine
 
@@ -34,23 +55,36 @@ class InverseRule(ABC):
         """Whether quaternions are (x, y, z, w), as the coordinates are."""
         return False
 
+    @property
     @abstractmethod
-    def sentences(self, model: RotationModel) -> tuple[Sentence, Sentence]:
-        """How they follow, and which of the possible coordinates are given."""
+    def because(self) -> Sentence:
+        """How they follow."""
+
+    @property
+    @abstractmethod
+    def branch(self) -> Sentence:
+        """Which of the possible coordinates are given."""
 
     @abstractmethod
-    def claims(self, model: RotationModel) -> Sequence[Claim]:
+    def claims(self) -> Sequence[Claim]:
         """What the ring of the model has to decide."""
 
+    @property
+    def given(self) -> tuple[str, ...]:
+        """Arguments that the functions take besides: "parameters", "kept"."""
+        return (*["parameters"] * bool(self.model.constants), *["kept"] * bool(self.kept))
+
+    @cached_property
+    def proofs(self) -> tuple[Proof, ...]:
+        return vanishing(self.model, self.claims())
+
     @abstractmethod
-    def from_quaternion(
-        self, values: NamedValues, model: RotationModel, quaternion: Vector
-    ) -> Vector:
+    def from_quaternion(self, values: NamedValues, quaternion: Vector) -> Vector:
         """The coordinates of a quaternion that is scaled, scalar first."""
 
-    def from_matrix(self, values: NamedValues, model: RotationModel, matrix: sp.Matrix) -> Vector:
+    def from_matrix(self, values: NamedValues, matrix: sp.Matrix) -> Vector:
         """The coordinates of a rotation matrix R, (3, 3)."""
-        return self.from_quaternion(values, model, shepperd(values, matrix))
+        return self.from_quaternion(values, shepperd(values, matrix))
 
 
 def in_order(found: Sequence[sp.Expr], order: Sequence[int]) -> Vector:

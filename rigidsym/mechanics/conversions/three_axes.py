@@ -2,19 +2,41 @@
 
 from __future__ import annotations
 
-from functools import reduce
+from collections.abc import Callable
+from functools import cache, reduce
 
 import sympy as sp
 
 from rigidsym.mechanics.conversions.function import dot, square
-from rigidsym.mechanics.conversions.inverse import Claim, claim
+from rigidsym.mechanics.conversions.inverse import Claim, claim, vanishing
 from rigidsym.mechanics.conversions.unit_quaternions import half_turn, in_halves, product
+from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.chain import axis_turn, chain
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import time_function
 
 
-def three_axes() -> RotationModel:
+def of_any_axes(solved: int, *, has_two_sets: bool) -> tuple[Proof, ...]:
+    """What solves so many turns about any axes, with one or two middle angles."""
+    outer = _proved(_three_axes, _outer_claims)
+    if solved < 3:
+        return outer
+    if not has_two_sets:
+        return outer + _proved(_three_axes, _half_claims)
+    middle = _proved(_three_axes, _middle_claims)
+    return (*outer, *middle, *_proved(_triangle, _triangle_claims))
+
+
+@cache
+def _proved(
+    build: Callable[[], RotationModel], claims: Callable[[RotationModel], list[Claim]]
+) -> tuple[Proof, ...]:
+    """Proved once for all models."""
+    model = build()
+    return vanishing(model, claims(model))
+
+
+def _three_axes() -> RotationModel:
     """Three turns about any three unit axes, in a frame with the first along x.
 
     The second is in the x-y plane, so that the ring has fewer constants to hold.
@@ -26,7 +48,7 @@ def three_axes() -> RotationModel:
     return chain(turns, name="three_axes")
 
 
-def outer_claims(model: RotationModel) -> list[Claim]:
+def _outer_claims(model: RotationModel) -> list[Claim]:
     """How the halves of the quaternion turn with the outer angles, and how long they are."""
     first, _, last = (sp.Matrix(turn.direction) for turn in model.turns)
     alpha, _, gamma = (turn.angle for turn in model.turns)
@@ -50,7 +72,7 @@ def outer_claims(model: RotationModel) -> list[Claim]:
     ]
 
 
-def middle_claims(model: RotationModel) -> list[Claim]:
+def _middle_claims(model: RotationModel) -> list[Claim]:
     """The middle angle in the angle between the first axis and the turned last one."""
     first, middle, last = (sp.Matrix(turn.direction) for turn in model.turns)
     beta = model.turns[1].angle
@@ -69,7 +91,7 @@ def middle_claims(model: RotationModel) -> list[Claim]:
     ]
 
 
-def half_claims(model: RotationModel) -> list[Claim]:
+def _half_claims(model: RotationModel) -> list[Claim]:
     """What m± = 1± cos(β/2) + e₂± sin(β/2) is by its components along 1± and e₁ 1±."""
     first, middle, last = (sp.Matrix(turn.direction) for turn in model.turns)
     zero, one = sp.S.Zero, (sp.S.One, sp.S.Zero, sp.S.Zero, sp.S.Zero)
@@ -87,12 +109,12 @@ def half_claims(model: RotationModel) -> list[Claim]:
     ]
 
 
-def triangle() -> RotationModel:
+def _triangle() -> RotationModel:
     """The sides of a spherical triangle, as angles of turns, for the ring to hold them."""
     return chain([axis_turn((0, 0, 1), time_function(n)) for n in ("chi", "theta_1", "theta_3")])
 
 
-def triangle_claims(model: RotationModel) -> list[Claim]:
+def _triangle_claims(model: RotationModel) -> list[Claim]:
     """The half-angle formulas of a spherical triangle with two sides θ₁ and θ₃, and χ opposite."""
     side, first, last = model.coordinates
     cosines, sines = sp.cos(first) * sp.cos(last), sp.sin(first) * sp.sin(last)

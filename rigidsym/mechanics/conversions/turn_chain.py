@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import cached_property, reduce
 from itertools import combinations, pairwise
 
 import sympy as sp
@@ -23,6 +23,7 @@ from rigidsym.formula.reader import named
 from rigidsym.formula.sentence import Sentence, sentence
 from rigidsym.mechanics.conversions.function import NamedValues, Vector, rounded
 from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim
+from rigidsym.mechanics.conversions.three_axes import of_any_axes
 from rigidsym.mechanics.conversions.three_turns import (
     ACROSS,
     angle_between,
@@ -32,6 +33,7 @@ from rigidsym.mechanics.conversions.three_turns import (
     flat_angle,
 )
 from rigidsym.mechanics.conversions.unit_quaternions import QUATERNION, half_turn, product
+from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.so3 import rodrigues
 
@@ -53,10 +55,8 @@ class TurnChain(InverseRule):
     between: tuple[tuple[Turn, ...], ...]  # known turns behind each of them but the last
     after: tuple[Turn, ...]  # known turns right of them
     places: tuple[int, ...]  # of the coordinates that follow, among all
-    kept: tuple[int, ...]  # places of the coordinates that the rotation does not determine
     inverse: sp.ImmutableMatrix  # solved coordinates = inverse (angles − offsets); numbers
     offsets: tuple[sp.Expr, ...]  # of the angles, in constants and kept coordinates
-    constraints: tuple[sp.Expr, ...] = ()  # of the constants, which vanish
     mirror: int = 0  # ±1 where the angle of the third turn is that of the first, times this
 
     @property
@@ -105,18 +105,23 @@ class TurnChain(InverseRule):
 
     def _is_zero(self, expression: sp.Expr) -> bool:
         """Whether an expression in constants vanishes for all of them, as the ring decides."""
-        codec = codec_for([expression], constraints=self.constraints, order=0)
+        codec = codec_for([expression], constraints=self.model.constraints, order=0)
         return not codec.encode_quotient(expression).numerator
 
-    def sentences(self, model: RotationModel) -> tuple[Sentence, Sentence]:
+    @property
+    def because(self) -> Sentence:
+        return sentence(_because(self))
+
+    @property
+    def branch(self) -> Sentence:
         branch = []
         for text, *places in _branch(self):
-            names = [named(model.coordinates[place].func.__name__) for place in places]
+            names = [named(self.model.coordinates[place].func.__name__) for place in places]
             blanks = " and ".join([", ".join(["{}"] * (len(names) - 1)), "{}"][-len(names) :])
             branch += [*sentence(text.replace("{}", blanks), *names), " "]
-        return sentence(_because(self)), tuple(branch[:-1])
+        return tuple(branch[:-1])
 
-    def claims(self, model: RotationModel) -> list[Claim]:
+    def claims(self) -> list[Claim]:
         """R is the known turns before, the solved ones about the moved axes, the known after."""
         before, after = ([turn.matrix for turn in known] for known in (self.before, self.right))
         if not (before or after):
@@ -125,11 +130,13 @@ class TurnChain(InverseRule):
         whole = reduce(lambda a, b: a * b, [*before, *solved, *after])
         names = [*"a" * bool(before), *map(str, range(1, len(solved) + 1)), *"b" * bool(after)]
         text = r"\mathbf{R} = " + "".join(rf"\mathbf{{R}}_{name}" for name in names)
-        return [claim(text, *(whole - model.matrix))]
+        return [claim(text, *(whole - self.model.matrix))]
 
-    def from_quaternion(
-        self, values: NamedValues, model: RotationModel, quaternion: Vector
-    ) -> Vector:
+    @cached_property
+    def proofs(self) -> tuple[Proof, ...]:
+        return super().proofs + of_any_axes(len(self.solved), has_two_sets=self.has_two_sets)
+
+    def from_quaternion(self, values: NamedValues, quaternion: Vector) -> Vector:
         """With the known turns taken off."""
         for turn in self.before:
             undone = half_turn(turn.direction, -turn.angle)
@@ -151,12 +158,12 @@ class TurnChain(InverseRule):
             )
         solved = self.inverse * (sp.Matrix(angles) - sp.Matrix(self.offsets))
         found = dict(zip(self.places, solved, strict=True))
-        return tuple(found.get(place, q) for place, q in enumerate(model.coordinates))
+        return tuple(found.get(place, q) for place, q in enumerate(self.model.coordinates))
 
     def _named_axes(self, values: NamedValues) -> list[Vector]:
         return [values.each(("axis_x", "axis_y", "axis_z"), axis) for axis in self.axes]
 
-    def turn_angles(self, model: RotationModel) -> Vector:  # noqa: ARG002
+    def turn_angles(self) -> Vector:
         """The angles that are followed along a trajectory."""
         count = _MOST if self.has_two_sets else len(self.places)
         return tuple(turn.angle for turn in self.solved[:count])
@@ -248,6 +255,7 @@ def _solutions(
             continue
         free = {model.coordinates[k]: sp.S.Zero for k in places}
         yield TurnChain(
+            model=model,
             before=tuple(turns[: window[0]]),
             solved=solved,
             between=tuple(tuple(turns[a + 1 : b]) for a, b in pairwise(window)),
@@ -256,7 +264,6 @@ def _solutions(
             kept=tuple(k for k in range(rows.cols) if k not in places),
             inverse=sp.ImmutableMatrix(square.inv()),
             offsets=tuple(turn.angle.xreplace(free) for turn in solved[: rows.rows]),
-            constraints=model.constraints,
             mirror=mirror,
         )
         return
