@@ -88,7 +88,7 @@ class Motion(Derivation):
     ) -> KernelModule:
         """The functions in one language: `.source`, `.load()`, `.write(path)`.
 
-        `conversions` adds the functions to and from the unit quaternion and the matrix, and
+        `conversions` adds those to and from the unit quaternion and the matrix, and
         `unwrap`. `derivatives` adds functions that return a quantity and its derivative:
         {"angular_velocity_body": ("q", "q_dot")} adds `angular_velocity_body_jacobian_q` and
         `angular_velocity_body_jacobian_q_dot`; "q jvp" and "q vjp" are products with a vector.

@@ -6,7 +6,7 @@
 3. The inertia of the body, its energy and its momentum follow (`mass.derive`, `energy.derive`).
 4. The steps are numbered, and described by the tables of `quantities`.
 5. With forces, the equations of motion follow (`dynamics.derive`).
-6. Where the rates fail is found (`singularities.derive`).
+6. The singular orientations follow (`singularities.derive`).
 7. The equations of the lecture may go before all of it (`lecture.derive`).
 """
 

@@ -1,10 +1,9 @@
 """Sums over the particles of a body, by rule and not by number.
 
-Σᵢ is linear, and what is the same for all particles stands before it. A summand is a polynomial
-in what belongs to one particle, its mass m and its components, with such coefficients; its sum is
-known by the sums of the monomials in it. Σ m = M and Σ m x = 0, say, are given; a sum that is not
-stays as it is, and is equal to itself alone. So two sums that agree for the generic summand agree
-for every body, of however many particles.
+Σᵢ is linear, and factors common to all particles are taken out of it. A summand is a polynomial in
+the mass m and the components of one particle; its sum follows from the sums of its monomials. Some
+of these are known, such as Σ m = M and Σ m x = 0; any other is equal only to itself. So two sums
+that agree for the generic summand agree for every body, of however many particles.
 """
 
 from __future__ import annotations

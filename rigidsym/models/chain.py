@@ -123,5 +123,5 @@ def direction(parts: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
         return exact
     length = sp.sqrt(sum(part**2 for part in exact))
     if length == 0:
-        raise ModelError("the direction [0, 0, 0] has no axis")
+        raise ModelError("the axis must not be the zero vector")
     return tuple(part / length for part in exact)

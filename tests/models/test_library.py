@@ -131,7 +131,7 @@ def test_what_was_asked_for_can_be_asked_for_again(text):
     ("text", "message"),
     [
         ("w(phi)", "expected a turn"),
-        ("[0,0,0](phi)", "has no axis"),
+        ("[0,0,0](phi)", "the axis must not be the zero vector"),
         ("[1,1](phi)", "expected three"),
         ("[1,1,0,0](phi)", "expected three"),
         ("z(pi/4)", "does not move"),

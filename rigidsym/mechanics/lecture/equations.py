@@ -20,8 +20,9 @@ _ITEM = re.compile(r"\n    (?=(?:=|\w+:) )(\S+) ")  # "=" or the name of a claim
 _EQUATIONS = r"""
 # The centre of mass and the kinetic energy
 1  centre_of_mass  1.1
-    A rigid body is a set of particles with masses $m_i$ at positions $\mathbf{r}_i$,
-    $\sum_i m_i = M$. Their mean, weighted by the masses, is the centre of mass
+    A rigid body consists of particles with masses $m_i$ at positions $\mathbf{r}_i$; its total
+    mass is $\sum_i m_i = M$. The mean of the positions, weighted by the masses, is the centre of
+    mass
     = \mathbf{r}_C
     = \frac{1}{M}\sum_i m_i\,\mathbf{r}_i
     no_moment: \sum_i m_i(\mathbf{r}_i - \mathbf{r}_C) = \mathbf{0}
@@ -54,11 +55,11 @@ _EQUATIONS = r"""
 
 # The inertia tensor
 3  velocity_of_particles  1.2
-    The particles keep their distances, so that by Euler's theorem the motion about the centre of
-    mass is a rotation, $\mathbf{x}_i = \mathbf{R}\,\mathbf{x}'_i$ with $\mathbf{x}'_i$ at rest.
-    The derivative of $\mathbf{R}\mathbf{R}^T = \mathbf{1}$ says that
-    $\frac{d\mathbf{R}}{dt}\mathbf{R}^T$ is skew. A skew matrix is a cross product; its vector is
-    the angular velocity $\boldsymbol{\Omega}$, and
+    The distances between the particles do not change, so that by Euler's theorem the motion about
+    the centre of mass is a rotation, $\mathbf{x}_i = \mathbf{R}\,\mathbf{x}'_i$ with constant
+    $\mathbf{x}'_i$. Differentiating $\mathbf{R}\mathbf{R}^T = \mathbf{1}$ shows that
+    $\frac{d\mathbf{R}}{dt}\mathbf{R}^T$ is skew. Every skew matrix is the cross product with a
+    vector; here it is the angular velocity $\boldsymbol{\Omega}$, and
     = \dot{\mathbf{x}}_i
     = \boldsymbol{\Omega}\times\mathbf{x}_i
     skew: \frac{d\mathbf{R}}{dt}\mathbf{R}^T + \mathbf{R}\frac{d\mathbf{R}^T}{dt} = \mathbf{0}
@@ -92,8 +93,8 @@ _EQUATIONS = r"""
 # Another basis
 5  components_in_another_basis  2.1
     A rotation $\mathbf{R}$ takes the basis to another,
-    $\mathbf{e}'_j = \mathbf{R}\,\mathbf{e}_j$. The components of $\boldsymbol{\Omega}$ there are
-    its products with the new vectors,
+    $\mathbf{e}'_j = \mathbf{R}\,\mathbf{e}_j$. The components of $\boldsymbol{\Omega}$ in it are
+    the scalar products with the new basis vectors,
     = \Omega'_j
     = \boldsymbol{\Omega}\cdot\mathbf{e}'_j
     = \boldsymbol{\Omega}\cdot\mathbf{R}\,\mathbf{e}_j
@@ -125,7 +126,7 @@ _EQUATIONS = r"""
     and_back: \mathbf{R}(\mathbf{R}^{-1}\boldsymbol{\Omega}) = \boldsymbol{\Omega}
 
 8  energy_in_another_basis  2.1
-    The energy is a number and does not depend on the basis; by (7)
+    The energy does not depend on the choice of basis; by (7)
     = E_R
     = \frac{1}{2}\boldsymbol{\Omega}^T\mathbf{I}\,\boldsymbol{\Omega}
     = \frac{1}{2}\boldsymbol{\Omega}'^T\mathbf{R}^T\mathbf{I}\,\mathbf{R}\,\boldsymbol{\Omega}'
@@ -134,7 +135,8 @@ _EQUATIONS = r"""
 
 9  inertia_turns  2.1
     The matrix in the middle is therefore the inertia tensor in the new basis. With the
-    positions $\mathbf{x}'_i = \mathbf{R}^{-1}\mathbf{x}_i$ seen from there, (4) gives the same:
+    components $\mathbf{x}'_i = \mathbf{R}^{-1}\mathbf{x}_i$ of the positions in that basis, (4)
+    gives the same:
     = \mathbf{I}'
     = \mathbf{R}^T\mathbf{I}\,\mathbf{R}
     tensor_turns: \mathbf{R}^T\,\mathbf{I}(\mathbf{R}\mathbf{x}'_i)\,\mathbf{R} =
@@ -142,7 +144,8 @@ _EQUATIONS = r"""
 
 # Moments of inertia
 -  entries_of_inertia  2.2  summands
-    With $\mathbf{x}_i = (a_i, b_i, c_i)$ and the product of two cross products, (4) is
+    With $\mathbf{x}_i = (a_i, b_i, c_i)$ and the identity for the scalar product of two cross
+    products, (4) becomes
     = \mathbf{I}
     lagrange: (\mathbf{u}\times\mathbf{v})\cdot(\mathbf{w}\times\boldsymbol{\Omega}) =
       (\mathbf{u}\cdot\mathbf{w})(\mathbf{v}\cdot\boldsymbol{\Omega}) -
@@ -151,10 +154,10 @@ _EQUATIONS = r"""
       \mathbf{x}_i\mathbf{x}_i^T\bigr)
 
 -  moment_about_a_line  2.2
-    The moment of inertia about a line sums the masses times the squares of their distances
+    The moment of inertia about a line is the sum of the masses times the squares of their distances
     $d^{\perp}_i$ from it. For the line through the centre of mass along a unit vector
-    $\mathbf{e}$ the tensor gives it at once; for a vector of the basis it is an entry of the
-    diagonal. The other entries are the products of inertia.
+    $\mathbf{e}$ it follows from the tensor; for a basis vector it is a diagonal entry. The other
+    entries are called the products of inertia.
     = I
     = \sum_i m_i(d^{\perp}_i)^2
     = \mathbf{e}^T\mathbf{I}\,\mathbf{e}
@@ -165,8 +168,8 @@ _EQUATIONS = r"""
 10  energy_in_principal_axes  2.3
     The tensor is real and symmetric, and so there is a rotation that makes it diagonal; this
     theorem of linear algebra is used here, and not proved. The new axes are the principal axes of
-    the body, the entries the principal moments. With the components of $\boldsymbol{\Omega}$
-    along these axes,
+    the body, and the diagonal entries are the principal moments of inertia. With the components of
+    $\boldsymbol{\Omega}$ along these axes,
     = E_R
     = \frac{1}{2}\bigl[I'_{11}\Omega_1^2 + I'_{22}\Omega_2^2 + I'_{33}\Omega_3^2\bigr]
     stays_symmetric: (\mathbf{R}^T\mathbf{I}\,\mathbf{R})^T = \mathbf{R}^T\mathbf{I}\,\mathbf{R}
@@ -175,7 +178,7 @@ _EQUATIONS = r"""
 
 # The angular momentum
 -  momentum_expanded  3.1
-    The angular momentum of the body is the sum over its particles. With
+    The angular momentum of the body is the sum of those of its particles. With
     $\mathbf{r}_i = \mathbf{r}_C + \mathbf{x}_i$,
     = \mathbf{L} = \sum_i\mathbf{r}_i\times(m_i\dot{\mathbf{r}}_i)
     = \sum_i m_i(\mathbf{r}_C + \mathbf{x}_i)\times(\dot{\mathbf{r}}_C + \dot{\mathbf{x}}_i)

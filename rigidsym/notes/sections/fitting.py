@@ -187,7 +187,7 @@ def _is_of_motion(step: Step) -> bool:
 def _said(equation: Equation, short: Sequence[Formula], lines: int) -> Iterator[NoteBlock]:
     """What it is, and how long it would be; the function evaluates it all the same."""
     yield _without_entries(equation, short)
-    yield said(f"Written out, the components would fill {lines} lines.")
+    yield said(f"The explicit components would fill {lines} lines and are left out.")
 
 
 def as_vectors(equation: Equation, step: Step, letters: Letters) -> Equation:

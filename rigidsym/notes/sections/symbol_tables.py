@@ -161,7 +161,7 @@ def functions(derivation: Derivation, module: str, names: Sequence[str]) -> Iter
     """The functions of a module, and a call of one of them that runs as it stands."""
     yield said(
         "The module {} evaluates the equations for arrays of any shape, components last, by "
-        "the functions that stand beside them. For example,",
+        "the functions named beside them. For example,",
         Code(module),
     )
     yield CodeBlock(_example(derivation, module, names))
