@@ -118,7 +118,7 @@ SHAPES: Mapping[str, Shape] = MappingProxyType(
             "Solid cone",
             "base in the plane z = 0, apex on the z-axis at z = height",
             (_RADIUS, _HEIGHT),
-            "u*(a - a*w)*cos(v), u*(a - a*w)*sin(v), h*w",
+            "a*u*(1 - w)*cos(v), a*u*(1 - w)*sin(v), h*w",
             "0..1, 0..2*pi, 0..1",
         ),
         "frustum": Shape(

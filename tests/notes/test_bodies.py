@@ -9,12 +9,14 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
+from rigidsym.mechanics.quantities.arguments import POINT
 from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
 from rigidsym.models.body import given_inertia
 from rigidsym.motion import Motion
 from rigidsym.notes.document.document import Equation, Figure
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import HOLE
+from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.sections.named_body import in_names
 from rigidsym.pipeline import motion_of, read_spec
 
@@ -52,7 +54,8 @@ def cone(*only: str) -> Motion:
 def test_what_is_shown_in_names_has_the_value_that_was_derived(motion):
     derived = motion()
     shown, moments = in_names(derived)
-    values = dict(moments) | {sp.Symbol("M"): derived.body.mass}
+    offset = zip(sp.symbols("d_x:z"), sp.Matrix(POINT) - derived.body.centre, strict=True)
+    values = {sp.Symbol("M"): derived.body.mass, **dict(moments), **dict(offset)}
     rng = np.random.default_rng(1)
     symbols = {s for argument in derived.arguments for s in argument.symbols}
     numbers = {s: sp.Float(x) for s, x in zip(symbols, rng.uniform(0.3, 0.7, 99), strict=False)}
@@ -105,6 +108,36 @@ def test_a_body_alone_has_a_note_without_a_rotation():
     assert "inertia_tensor" in labels
     assert [section.title for section in document.sections] == ["The body"]
     assert any(isinstance(block, Figure) for block in document.sections[0].blocks)
+
+
+def test_a_terminal_shows_a_body_alone_without_a_rotation():
+    assert "turns" not in show(cone("body"))
+    assert "turns" in show(cone())
+
+
+@cache
+def three_particles() -> Motion:
+    a, m = sp.symbols("a m", positive=True)
+    places = [sp.ImmutableMatrix(a * sp.eye(3)[:, k]) for k in range(3)]
+    found = (rs.Particle(mass=w, position=p) for w, p in zip((m, 2 * m, m), places, strict=True))
+    return rs.derive("ZXZ", body=rs.body_of(rs.Particles(particles=tuple(found))))
+
+
+def test_the_mass_of_particles_is_a_sum_and_that_of_a_solid_an_integral():
+    for motion, sign in ((three_particles(), "Σ"), (cone(), "∫")):
+        steps = {s.quantity.name: s for s in motion.steps}
+        for name in ("centre_of_mass", "inertia_tensor"):
+            assert sign in steps[name].quantity.definition.text
+        claims = {proof.claim.text for step in steps.values() for proof in step.proofs}
+        assert any(claim.startswith(f"Iₙ = {sign}") for claim in claims)
+
+
+def test_momenta_in_space_have_no_names_for_their_parts():
+    """Where they would need any, they are said by the momentum in the body."""
+    document = three_particles().note().document
+    momentum = next(e for e in document.equations if e.label == "angular_momentum_rotation")
+    assert momentum.sides[-1].text == "R L′_R"
+    assert momentum.matrix is None
 
 
 def test_the_body_is_drawn_from_the_back_with_its_holes_and_its_principal_axes():

@@ -13,6 +13,7 @@ from types import MappingProxyType
 import sympy as sp
 
 from rigidsym.algebra.present import Rationals
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Found
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.mass.moments import Moments, moments_of
@@ -21,7 +22,7 @@ from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import mass as claims
 from rigidsym.mechanics.quantities.arguments import DIRECTION, POINT
 from rigidsym.models.body import RigidBody
-from rigidsym.models.distribution import Composite, Known, Part
+from rigidsym.models.distribution import Composite, Known, Part, Particles
 
 _ONE = sp.eye(3)
 WITHOUT = MappingProxyType(  # why a body may not have a quantity
@@ -59,6 +60,11 @@ class _Inertia:
         known = Known(mass=body.mass, centre=body.centre, inertia=body.inertia)
         return moments_of(body.distribution or known)
 
+    def _over_mass(self, integral: Formula) -> Formula:
+        """An integral over the mass, which is a sum if the body consists of particles."""
+        is_sum = isinstance(self.body.distribution, Particles)
+        return claims.summed(integral) if is_sum else integral
+
     @cached_property
     def principal(self) -> Principal | None:
         return principal_of(self.body.inertia)
@@ -70,6 +76,7 @@ class _Inertia:
             _scalar(self.body.mass),
             "The total mass is the sum over all parts of the body.",
             self.moments.proofs,
+            definition=self._over_mass(claims.TOTAL_MASS),
         )
 
     def centre_of_mass(self) -> Found | None:
@@ -80,7 +87,8 @@ class _Inertia:
         return Found(
             self.body.centre,
             "The centre of mass is the mean position, weighted with the mass.",
-            (*proofs, identity(rest, claims.CENTRED, self.body.name)),
+            (*proofs, identity(rest, self._over_mass(claims.CENTRED), self.body.name)),
+            definition=self._over_mass(claims.MASS_FIRST),
         )
 
     def inertia_tensor(self) -> Found:
@@ -101,7 +109,8 @@ class _Inertia:
                 "The tensors of the parts are turned, moved to the common centre of mass by the "
                 "theorem of parallel axes, and added."
             )
-        return Found(body.inertia, because, tuple(proofs), definition=claims.TENSOR_INTEGRAL)
+        integral = self._over_mass(claims.TENSOR_INTEGRAL)
+        return Found(body.inertia, because, tuple(proofs), definition=integral)
 
     def _of_parts(self, parts: Sequence[Part]) -> sp.Matrix:
         """Σ (R I R ᵀ + m (|d|² 1 − d dᵀ)), a hole with a minus sign."""
@@ -122,7 +131,7 @@ class _Inertia:
             sp.ImmutableMatrix(body.inertia + self._shift),
             "By the parallel-axis (Steiner) theorem, the mass is added as if concentrated in the "
             "centre of mass.",
-            (identity(rest, claims.OF_POINT, body.name),),
+            (identity(rest, self._over_mass(claims.OF_POINT), body.name),),
         )
 
     @property
@@ -155,9 +164,8 @@ class _Inertia:
         return Found(
             _scalar(moment),
             "The moment about a line is the quadratic form of the tensor about a point p of it. "
-            "The direction is a unit vector, and n × (x′ − p) is as long as the distance from the "
-            "line.",
-            (identity(rest, claims.OF_LINE, self.body.name),),
+            "The direction n is a unit vector, and |n × (x′ − p)| is the distance from the line.",
+            (identity(rest, self._over_mass(claims.OF_LINE), self.body.name),),
         )
 
     @property

@@ -70,7 +70,8 @@ def _root_apart(inertia: sp.ImmutableMatrix, alone: int) -> sp.Expr:
     """
     i, j = (alone + 1) % 3, (alone + 2) % 3
     p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
-    return _square_root((p - q) ** 2 + 4 * r**2)
+    square = (p - q) ** 2 + 4 * r**2
+    return sp.sqrt(square) if all(e.is_Symbol for e in (p, q, r)) else _square_root(square)
 
 
 def _square_root(expression: sp.Expr) -> sp.Expr:

@@ -27,12 +27,24 @@ RADII = formula(r"\left(k_x, k_y, k_z\right)")
 AXES = formula(r"\mathbf{E}")
 MOMENTS = formula(r"\left(I_1, I_2, I_3\right)")
 SEMI_AXES = formula(r"\left(a_1, a_2, a_3\right)")
-TOTAL_MASS = formula(r"\int dm")
-MASS_FIRST = formula(r"\frac{1}{M}\int \mathbf{x}'\,dm")
-TENSOR_INTEGRAL = formula(
+_INTEGRALS = (
+    r"\int\,dm",
+    r"\frac{1}{M}\int \mathbf{x}'\,dm",
     r"\int \left(|\mathbf{x}'-\mathbf{c}|^2\,\mathbf{1} "
-    r"- (\mathbf{x}'-\mathbf{c})(\mathbf{x}'-\mathbf{c})^{\mathsf T}\right) dm"
+    r"- (\mathbf{x}'-\mathbf{c})(\mathbf{x}'-\mathbf{c})^{\mathsf T}\right)\,dm",
+    r"\int (\mathbf{x}'-\mathbf{c})\,dm = \mathbf{0}",
+    r"\mathbf{I}'_P = \int \left(|\mathbf{x}'-\mathbf{p}|^2\,\mathbf{1} "
+    r"- (\mathbf{x}'-\mathbf{p})(\mathbf{x}'-\mathbf{p})^{\mathsf T}\right)\,dm",
+    r"I_n = \int |\mathbf{n}\times(\mathbf{x}'-\mathbf{p})|^2\,dm",
 )
+TOTAL_MASS, MASS_FIRST, TENSOR_INTEGRAL, CENTRED, OF_POINT, OF_LINE = map(formula, _INTEGRALS)
+
+
+def summed(integral: Formula) -> Formula:
+    """One of these integrals over the mass as a sum over particles: Σ mᵢ xᵢ′ for ∫ x′ dm."""
+    typed = next(typed for typed in _INTEGRALS if formula(typed) == integral)
+    whole = typed.replace(r"\int", r"\sum_i m_i\,").replace(r"\,dm", "")
+    return formula(whole.replace(r"\mathbf{x}'", r"\mathbf{x}'_i"))
 
 
 def moved(mass: Formula, by: Formula) -> Formula:
@@ -87,18 +99,12 @@ OF_BODY_ALONE = tuple(name for name, q in INERTIA_QUANTITIES.items() if "q" not 
 # Claims.
 
 SYMMETRIC = formula("#1 = #2", INERTIA, transpose_of(INERTIA))
-CENTRED = formula(r"\int (\mathbf{x}'-\mathbf{c})\,dm = \mathbf{0}")
 ABOUT_ORIGIN = formula("#1 = #2 + #3", ORIGIN_TENSOR, INERTIA, moved(MASS, formula(r"\mathbf{c}")))
 OF_PARTS = formula(
     r"\mathbf{I}' = \sum_k \left(\mathbf{R}_k\mathbf{I}'_k\mathbf{R}_k^{\mathsf T} "
     r"+ m_k(|\mathbf{d}_k|^2\,\mathbf{1} - \mathbf{d}_k\mathbf{d}_k^{\mathsf T})"
     r"\right)"
 )
-OF_POINT = formula(
-    r"\mathbf{I}'_P = \int \left(|\mathbf{x}'-\mathbf{p}|^2\,\mathbf{1} "
-    r"- (\mathbf{x}'-\mathbf{p})(\mathbf{x}'-\mathbf{p})^{\mathsf T}\right) dm"
-)
-OF_LINE = formula(r"I_n = \int |\mathbf{n}\times(\mathbf{x}'-\mathbf{p})|^2\,dm")
 OF_RADII = formula("M k_j^2 = I'_{jj}")
 BACK = formula(r"#1 = #2\,#3\,#4", INERTIA, transpose_of(ROTATION), INERTIA_SPACE, ROTATION)
 TRACE = formula(r"\operatorname{tr} #1 = \operatorname{tr} #2", INERTIA_SPACE, INERTIA)

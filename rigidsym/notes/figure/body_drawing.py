@@ -132,17 +132,19 @@ def _from_the_back(faces: Sequence[Faced]) -> Iterator[Faced]:
     The plane of one face parts the others, which are split where they cross it: what lies on the
     far side of the plane comes first (binary space partition).
     """
-    if not faces:
-        return
-    face, normal = faces[len(faces) // 2]
-    here, front, back = [(face, normal)], list[Faced](), list[Faced]()
-    for other in faces:
-        if other[0] is not face:
-            _part(other, face, normal, here, front, back)
-    near, far = (front, back) if _VIEW.depth(normal) > 0 else (back, front)
-    yield from _from_the_back(far)
-    yield from here
-    yield from _from_the_back(near)
+    waiting = [(faces, False)]  # the farthest last, each with whether its order is settled
+    while waiting:
+        group, is_settled = waiting.pop()
+        if is_settled or len(group) < 2:
+            yield from group
+            continue
+        face, normal = group[len(group) // 2]
+        here, front, back = [(face, normal)], list[Faced](), list[Faced]()
+        for other in group:
+            if other[0] is not face:
+                _part(other, face, normal, here, front, back)
+        near, far = (front, back) if _VIEW.depth(normal) > 0 else (back, front)
+        waiting += [(near, False), (here, True), (far, False)]
 
 
 def _part(

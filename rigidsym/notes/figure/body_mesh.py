@@ -51,7 +51,7 @@ _LENGTHS = (1.0, 0.22, 0.3, 1.4, 0.6, 0.15, 0.8)  # of parameters without a valu
 _TWO_LENGTHS = (0.6, 1.0)
 _MOST_TRIES = 500
 _IN_MATH = {"Abs": "fabs"}  # the functions that Python's math names otherwise
-_ROUND, _CURVED = 20, 8  # divisions of a coordinate within sines, and of any other that bends
+_ROUND, _CURVED = 24, 8  # divisions of a full circle, and of any other coordinate that bends
 SWELL = "1.01"  # of a hole, so that its rim is seen on the surface
 _THICK = 0.03  # half the width of a line
 _PARTICLE = 0.09  # radius
@@ -291,7 +291,9 @@ def of_solid(
 def _divisions(solid: Solid, symbol: sp.Symbol) -> int:
     waves = solid.place.atoms(sp.sin, sp.cos)
     if any(wave.has(symbol) for wave in waves):
-        return _ROUND
+        low, high = solid.bounds[solid.coordinates.index(symbol)]
+        turns = (high - low) / (2 * sp.pi)
+        return int(sp.ceiling(_ROUND * turns)) if turns.is_number else _ROUND
     later = [bound for pair in solid.bounds for bound in pair if bound.has(symbol)]
     slope = solid.place.diff(symbol)
     if later or slope.has(symbol):

@@ -66,7 +66,7 @@ def _facets(facets: Iterable[Facet]) -> Iterator[str]:
         red, green, blue = facet.color
         color = f"{{rgb,255:red,{red};green,{green};blue,{blue}}}"
         outline = " -- ".join(map(_point, facet.points))
-        yield rf"\filldraw[line width=.2pt, color={color}] {outline} -- cycle;"
+        yield rf"\filldraw[line width=.4pt, color={color}] {outline} -- cycle;"
 
 
 def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:

@@ -176,8 +176,8 @@ class _LatexPrinter(NotePrinter):
             rows += [[""] * len(head)] * (parts * high - len(rows))
             beside = zip(*(rows[k : k + high] for k in range(0, len(rows), high)), strict=True)
             rows = [[cell for row in line for cell in row] for line in beside]
-            span = rf"\multicolumn{{{2 * parts - 1}}}{{l}}"
-            rows += [[first, f"{span}{{{second}}}"] for first, second in wider]
+            # over the columns beside it; \multicolumn would cost another run of TeX
+            rows += [[first, rf"\rlap{{{second}}}"] for first, second in wider]
             head, columns = (
                 head * parts,
                 rf"@{{\hspace{{{_GAP if parts == 2 else 1}em}}}}".join([columns] * parts),
@@ -187,8 +187,10 @@ class _LatexPrinter(NotePrinter):
         lines = [" & ".join(row) + r" \\" for row in (head, *rows)]
         is_said = table.caption.lower() in self.heading.lower()
         caption = "" if is_said else escape(table.caption)
+        height = 3 + sum(2.5 if r"\tall" in line else 1.2 for line in lines)
+        room = [rf"\room{{{height:.1f}\baselineskip}}"] if len(lines) <= _TOGETHER else []
         begin = rf"\begin{{ruled}}{{{columns}}}{{{len(head)}}}{{{caption}}}"
-        return "\n".join([begin, f"{{{lines[0]}}}", *lines[1:], r"\end{ruled}"])
+        return "\n".join([*room, begin, f"{{{lines[0]}}}", *lines[1:], r"\end{ruled}"])
 
     def _parts(self, table: NoteTable) -> int:
         """In how many parts beside one another a narrow table is set."""
@@ -261,6 +263,7 @@ class _LatexPrinter(NotePrinter):
         return f"{self.document.name}:{label}"
 
 
+_TOGETHER = 8  # lines of a table that stay on one page
 _MANY = 8  # rows of a narrow table that are set in two parts or three
 _GAP = 3  # ems between two of them; 1 between three
 _SLACK = 1.05  # by which three may seem too wide: the widths of formulas are upper bounds

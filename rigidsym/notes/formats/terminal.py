@@ -25,7 +25,7 @@ from rigidsym.notes.prose.singular_words import (
     singular_title,
 )
 from rigidsym.notes.prose.vector_words import sum_of_vectors
-from rigidsym.notes.prose.words import convention, unit_in_words, with_symbols
+from rigidsym.notes.prose.words import convention, is_body_alone, unit_in_words, with_symbols
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -144,9 +144,10 @@ class _Screen(_Steps):
 
     def lines(self) -> Iterator[str]:
         yield self.style(self.derivation.title, "heading")
-        yield ""
-        yield from self._theory()
-        yield from self._convention()
+        if not is_body_alone(self.derivation):
+            yield ""
+            yield from self._theory()
+            yield from self._convention()
         for step in self.derivation.steps:
             yield ""
             yield from self.step(step)

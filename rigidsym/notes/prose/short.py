@@ -7,7 +7,8 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import PLUS, Differential, Formula, Fraction, Rate, joined, row
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.claims import rate_of, transpose_of
-from rigidsym.mechanics.quantities.kinematics import BODY, RATES, SPACE, Frame
+from rigidsym.mechanics.quantities.energy import MOMENTUM_BODY
+from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE, Frame
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.formula.vector_rates import rates_of_form
 from rigidsym.notes.prose.prose import turn
@@ -20,7 +21,6 @@ _DEFINED = frozenset(  # by other quantities, and so are rates from an angular v
         "rotational_energy",
         "kinetic_energy",
         "angular_momentum_rotation_body",
-        "angular_momentum_rotation",
         "angular_momentum",
     }
 )
@@ -35,6 +35,8 @@ def in_short(step: Step, derivation: Derivation, letters: Letters) -> tuple[Form
         return (_turns(derivation.model, letters),)
     if step.quantity.name == "rotation_rate":
         return (by_the_chain_rule(step.quantity.symbol, letters),)
+    if step.quantity.name == "angular_momentum_rotation":
+        return (row(ROTATION, MOMENTUM_BODY),)
     if step.quantity.name in _DEFINED or kind == "rates_from_angular_velocity":
         return ()
     if kind == "inverse_rate_matrix" and _is_least(derivation):

@@ -18,7 +18,7 @@ from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.energy import ABOUT_FIXED_POINT, CENTRE
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
-from rigidsym.mechanics.quantities.mass import DIRECTION, POINT
+from rigidsym.mechanics.quantities.mass import DIRECTION, MASS, OF_BODY_ALONE, POINT
 from rigidsym.models.rotation import Citation
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.document.document import Cited, Text, listed, words
@@ -36,7 +36,7 @@ TRANSPOSED = formula(r"#1 = #2^{\mathsf T}", COSINES, ROTATION)
 
 _OF_BODIES = (
     BODY_POSITION,
-    formula(r"#1\times(#2-#3)", DIRECTION, BODY_POSITION, POINT),
+    formula(r"|#1\times(#2-#3)|", DIRECTION, BODY_POSITION, POINT),
     formula(r"#1^{\mathsf T}\mathbf{I}'\,#1 = 1", BODY_POSITION),
     POINT,
     DIRECTION,
@@ -125,6 +125,12 @@ def _square(length: Formula, of: Formula) -> Formula:
     return formula(r"#1^{2} = #2\cdot#2", length, of)
 
 
+def is_body_alone(derivation: Derivation) -> bool:
+    """Whether nothing is derived of the rotation, so that a note leaves it out."""
+    names = [step.quantity.name for step in derivation.steps]
+    return bool(names) and all(name in OF_BODY_ALONE for name in names)
+
+
 def _body(derivation: Derivation, notation: Notation) -> Iterator[Text]:
     """The mass of the body, its axes, and where its centre of mass is."""
     body = derivation.body
@@ -138,11 +144,12 @@ def _body(derivation: Derivation, notation: Notation) -> Iterator[Text]:
     if derivation.forces and "centre" not in used and "centre_dot" not in used:
         yield ("The inertia tensor is about the centre of mass, along the axes of the body.",)
         return
+    given = formula_of(body.mass, letters)
     centre = listed([(name,) for name in derivation.argument("centre").notation], ", ")
     head = words(
         "The body has the mass {}, and its inertia tensor is about the centre of mass, along the "
         "axes of the body; the centre of mass is at {} = (",
-        formula_of(body.mass, letters),
+        MASS if any(s.quantity.name == "mass" for s in derivation.steps) else given,
         CENTRE,
     )
     yield (*head, *centre, ") in space.")

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
+import sympy as sp
+
+from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import COMMA, Bracket, Numeral, equal, joined
+from rigidsym.formula.tree import COMMA, Bracket, Formula, Numeral, equal, joined
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.notes.document.document import (
@@ -23,11 +26,11 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.figure.body_drawing import body_drawing
 from rigidsym.notes.figure.body_mesh import lengths_of
+from rigidsym.notes.prose.words import is_body_alone
 from rigidsym.notes.sections.body_sections import blocks_of_body
 from rigidsym.notes.sections.compose import Composer
 from rigidsym.notes.sections.fitting import definitions
-from rigidsym.notes.sections.named_body import in_names, textbook_form
-from rigidsym.notes.sections.symbol_tables import is_body_alone
+from rigidsym.notes.sections.named_body import OFFSET, OFFSET_IS, in_names, textbook_form
 
 _DIAGONAL = formula("(I'_{11}, I'_{22}, I'_{33})")
 _IN_A_ROW = ("radii_of_gyration", "inertia_ellipsoid")
@@ -63,19 +66,33 @@ class BodyComposer(Composer):
         if self.moments:
             yield said("Here")
             yield from self.fitter.whole(definitions(self.moments, self.letters))
+        if any(step.expression.has(*OFFSET) for step in self.derivation.steps):
+            yield said("Let {} be the vector from the centre of mass to a point P.", OFFSET_IS)
         yield from self._steps([name for name in INERTIA_QUANTITIES if name not in _FIRST])
 
     def _equation(self, step: Step) -> Equation:
         equation, name = super()._equation(step), step.quantity.name
         if self.moments and name == "principal_moments":
-            equation = replace(
-                equation, sides=(*equation.sides, _DIAGONAL), matrix=None, entries=()
-            )
-        if self.moments and name in _IN_A_ROW and equation.matrix is not None:
-            entries = [formula_of(entry, self.letters) for entry in equation.matrix]
-            whole = (*equation.sides, Bracket(joined(entries, COMMA)))
-            equation = replace(equation, sides=whole, matrix=None, entries=())
+            equation = _ended(equation, self._principal_moments())
+        if name in _IN_A_ROW and equation.matrix is not None:
+            row = _ended(equation, self._in_a_row(equation.matrix))
+            equation = equation if display(row, self.letters, PAGE).done else row
         return replace(equation, sides=(*equation.sides, *textbook_form(name, self.derivation)))
+
+    def _principal_moments(self) -> Formula:
+        """(I₁, I₁, I₃), or the entries of I′ if they differ."""
+        assert self.derivation.body is not None
+        names = {moment: name for name, moment in self.moments}
+        moments = [names.get(m, m) for m in self.derivation.body.inertia.diagonal()]
+        return _DIAGONAL if len(set(moments)) == 3 else self._in_a_row(moments)
+
+    def _in_a_row(self, entries: Iterable[sp.Expr]) -> Formula:
+        return Bracket(joined([formula_of(entry, self.letters) for entry in entries], COMMA))
+
+
+def _ended(equation: Equation, side: Formula) -> Equation:
+    """The equation with one more side in place of its entries."""
+    return replace(equation, sides=(*equation.sides, side), matrix=None, entries=())
 
 
 def figure_of_body(derivation: Derivation, letters: Letters) -> Figure | None:

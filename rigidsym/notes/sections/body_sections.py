@@ -12,7 +12,7 @@ from rigidsym.data.mass.properties import MassProperties
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import Big, Differential, Formula, bracketed, indexed, row
+from rigidsym.formula.tree import NOTHING, Big, Differential, Formula, bracketed, indexed, row
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.mechanics.mass.numbers import in_numbers
@@ -55,10 +55,11 @@ def blocks_of_body(derivation: Derivation, letters: Letters) -> Iterator[NoteBlo
         case Composite():
             yield said("The body is composed of the following parts.")
             yield _parts(body.distribution.parts, letters)
-            solids = (part.what for part in body.distribution.parts)
-            kinds = {what.title: what for what in solids if isinstance(what, Solid)}
-            for solid in kinds.values():
-                yield from _solid(solid, letters)
+            shown: set[str] = set()
+            for part in body.distribution.parts:  # the first of each kind
+                if isinstance(part.what, Solid) and part.what.title not in shown:
+                    shown.add(part.what.title)
+                    yield from _solid(part.what, letters, part.label)
         case Particles():
             yield _particles(body.distribution, letters)
         case Polyhedron():
@@ -95,9 +96,9 @@ def _called(told: Sequence[Parameter], letters: Letters) -> Iterator[Text]:
             yield from ((*name, f" is the {about}") for name in names)
 
 
-def _solid(solid: Solid, letters: Letters) -> Iterator[NoteBlock]:
+def _solid(solid: Solid, letters: Letters, label: str = "") -> Iterator[NoteBlock]:
     """The map, its bounds, the element and the integrals of a solid."""
-    yield said(f"The points of the {solid.title.lower()} are")
+    yield said(f"The points of the {label or solid.title.lower()} are")
     yield Equation(sides=(PLACE,), matrix=solid.place, entries=indexed(PLACE, (3,)))
     bounds = [
         _between(u, pair, letters) for u, pair in zip(solid.coordinates, solid.bounds, strict=True)
@@ -105,9 +106,11 @@ def _solid(solid: Solid, letters: Letters) -> Iterator[NoteBlock]:
     yield Paragraph(("for ", *listed(bounds), "."))
     element = moments_of(solid).element
     assert element is not None
+    element = sp.factor(element)
     yield Paragraph(_element(solid, element, letters))
     density = sp.S.One if solid.density is None else solid.density
-    integrand = bracketed(formula_of(density * element, letters))
+    value = density * element
+    integrand = NOTHING if value == 1 else bracketed(formula_of(value, letters))
     total = formula_of(_total(solid), letters)
     yield Equation(sides=(_integral(solid, integrand, letters), total))
 
@@ -128,7 +131,8 @@ def _element(solid: Solid, element: sp.Expr, letters: Letters) -> Text:
         if count == 3
         else "the square root of det JᵀJ, where J is the Jacobian matrix of this map"
     )
-    head = words(f"The element of {_KINDS[count - 1]} is {{}}; the factor is {how}. ", whole)
+    factor = "" if element == 1 else f"; the factor is {how}"
+    head = words(f"The element of {_KINDS[count - 1]} is {{}}{factor}. ", whole)
     if solid.mass is not None:
         mass = formula_of(solid.mass, letters)
         uniform = (

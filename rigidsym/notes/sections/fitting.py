@@ -6,7 +6,8 @@
 3. What is still too wide is broken by its width, before a + or −, entries below one another.
 4. A matrix cannot be broken: where it fits with s_θ and c_θ it has those, and is not listed. Only
    names of sums come before them; for products of sines and cosines the shorthand says more.
-What would take most of a page so is said in short, by what it is made of.
+What would take most of a page so is said in short, by what it is made of; so are dR/dt and
+the components in space of a tensor or momentum of the body, if their parts would need names.
 """
 
 from __future__ import annotations
@@ -34,11 +35,19 @@ from rigidsym.notes.document.document import (
     listed,
     said,
 )
-from rigidsym.notes.prose.short import by_the_chain_rule, in_short
+from rigidsym.notes.prose.short import in_short
 from rigidsym.notes.prose.vector_words import sum_of_vectors
 
 _MOST_LINES = 24  # of one quantity, where there is a short way to say it
 _MOST_OF_ROTATION = 48  # a page of R itself, which the others are for
+_RATHER_SHORT = frozenset(  # than with names for their parts
+    {
+        "rotation_rate",
+        "inertia_tensor_space",
+        "angular_momentum_rotation",
+        "angular_momentum",
+    }
+)
 _MOST_NAMES = 3  # that a reader is reminded of one by one
 _BODY_VELOCITY = "angular_velocity_body"
 _ROOM_OF_A_NAME = 6.0  # ems
@@ -72,9 +81,9 @@ class Fitter:
             yield _without_entries(equation, short)
             return
         form = self._shortest(equation)
-        if form.parts and step.quantity.name == "rotation_rate":  # too long for what it is good for
+        if form.parts and step.quantity.name in _RATHER_SHORT:
             self._namer.forget()
-            yield _without_entries(equation, (by_the_chain_rule(equation.sides[0], self.letters),))
+            yield _without_entries(equation, in_short(step, self.derivation, self.letters) or ())
             return
         if short is not None:
             lines = sum(map(self._lines, self._blocks(form)))

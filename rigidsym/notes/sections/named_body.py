@@ -1,29 +1,35 @@
 """The quantities of a body in physical names: M, I₁, I₂, I₃ in place of the lengths behind them.
 
 A body that is described by lengths and densities has long moments of inertia. They are shown once;
-whatever follows from them is derived again for a body with these letters.
+whatever follows from them is derived again for a body with these letters. A point P has its
+distance d = p − c from the centre of mass.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
 
-from rigidsym.errors import QuantityError
 from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import MINUS, PLUS, Formula, bracketed, joined, row
-from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
+from rigidsym.mechanics.quantities.arguments import POINT
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
+from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, MASS, moved
 from rigidsym.models.body import Parameter, RigidBody, given_inertia
 
 Parts = Sequence[tuple[sp.Symbol, sp.Expr]]  # names with what they stand for
 
 _AS_DESCRIBED = ("mass", "centre_of_mass", "principal_moments", "principal_axes")
+_ABOUT_POINT = ("inertia_tensor_point", "moment_of_inertia")
 _MOMENTS = sp.symbols("I_1:4")
+OFFSET = tuple(sp.Symbol(f"d_{axis}") for axis in "xyz")
+_DISTANCE = formula(r"\mathbf{d}")
+OFFSET_IS = formula(r"\mathbf{d} = \mathbf{p} - \mathbf{c}")
+_STEINER = formula("#1 + #2", INERTIA, moved(MASS, _DISTANCE))
 _TURNED = formula(r"\boldsymbol{\Omega}")
 
 
@@ -33,47 +39,70 @@ def in_names(derivation: Derivation) -> tuple[Derivation, Parts]:
     It is returned as it is where its moments are short, or a name is taken.
     """
     body = derivation.body
-    if body is None or all(entry.is_Atom for entry in (*body.inertia, body.mass)):
+    if body is None:
         return derivation, ()
     parts, letters = _named(body)
-    taken = {str(symbol) for argument in derivation.arguments for symbol in argument.symbols}
-    given = {symbol.name for symbol in letters.inertia.free_symbols | letters.mass.free_symbols}
-    skipped = _AS_DESCRIBED if body.inertia.is_diagonal() else (*_AS_DESCRIBED, "inertia_tensor")
     present = [step.quantity.name for step in derivation.steps]
-    of_body = (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES)
-    wanted = [name for name in of_body if name in present and name not in skipped]
-    if given & taken - {str(body.mass)} or not wanted:
+    wanted = [name for name in _renamed(body) if name in present]
+    taken = {str(symbol) for argument in derivation.arguments for symbol in argument.symbols}
+    names = {*letters.inertia.free_symbols, letters.mass, *(OFFSET if any(body.centre) else ())}
+    own = body.inertia.free_symbols | {body.mass}
+    if {str(name) for name in names - own} & taken:
         return derivation, ()
-    try:
-        found = derive(derivation.model, wanted, body=letters)
-    except QuantityError:  # moments in closed form, which the letters of their entries do not have
-        wanted = [name for name in wanted if name != "inertia_ellipsoid"]
-        found = derive(derivation.model, wanted, body=letters)
-    again = {step.quantity.name: step for step in found.steps}
-    steps = (
-        replace(step, expression=again[step.quantity.name].expression)
-        if step.quantity.name in wanted
-        else step
-        for step in derivation.steps
-    )
-    return replace(derivation, steps=tuple(steps)), parts if body.inertia.is_diagonal() else ()
+    found = derive(derivation.model, wanted, body=letters).steps if wanted else ()
+    shown = {step.quantity.name: step.expression for step in found}
+    if not body.inertia.is_diagonal() and "principal_moments" in present:
+        shown["inertia_ellipsoid"] = sp.ImmutableMatrix(
+            [1 / sp.sqrt(moment) for moment in _MOMENTS]
+        )
+    steps = tuple(_shown(step, shown, body) for step in derivation.steps)
+    return replace(derivation, steps=steps), parts if wanted else ()
+
+
+def _renamed(body: RigidBody) -> Iterator[str]:
+    """The quantities that are shown in names."""
+    if not _is_short(body):
+        skipped = {*_AS_DESCRIBED}
+        if not body.inertia.is_diagonal():
+            skipped |= {"inertia_tensor", "inertia_ellipsoid"}
+        yield from (n for n in (*INERTIA_QUANTITIES, *ENERGY_QUANTITIES) if n not in skipped)
+    elif any(body.centre):
+        yield from _ABOUT_POINT
+
+
+def _is_short(body: RigidBody) -> bool:
+    return all(entry.is_Atom for entry in (*body.inertia, body.mass))
+
+
+def _shown(step: Step, shown: Mapping[str, sp.ImmutableMatrix], body: RigidBody) -> Step:
+    name = step.quantity.name
+    if name not in shown:
+        return step
+    expression, quantity = shown[name], step.quantity
+    if any(body.centre) and name in _ABOUT_POINT:
+        expression = expression.xreplace(dict(zip(POINT, OFFSET, strict=True)))
+        if name == "inertia_tensor_point":
+            quantity = quantity._replace(definition=_STEINER)
+    return replace(step, quantity=quantity, expression=expression)
 
 
 def _named(body: RigidBody) -> tuple[Parts, RigidBody]:
-    """The body with a letter for its mass and for each moment or product of inertia."""
-    inertia = body.inertia
-    if inertia.is_diagonal():
-        pairs = [*zip(_MOMENTS, inertia.diagonal(), strict=True)]
+    """The body about its centre of mass, with a letter for each moment or product of inertia.
+
+    The letters have what they stand for, if the body's own axes are principal axes.
+    """
+    tensor, parts = body.inertia, []
+    if not _is_short(body) and tensor.is_diagonal():
+        pairs = [*zip(_MOMENTS, tensor.diagonal(), strict=True)]
         letters = {moment: name for name, moment in reversed(pairs)}
-        tensor = sp.diag(*(letters[moment] if moment else moment for moment in inertia.diagonal()))
         parts = [(name, moment) for moment, name in reversed(letters.items()) if moment]
-    else:
-        tensor, parts = sp.Matrix(3, 3, lambda i, j: inertia[i, j] and _entry(i, j)), []
+        tensor = sp.diag(*(letters[moment] if moment else moment for moment in tensor.diagonal()))
+    elif not _is_short(body):
+        tensor = sp.Matrix(3, 3, lambda i, j: body.inertia[i, j] and _entry(i, j))
     mass = body.mass if body.mass.is_Symbol else sp.Symbol("M")
     return parts, given_inertia(
         tensor,
         mass=mass,
-        centre=body.centre,
         name=body.name,
         parameters=[Parameter(symbol=s, positive=False) for s in tensor.free_symbols | {mass}],
         allow=True,

@@ -11,7 +11,6 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import RATES
-from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
 from rigidsym.notes.document.document import (
     Code,
     CodeBlock,
@@ -28,6 +27,7 @@ from rigidsym.notes.prose.words import (
     BODY_POSITION,
     OPERATOR,
     POSITION,
+    is_body_alone,
     symbols_of,
     unit_in_words,
     vector,
@@ -70,11 +70,6 @@ def symbols(derivation: Derivation, letters: Letters) -> NoteTable:
 
 
 Row = tuple[Text, ...]
-
-
-def is_body_alone(derivation: Derivation) -> bool:
-    """Whether nothing is derived of the rotation, so that a note leaves it out."""
-    return all(step.quantity.name in OF_BODY_ALONE for step in derivation.steps)
 
 
 def _arguments(derivation: Derivation) -> Iterator[Row]:
