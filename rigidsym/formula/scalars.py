@@ -68,9 +68,9 @@ def signs_outside(node: sp.Expr) -> sp.Expr:
 def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     """What is in all entries, such as ½ M or 2/(n² + w²), and the matrix behind it."""
     entries = [entry for entry in matrix if entry != 0]
-    below = {sp.fraction(entry)[1].as_coeff_Mul()[1] for entry in entries}
-    if len(below) == 2 and any(entry.is_Add for entry in entries):  # 1 − 2 y²/d, 2 x y/d
-        below = {sp.fraction(sp.together(e))[1].as_coeff_Mul()[1] for e in entries}
+    below = set(map(_below, entries))
+    if len(below) == 2 and any(_below(t) != 1 for e in entries if e.is_Add for t in e.args):
+        below = {_below(sp.together(entry)) for entry in entries}  # 1 − 2 y²/d, 2 x y/d
     if len(entries) < 2 or len(below) > 1:
         return sp.S.One, matrix
     (divisor,) = below
@@ -86,10 +86,16 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     return number * constants / divisor, sp.ImmutableMatrix(*matrix.shape, rest)
 
 
+def _below(expression: sp.Expr) -> sp.Expr:
+    """The denominator without its number."""
+    return sp.fraction(expression)[1].as_coeff_Mul()[1]
+
+
 def _over(entry: sp.Expr, divisor: sp.Expr) -> sp.Expr:
     """The numerator of an entry over a divisor."""
-    apart = entry.is_Add and any(sp.fraction(term)[1] == divisor for term in entry.args)
-    return sp.Add(*(sp.expand(term * divisor) for term in entry.args)) if apart else entry * divisor
+    if divisor == 1 or not entry.is_Add or divisor not in map(_below, entry.args):
+        return entry * divisor
+    return sp.Add(*(sp.expand(term * divisor) for term in entry.args))
 
 
 def _constants_in_all(entries: Sequence[sp.Expr]) -> sp.Expr:

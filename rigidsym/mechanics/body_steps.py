@@ -83,7 +83,7 @@ def _about_fixed_point() -> dict[str, Quantity]:
 def _renamed(step: Found, turns: TurnByTurn) -> Found:
     """The step with R and Ω′ as the recursions over the turns name them, and are proved to be."""
     recursion = turns.recursion
-    names = dict(zip(NamedRotation.names.matrix, recursion.partial[-1], strict=True))
+    names = dict(zip(NamedRotation.names().matrix, recursion.partial[-1], strict=True))
     names |= dict(zip(NamedRotation.velocity, recursion.omega_body[-1], strict=True))
     if not step.expression.has(*names):
         return step

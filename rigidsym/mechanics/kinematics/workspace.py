@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -172,23 +172,28 @@ class NamedRotation(Values):
     of a long product of turns proves.
     """
 
-    names = DirectionCosines([f"R_{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)])
     velocity = sp.symbols("omega_body_1:4")
+
+    @staticmethod
+    @cache
+    def names() -> RotationModel:
+        """The nine entries of R by name."""
+        return DirectionCosines([f"R_{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3)])
 
     @cached_property
     def codec(self) -> Codec:
         assert self.body is not None
         moving = [*self.arguments["centre"].symbols, *self.arguments["centre_dot"].symbols]
-        inputs = [*self.names.matrix, *self.velocity, *moving, self.body.mass, *self.body.inertia]
+        inputs = [*self.names().matrix, *self.velocity, *moving, self.body.mass, *self.body.inertia]
         return codec_for([*inputs, sp.Rational(1, 2), *self._also], order=1)
 
     @cached_property
     def prove(self) -> Prover:
-        return Prover(self.names, self.codec)
+        return Prover(self.names(), self.codec)
 
     @cached_property
     def R(self) -> RingMatrix:
-        return self.encoded(self.names.matrix)
+        return self.encoded(self.names().matrix)
 
     @cached_property
     def R_dot(self) -> RingMatrix:
