@@ -13,10 +13,13 @@ import tempfile
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import cache
 from hashlib import sha256
 from importlib import import_module, invalidate_caches
 from pathlib import Path
 from types import ModuleType
+
+from rigidsym.system.files import cache_folder
 
 _KEPT = 200  # packages in the cache folder; those unused for the longest time go
 _DAY = 86400.0  # seconds, after which a draft belongs to a process that was killed
@@ -56,23 +59,17 @@ def load(
 
 def _home() -> Path:
     """The folder of the packages, where Python finds them."""
-    home = _cache()
+    home = cache_folder("kernels") or _own()
     if str(home) not in __path__:
         __path__.append(str(home))
     return home
 
 
-def _cache() -> Path:
-    try:
-        cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-        home = cache / "rigidsym" / "kernels"
-        home.mkdir(parents=True, exist_ok=True)
-        Path(tempfile.mkdtemp(dir=home, prefix=".")).rmdir()  # it can be written
-    except (OSError, RuntimeError):  # no permission, or no home
-        if not _OWN:
-            _OWN.append(Path(tempfile.mkdtemp(prefix="rigidsym-")))
-            atexit.register(shutil.rmtree, _OWN[0], ignore_errors=True)
-        return _OWN[0]
+@cache
+def _own() -> Path:
+    """The folder of this process, if there is no other."""
+    home = Path(tempfile.mkdtemp(prefix="rigidsym-"))
+    atexit.register(shutil.rmtree, home, ignore_errors=True)
     return home
 
 
@@ -89,6 +86,5 @@ def _prune(home: Path) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-_OWN: list[Path] = []  # the folder of this process, if there is no other
 __path__: list[str] = []
 _home()

@@ -22,6 +22,18 @@ def write_bytes(path: Path, content: bytes) -> Path:
     return path
 
 
+def cache_folder(kind: str) -> Path | None:
+    """The user's folder (XDG_CACHE_HOME) for one kind of files; None if it cannot be written."""
+    try:
+        cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        home = cache / "rigidsym" / kind
+        home.mkdir(parents=True, exist_ok=True)
+        Path(tempfile.mkdtemp(dir=home, prefix=".")).rmdir()  # it can be written
+    except (OSError, RuntimeError):  # no permission, or no home
+        return None
+    return home
+
+
 @contextmanager
 def whole_file(path: Path) -> Iterator[BinaryIO]:
     """A file to write into, moved into place if the block succeeds, removed if not.

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from pickle import UnpicklingError
 from time import monotonic
 from traceback import walk_tb
 from types import TracebackType
 from typing import Any, NoReturn, cast
 
+import jinja2
 from jinja2 import (
+    BytecodeCache,
     FunctionLoader,
     StrictUndefined,
     Template,
@@ -19,11 +24,13 @@ from jinja2 import (
     Undefined,
     nodes,
 )
+from jinja2.bccache import Bucket
 from jinja2.exceptions import SecurityError
 from jinja2.runtime import Context
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from rigidsym.errors import TemplateFault
+from rigidsym.system.files import cache_folder, write_bytes
 
 Find = Callable[[str], tuple[str, str]]  # name -> text, file
 _LONGEST = 20_000_000  # characters that one template may print, or put together
@@ -36,6 +43,27 @@ _FILTERS = (  # whose result is hardly longer than what they are given
     *("rejectattr", "reverse", "round", "safe", "select", "selectattr", "sort", "string"),
     *("striptags", "title", "trim", "truncate", "unique", "upper", "wordcount"),
 )
+
+
+class _CompiledTemplates(BytecodeCache):
+    """Templates compiled by an earlier process, in the user's cache folder."""
+
+    def __init__(self) -> None:
+        self._folder = cache_folder("templates")
+        self._compiler = f"{jinja2.__version__} {Path(__file__).stat().st_mtime_ns}"
+
+    def get_source_checksum(self, source: str) -> str:
+        return super().get_source_checksum(f"{self._compiler} {source}")
+
+    def load_bytecode(self, bucket: Bucket) -> None:
+        with suppress(OSError, EOFError, UnpicklingError):
+            if self._folder is not None:
+                bucket.bytecode_from_string((self._folder / bucket.key).read_bytes())
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        with suppress(OSError):  # of a disk that is full, say
+            if self._folder is not None:
+                write_bytes(self._folder / bucket.key, bucket.bytecode_to_string())
 
 
 class _BoundedTemplate(Template):
@@ -68,6 +96,7 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
         self._last = monotonic() + _SECONDS
         settings: dict[str, Any] = {
             "loader": FunctionLoader(lambda name: self._load(find, name)),
+            "bytecode_cache": _CompiledTemplates(),
             "undefined": StrictUndefined,
             "autoescape": False,
             "finalize": _printable,

@@ -11,6 +11,7 @@ from helpers.motions import derived
 from rigidsym.commands.cli import commands
 from rigidsym.errors import TemplateFault
 from rigidsym.system import resources
+from rigidsym.system.sandbox import SandboxedTemplates
 
 NAME = "euler_zxz_intrinsic"
 
@@ -181,3 +182,28 @@ def test_copying_out_overwrites_nothing(tmp_path: Path):
     assert done.exit_code != 0
     assert [file.name for file in tmp_path.iterdir()] == ["note.tex.jinja"]
     assert (tmp_path / "note.tex.jinja").read_text("utf-8") == "mine"
+
+
+def test_templates_are_compiled_once_for_all_processes_and_again_after_a_change(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def rendered(text: str) -> str:
+        return SandboxedTemplates(lambda name: (text, name)).get_template("a.jinja").render(x=1)
+
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    first = rendered("{{ x }} once")
+    monkeypatch.setattr(SandboxedTemplates, "compile", None)
+    assert rendered("{{ x }} once") == first == "1 once"
+    monkeypatch.undo()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert rendered("{{ x }} twice") == "1 twice"
+    (kept,) = (tmp_path / "rigidsym" / "templates").iterdir()
+    kept.write_bytes(kept.read_bytes()[:60])
+    assert rendered("{{ x }} twice") == "1 twice"
+
+
+def test_templates_need_no_cache_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "rigidsym").write_text("a file where the folder would be")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    made = SandboxedTemplates(lambda name: ("{{ x }}", name))
+    assert made.get_template("a.jinja").render(x=1) == "1"
