@@ -1,5 +1,5 @@
 from rigidsym.data.mass.point_masses import inertia_of as inertia_of
-from rigidsym.data.mass.principal_axes import principal_axes_of as principal_axes_of
+from rigidsym.data.mass.properties import principal_axes_of as principal_axes_of
 from rigidsym.errors import NotARotation as NotARotation, RigidsymError as RigidsymError
 from rigidsym.mechanics.derivation import Derivation as Derivation
 from rigidsym.mechanics.mass.bodies import body_of as body_of, solid as solid
@@ -37,8 +37,11 @@ from rigidsym.models.rotation import (
 )
 from rigidsym.models.rotation_text import rotation_from as rotation_from
 from rigidsym.motion import Motion as Motion, derive as derive, kernels as kernels
-from rigidsym.tools.compare.checked import checked as checked
-from rigidsym.tools.compare.comparison import Comparison as Comparison, compare as compare
+from rigidsym.tools.compare.comparison import (
+    Comparison as Comparison,
+    checked as checked,
+    compare as compare,
+)
 from rigidsym.tools.identify.identification import identify as identify
 from rigidsym.tools.identify.report import Identification as Identification
 from rigidsym.version import __version__ as __version__

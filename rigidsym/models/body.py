@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import permutations
+from math import isfinite
 from typing import Any
 
 import sympy as sp
@@ -13,7 +15,6 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.angles import not_exact
 from rigidsym.errors import BodyError
 from rigidsym.models.distribution import Distribution
-from rigidsym.models.plausibility import check_inertia, check_mass
 from rigidsym.models.rotation import Citation, lecture
 from rigidsym.models.so3 import TIME, symbolic
 
@@ -21,6 +22,7 @@ _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _AXES = ("x", "y", "z")
 _SPACE = r" \qquad "
 SOURCE = lecture("4", "section 2.2")
+_ROUNDING = 1e-12  # of the sum of the moments: what arithmetic in double precision leaves
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -79,8 +81,8 @@ class RigidBody:
         self._check_symbols()
         self._check_symmetry()
         if not self.allow:
-            check_mass(self.name, self.in_numbers(self.mass))
-            check_inertia(self.name, self.in_numbers(self.inertia))
+            _check_mass(self.name, self.in_numbers(self.mass))
+            _check_inertia(self.name, self.in_numbers(self.inertia))
 
     @property
     def values(self) -> dict[sp.Symbol, sp.Float]:
@@ -139,6 +141,44 @@ class RigidBody:
 
     def __str__(self) -> str:
         return self.name
+
+
+def _check_mass(name: str, mass: sp.Expr) -> None:
+    """Raises BodyError for a number that is not positive."""
+    if not mass.is_number:
+        return
+    value = float(mass)
+    if not (isfinite(value) and value > 0):
+        raise BodyError(f"{name}: the mass is {value:g} kg; expected a positive number")
+
+
+def _check_inertia(name: str, inertia: sp.MatrixBase) -> None:
+    """Raises BodyError for a matrix of numbers that no body has, with the amount.
+
+    For a mass distribution that is nowhere negative, the moments are not negative and no moment is
+    larger than the sum of the other two, since Ix + Iy − Iz = 2 Σ m z² (L. D. Landau and E. M.
+    Lifshitz, Mechanics, section 32). A matrix with symbols left in it is not checked.
+    """
+    if not all(entry.is_number for entry in inertia):
+        return
+    import numpy as np
+
+    numbers = np.array(inertia.tolist(), dtype=float)
+    if not np.isfinite(numbers).all():
+        raise BodyError(f"{name}: the inertia tensor holds NaN or infinity: {numbers.tolist()}")
+    moments = [float(moment) for moment in np.linalg.eigvalsh(numbers)]
+    slack = _ROUNDING * max(map(abs, moments))
+    if moments[0] < -slack:
+        raise BodyError(
+            f"{name}: the inertia tensor is not positive: its smallest principal moment is "
+            f"{moments[0]:.6g} kg m²"
+        )
+    for a, b, c in permutations(moments):
+        if a <= b and a + b < c - slack:
+            raise BodyError(
+                f"{name}: no body has the principal moments {a:.6g}, {b:.6g}, {c:.6g} kg m²: the "
+                f"largest exceeds the sum of the others by {c - a - b:.6g} kg m²"
+            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

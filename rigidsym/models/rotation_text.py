@@ -1,18 +1,19 @@
-"""From the text in a file or a command to a rotation model."""
+"""From the text in a file or a command to a rotation model, or to a rotation at rest."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.errors import ExpressionError, ModelError
+from rigidsym.errors import BodyError, ExpressionError, ModelError
 from rigidsym.models.chain import axis_turn, chain, direction
 from rigidsym.models.euler_angles import (
     DEFAULT_ANGLES,
@@ -22,7 +23,7 @@ from rigidsym.models.euler_angles import (
 )
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.matrices import given
-from rigidsym.models.rotation import RotationModel, Turn
+from rigidsym.models.rotation import RotationModel, Turn, product_of
 from rigidsym.models.so3 import AXES, time_function
 from rigidsym.text.expression import names_in, parse_expression, parse_turns
 from rigidsym.text.names import check_name
@@ -133,6 +134,35 @@ def faults_in(
     return faults
 
 
+def turned_by(
+    text: str, values: Sequence[sp.Expr] | None = None
+) -> tuple[sp.ImmutableMatrix, tuple[sp.Expr, ...]]:
+    """The matrix R (3, 3) of a rotation that stays as it is, and what its symbols are bound by.
+
+    The text is one of turns, "z(pi/4) x(alpha)", or names any rotation, whose coordinates take the
+    `values`, or are constants of their names. Raises ModelError or ExpressionError for a text that
+    names no rotation, BodyError where the number of values is wrong or they break a condition.
+    """
+    if values is None and "(" in text:
+        turns = tuple(_turn(axis, angle, _constant) for axis, angle in parse_turns(text))
+        if any(part.free_symbols for turn in turns for part in turn.components):
+            raise ExpressionError(f"{text}: an axis is expected to have components in numbers")
+        return product_of(turns), ()
+    model = rotation_from(text)
+    if values is None:
+        values = [sp.Symbol(q.func.__name__) for q in model.coordinates]
+    if len(values) != len(model.coordinates):
+        raise BodyError(
+            f"{text} has {len(model.coordinates)} coordinates, got {len(values)} values"
+        )
+    fixed = dict(zip(model.coordinates, values, strict=True))
+    bound = [sp.expand(condition.xreplace(fixed)) for condition in model.constraints]
+    for condition in bound:
+        if condition.is_number and condition != 0:
+            raise BodyError(f"{text}: the values break its condition by {condition}")
+    return sp.ImmutableMatrix(model.matrix.xreplace(fixed)), tuple(b for b in bound if b != 0)
+
+
 def request_of(model: RotationModel) -> Mapping[str, Any]:
     """What asks for the model again; raises ModelError for one that no text asks for."""
     if model.request:
@@ -195,7 +225,8 @@ def _turned(
     if names is not None:
         raise ModelError(f"{text} names its angles itself; leave the other names out")
     try:
-        turns = [_turn(axis, angle, constants) for axis, angle in parse_turns(text)]
+        symbol = partial(_symbol, constants=constants)
+        turns = [_turn(axis, angle, symbol) for axis, angle in parse_turns(text)]
     except ExpressionError as error:
         raise ExpressionError(f"column {error.column}: {error.message}") from None
     return _euler(turns, passive) or chain(turns, passive=passive)
@@ -212,16 +243,21 @@ def _euler(turns: Sequence[Turn], passive: bool) -> RotationModel | None:
     return EulerAngles(letters, [angle.func.__name__ for angle in angles], passive=passive)
 
 
-def _turn(axis: str, angle: str, constants: Sequence[str]) -> Turn:
-    value = parse_expression(angle, {name: _symbol(name, constants) for name in names_in(angle)})
+def _turn(axis: str, angle: str, symbol: Callable[[str], sp.Expr]) -> Turn:
+    """One turn, with the symbols of the names in its angle; those in an axis are constants."""
+    value = parse_expression(angle, {name: symbol(name) for name in names_in(angle)})
     if axis in AXES:
         return Turn(axis=axis, angle=value)
     parts = axis[1:-1].split(",")
     if len(parts) != 3:
         raise ExpressionError(f"the axis {axis} has {len(parts)} components; expected three")
-    exact = [parse_expression(p, {n: sp.Symbol(check_name(n)) for n in names_in(p)}) for p in parts]
+    exact = [parse_expression(p, {name: _constant(name) for name in names_in(p)}) for p in parts]
     turn = axis_turn(direction(exact), value)
     return replace(turn, axis=f"[{','.join(part.strip() for part in parts)}]")
+
+
+def _constant(name: str) -> sp.Symbol:
+    return sp.Symbol(check_name(name))
 
 
 def _symbol(name: str, constants: Sequence[str]) -> sp.Expr:

@@ -20,7 +20,7 @@ from rigidsym.models.body import (
     given_inertia,
     principal_moments,
 )
-from rigidsym.models.placement import turned_by
+from rigidsym.models.rotation_text import turned_by
 from rigidsym.models.solids import SHAPES, Length, check_lengths, shape_of, shaped
 from rigidsym.spec.body_reader import BodyReader, Declared
 from rigidsym.spec.derivation_spec import Body

@@ -17,7 +17,7 @@ from rigidsym.commands.cli import commands
 from rigidsym.data.mass.blocks import BLOCK, block_of, cloud_of
 from rigidsym.data.mass.mesh import Mesh, mesh_inertia, read_mesh_file
 from rigidsym.data.mass.point_masses import inertia_of
-from rigidsym.data.mass.principal_axes import principal_axes_of
+from rigidsym.data.mass.properties import principal_axes_of
 from rigidsym.errors import BodyError
 
 EPS = np.finfo(float).eps
