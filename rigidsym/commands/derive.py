@@ -25,6 +25,8 @@ from rigidsym.system.files import write_bytes, write_text
 from rigidsym.system.processes import in_processes
 from rigidsym.system.progress import counter
 
+Made = tuple[Output, bytes | RigidsymError | None]  # with the PDF, or why there is none
+
 
 @dataclass(frozen=True, kw_only=True)
 class DeriveOptions(PrintingOptions, RotationOptions):
@@ -59,12 +61,21 @@ def produce(specs: Iterable[DerivationSpec], options: PrintingOptions) -> None:
     singles = [single for spec in specs for single in integrated(spec).singles()]
     _check_folders(singles)
     missing: list[RigidsymError] = []
-    for output in _outputs([with_existing_files(single, options.out) for single in singles]):
-        written = write(output, options.out, force=options.force)
-        written += _typeset(output, written[0].parent, missing)
-        if options.certificates:
-            written += _certified(output, written[0].parent)
-        _show(output, written, options, is_only=len(singles) == 1)
+    count = 0
+    try:
+        for output, paper in _outputs([with_existing_files(s, options.out) for s in singles]):
+            written = write(output, options.out, force=options.force)
+            if isinstance(paper, bytes):
+                written.append(write_bytes(written[0].parent / f"{output.name}.pdf", paper))
+            elif paper is not None:
+                missing.append(paper)
+            if options.certificates:
+                written += _certified(output, written[0].parent)
+            _show(output, written, options, is_only=len(singles) == 1)
+            count += 1
+    finally:
+        if 0 < count < len(singles):
+            message(f"{count} of {len(singles)} derivations are finished and kept in {options.out}")
     if missing:
         raise missing[0]
 
@@ -87,9 +98,9 @@ def _check_folders(singles: Iterable[DerivationSpec]) -> None:
             )
 
 
-def _outputs(singles: Sequence[DerivationSpec]) -> Iterator[Output]:
+def _outputs(singles: Sequence[DerivationSpec]) -> Iterator[Made]:
     """The output of each rotation, with a bar if there are several and a terminal shows it."""
-    found = in_processes(output_of, singles)
+    found = in_processes(_made, singles)
     if len(singles) == 1 or not sys.stderr.isatty():
         yield from found
         return
@@ -99,16 +110,15 @@ def _outputs(singles: Sequence[DerivationSpec]) -> Iterator[Output]:
             yield next(found)
 
 
-def _typeset(output: Output, folder: Path, missing: list[RigidsymError]) -> list[Path]:
-    """The PDF; a missing TeX is reported after all other files are written."""
+def _made(single: DerivationSpec) -> Made:
+    """The output of a rotation; a missing TeX is reported after all other files are written."""
+    output = output_of(single)
     if PDF not in output.spec.note:
-        return []
+        return output, None
     try:
-        paper = typeset(output.files[f"{output.name}.tex"])
+        return output, typeset(output.files[f"{output.name}.tex"]).pdf
     except RigidsymError as error:
-        missing.append(error)
-        return []
-    return [write_bytes(folder / f"{output.name}.pdf", paper.pdf)]
+        return output, error
 
 
 def _certified(output: Output, folder: Path) -> list[Path]:

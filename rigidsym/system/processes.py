@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 R = TypeVar("R")
+_PATIENCE = 2.0  # seconds for a copy to end what it started
 
 
 def cores() -> int:
@@ -71,6 +72,8 @@ def _copies(
         yield ends
     finally:
         for copy in running:
+            copy.terminate()
+            copy.join(_PATIENCE)
             copy.kill()
             copy.join()
 
@@ -78,7 +81,11 @@ def _copies(
 def _done(
     work: Callable[[T], R], items: Sequence[T], here: Connection[R, R], there: Connection[R, R]
 ) -> None:
-    """The part of a copy: the results of its items, up to the first error."""
+    """The part of a copy: the results of its items, up to the first error.
+
+    If it is ended before, it ends the programs that it started, too.
+    """
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
     here.close()
     with suppress(RigidsymError, MemoryError, BrokenPipeError):
         for item in items:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from time import sleep
 
 import pytest
 from click.testing import CliRunner
@@ -48,6 +49,39 @@ def test_results_come_in_order_and_errors_where_they_arise(cores: int, monkeypat
         next(found)
     assert list(in_processes(inverse, range(5))) == [0, -1, -2, -3, -4]
     assert list(in_processes(inverse, [])) == []
+
+
+def test_a_copy_that_is_ended_ends_what_it_started(tmp_path: Path, monkeypatch):
+    monkeypatch.setattr(processes, "cores", lambda: 2)
+    here = os.getpid()
+    started, ended = tmp_path / "started", tmp_path / "ended"
+
+    def work(item: str) -> str:
+        if os.getpid() != here:
+            try:
+                started.touch()
+                sleep(60)
+            finally:
+                ended.touch()
+        return item
+
+    found = in_processes(work, "abc")
+    assert [next(found), next(found)] == ["a", "b"]
+    while not started.exists():
+        sleep(0.01)
+    found.close()
+    assert ended.exists()
+
+
+def test_a_run_that_stops_says_how_much_is_kept(tmp_path: Path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = FOUR + 'quantities = ["rotation_matrix"]\nkernels = []\n'
+    Path("four.toml").write_text(text.replace('"html", "page"', '"md"'), encoding="utf-8")
+    command = ["run", "four.toml"]
+    assert CliRunner().invoke(commands, command).exit_code == 0
+    Path("out/euler_zyx_intrinsic/euler_zyx_intrinsic.md").write_text("mine", encoding="utf-8")
+    done = CliRunner().invoke(commands, command)
+    assert "2 of 4 derivations are finished and kept in out" in done.output
 
 
 def test_the_work_of_a_process_that_was_killed_is_done_again(monkeypatch):
