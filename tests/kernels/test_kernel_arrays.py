@@ -9,6 +9,7 @@ import sys
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
 from threading import Barrier, Event
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -425,3 +426,46 @@ def test_axes_of_any_lengths_over_many_blocks(shape):
 def test_threads_need_little_more():
     q, q_dot = (np.zeros((500_000, 3)) for _ in range(2))
     assert peak(lambda: module().rotation_rate(q, q_dot, threads=2)) <= 36e6 + 2 * 12e6
+
+
+FEW_ROWS = ("rotation_matrix", "angular_velocity_body", "rates_from_angular_velocity_body")
+
+
+# What a call of few rows costs is calls, of Python and of NumPy, since each takes as long as the
+# arithmetic of a hundred rows. The time itself is in `benchmarks/run.py sizes`.
+@pytest.mark.parametrize(
+    ("leading", "most"), [((), 28), ((1,), 26), ((6,), 72), ((7,), 20), ((10,), 20), ((100,), 21)]
+)
+@pytest.mark.parametrize("name", FEW_ROWS)
+def test_few_rows_take_few_calls(name, leading, most):
+    function, arrays = getattr(module(), name), inputs(name, leading)
+    for options in ({}, {"out": function(*arrays)}):
+        calls: list[str] = []
+        sys.setprofile(lambda _, event, __, calls=calls: calls.append(event))
+        try:
+            function(*arrays, **options)
+        finally:
+            sys.setprofile(None)
+        assert calls.count("call") + calls.count("c_call") <= most + len(options)
+
+
+class Counted(np.ndarray):
+    """An array that counts the functions of NumPy that are applied to it."""
+
+    ufuncs: ClassVar[list[str]] = []
+
+    def __array_ufunc__(self, ufunc, method, *given, out=(), **options):
+        self.ufuncs.append(ufunc.__name__)
+        plain = [x.view(np.ndarray) if isinstance(x, Counted) else x for x in given]
+        into = {"out": tuple(x.view(np.ndarray) for x in out)} if out else {}
+        return np.asarray(getattr(ufunc, method)(*plain, **into, **options)).view(Counted)
+
+
+@pytest.mark.parametrize("name", FEW_ROWS[:2])
+def test_each_operation_of_a_kernel_is_one_of_numpy(name):
+    """The docstring states their number; no array is copied or computed twice."""
+    Counted.ufuncs.clear()
+    getattr(module(), f"_{name}")(*(array.T.view(Counted) for array in inputs(name, (50,))))
+    stated = re.search(r"(\d+)\s+operations", getattr(module(), name).__doc__)
+    copies = Counted.ufuncs.count("positive")  # of components that are entries of the result
+    assert len(Counted.ufuncs) - copies == int(stated[1])

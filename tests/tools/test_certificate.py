@@ -157,8 +157,24 @@ def test_a_rate_matrix_without_rates_is_asked_for():
     found, certificate = zxz()
     W = printed(found, "rate_matrix_body")["expression"]
     W[2] = ["cos(theta) + psi_dot/phi_dot", "0", "0"]
-    with pytest.raises(ValueError, match="rate_matrix_body holds a rate"):
+    with pytest.raises(ValueError, match="rate_matrix_body holds phi_dot"):
         checker.verify(found, certificate)
+
+
+# q times anything is lost in W: without this check each of these would be "proved".
+@pytest.mark.parametrize("name", ["w_ddot", "x_dot", "omega_space_2", "anything"])
+def test_rates_that_hold_more_than_the_angular_velocity_are_refused(name):
+    asked = ("rates_from_angular_velocity_body", "inverse_rate_matrix_body")
+    found = copy.deepcopy(record_of("quaternion", asked))
+    rates = printed(found, asked[0])["expression"]
+    names = [c["name"] for g in found["arguments"] if g["name"] == "q" for c in g["components"]]
+    name = name.replace("w", names[0]).replace("x_", f"{names[1]}_")
+    for k, coordinate in enumerate(names):
+        rates[k] = f"{rates[k]} + {coordinate}*{name}"
+    certificate = json.loads(certified("quaternion", asked))
+    with pytest.raises(ValueError, match=f"{asked[0]} holds {name}"):
+        checker.verify(found, certificate)
+    assert asked[0] in certificate_of(found).uncovered
 
 
 def test_a_division_by_zero_proves_nothing():

@@ -267,4 +267,16 @@ def test_the_command_says_what_is_wrong_and_returns_one():
 def test_the_command_needs_a_formula_or_paths():
     assert run().exit_code == 2
     assert run("--formula", "[a, b]", "--rotation", "ZYX").exit_code == 2
-    assert run(str(ROOT / "README.md")).exit_code == 0
+
+
+def test_a_file_that_is_not_read_is_named_with_the_kinds_that_are(tmp_path):
+    large = tmp_path / "large.py"
+    large.write_text(" " * 300_001)
+    for file, message in (
+        (ROOT / "README.md", "README.md: expected a folder, or a file .py, .c, "),
+        (large, "large.py: 300001 bytes; expected 300000 at most"),
+    ):
+        done = run(str(file))
+        assert done.exit_code == 2
+        assert message in done.stderr
+    assert run(str(ROOT / "docs" / "howto")).exit_code == 0  # a folder without source files

@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.errors import ExpressionError
+from rigidsym.errors import ExpressionError, RequestError
 from rigidsym.tools.compare.comparison import Comparison, identified
 from rigidsym.tools.compare.language import read_formula, spelled_out
 from rigidsym.tools.compare.plain import name_of, plain
@@ -70,8 +70,16 @@ class FormulaInFile:
 def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     """The source files among the paths and below them, in order, without hidden folders.
 
-    Raises ExpressionError if there are more than can be searched.
+    Raises RequestError for a file in another language or of more than 300 kB, and ExpressionError
+    if there are more than can be searched.
     """
+    for path in paths:
+        if path.is_file() and path.suffix not in SUFFIXES:
+            raise RequestError(f"{path}: expected a folder, or a file {', '.join(SUFFIXES)}")
+        if path.is_file() and path.stat().st_size > _MOST_BYTES:
+            raise RequestError(
+                f"{path}: {path.stat().st_size} bytes; expected {_MOST_BYTES} at most"
+            )
     files = [
         file
         for path in paths
