@@ -9,20 +9,17 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache, partial
-from types import MappingProxyType
 from typing import Any, Protocol
 
 from rigidsym.errors import ModelError
 from rigidsym.formula import tree
 
-CHOICES: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        "rates": ("dot", "fraction"),
-        "vectors": ("bold", "arrow"),
-        "body": ("prime", "superscript"),
-        "angular_velocity": ("Omega", "omega"),
-    }
-)
+CHOICES: Mapping[str, tuple[str, ...]] = {
+    "rates": ("dot", "fraction"),
+    "vectors": ("bold", "arrow"),
+    "body": ("prime", "superscript"),
+    "angular_velocity": ("Omega", "omega"),
+}
 
 FRAMES = ("space", "body")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from operator import index
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import sympy as sp
@@ -179,12 +178,10 @@ class Known(NamedTuple):
 
 
 Distribution = Particles | Solid | Polyhedron | Composite | Known
-KEYS: Mapping[type, str] = MappingProxyType(  # of a [body] table, and of its parts
-    {
-        Particles: "particles",
-        Solid: "shape",
-        Polyhedron: "shape",
-        Composite: "parts",
-        Known: "inertia",
-    }
-)
+KEYS: Mapping[type, str] = {  # of a [body] table, and of its parts
+    Particles: "particles",
+    Solid: "shape",
+    Polyhedron: "shape",
+    Composite: "parts",
+    Known: "inertia",
+}

@@ -3,20 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from rigidsym.models.parametrisations import (
-    AxisAngle,
-    CayleyKlein,
-    DirectionCosines,
-    GibbsVector,
-    ModifiedRodrigues,
-    Quaternion,
-    RotationVector,
-    UnitQuaternion,
-)
+from rigidsym.models import parametrisations as by
 from rigidsym.models.rotation import Citation, RotationModel, lecture
 
 
@@ -28,8 +17,7 @@ class Entry(NamedTuple):
     has_scalar: bool = False  # whether its scalar may stand last
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Preset:
+class Preset(NamedTuple):
     """The Euler angles, or another rotation, of one text."""
 
     rotation: str  # a sequence, turns, or the name of a parametrisation
@@ -38,101 +26,84 @@ class Preset:
     names: tuple[str, ...] = ()
     passive: bool = False
     z_down: bool = False  # whether its z-axis points to the ground
-    options: Mapping[str, Any] = field(default_factory=dict)
 
 
-PARAMETRISATIONS: Mapping[str, Entry] = MappingProxyType(
-    {
-        "quaternion": Entry(
-            build=Quaternion,
-            product="((w² − v·v) 1 + 2 v vᵀ + 2 w C(v))/(w² + v·v)",
-            has_scalar=True,
-        ),
-        "unit_quaternion": Entry(
-            build=UnitQuaternion,
-            product="(w² − v·v) 1 + 2 v vᵀ + 2 w C(v), w² + v·v = 1",
-            has_scalar=True,
-        ),
-        "axis_angle": Entry(build=AxisAngle, product="1 + sin φ C(e) + (1 − cos φ) C(e)², e·e = 1"),
-        "rotation_vector": Entry(
-            build=RotationVector, product="exp C(v) = 1 + sin n/n C(v) + (1 − cos n)/n² C(v)²"
-        ),
-        "gibbs_vector": Entry(build=GibbsVector, product="1 + 2/(1 + g·g) (C(g) + C(g)²)"),
-        "modified_rodrigues": Entry(
-            build=ModifiedRodrigues, product="1 + (8 C(s)² + 4 (1 − s·s) C(s))/(1 + s·s)²"
-        ),
-        "cayley_klein": Entry(
-            build=CayleyKlein, product="the unit quaternion (a, d, c, b), α = a + i b, β = c + i d"
-        ),
-        "direction_cosines": Entry(
-            build=DirectionCosines, product="its nine entries, with R Rᵀ = 1 and det R = 1"
-        ),
-    }
-)
+PARAMETRISATIONS: Mapping[str, Entry] = {
+    "quaternion": Entry(
+        by.Quaternion, "((w² − v·v) 1 + 2 v vᵀ + 2 w C(v))/(w² + v·v)", has_scalar=True
+    ),
+    "unit_quaternion": Entry(
+        by.UnitQuaternion, "(w² − v·v) 1 + 2 v vᵀ + 2 w C(v), w² + v·v = 1", has_scalar=True
+    ),
+    "axis_angle": Entry(by.AxisAngle, "1 + sin φ C(e) + (1 − cos φ) C(e)², e·e = 1"),
+    "rotation_vector": Entry(
+        by.RotationVector, "exp C(v) = 1 + sin n/n C(v) + (1 − cos n)/n² C(v)²"
+    ),
+    "gibbs_vector": Entry(by.GibbsVector, "1 + 2/(1 + g·g) (C(g) + C(g)²)"),
+    "modified_rodrigues": Entry(
+        by.ModifiedRodrigues, "1 + (8 C(s)² + 4 (1 − s·s) C(s))/(1 + s·s)²"
+    ),
+    "cayley_klein": Entry(
+        by.CayleyKlein, "the unit quaternion (a, d, c, b), α = a + i b, β = c + i d"
+    ),
+    "direction_cosines": Entry(
+        by.DirectionCosines, "its nine entries, with R Rᵀ = 1 and det R = 1"
+    ),
+}
 
-PRESETS: Mapping[str, Preset] = MappingProxyType(
-    {
-        "lecture_angles": Preset(
-            rotation="ZXZ",
-            about="the Euler angles of the lecture",
-            source=lecture("17", "section 3.2"),
+PRESETS: Mapping[str, Preset] = {
+    "lecture_angles": Preset(
+        "ZXZ", "the Euler angles of the lecture", lecture("17", "section 3.2")
+    ),
+    "goldstein": Preset(
+        "ZXZ",
+        "Goldstein's Euler angles, his matrix A from space to body axes",
+        Citation(
+            "H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)",
+            section="section 4.4",
+            equation="4.46",
         ),
-        "goldstein": Preset(
-            rotation="ZXZ",
-            about="Goldstein's Euler angles, his matrix A from space to body axes",
-            source=Citation(
-                text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)",
-                section="section 4.4",
-                equation="4.46",
-            ),
-            passive=True,
+        passive=True,
+    ),
+    "landau_lifshitz": Preset(
+        "ZXZ",
+        "the Euler angles of Landau and Lifshitz",
+        Citation("L. Landau, E. Lifshitz, Mechanics (1976)", section="section 35"),
+    ),
+    "aerospace": Preset(
+        "ZYX",
+        "yaw, pitch, roll; from the reference frame to the axes of the aircraft",
+        Citation(
+            "B. Stevens, F. Lewis, Aircraft Control and Simulation (2003)", section="section 1.3"
         ),
-        "landau_lifshitz": Preset(
-            rotation="ZXZ",
-            about="the Euler angles of Landau and Lifshitz",
-            source=Citation(text="L. Landau, E. Lifshitz, Mechanics (1976)", section="section 35"),
+        ("psi", "theta", "phi"),
+        passive=True,
+        z_down=True,
+    ),
+    "wertz": Preset(
+        "ZXZ",
+        "3-1-3 of spacecraft attitude, the direction cosine matrix",
+        Citation(
+            "J. Wertz (ed.), Spacecraft Attitude Determination and Control (1978), appendix E"
         ),
-        "aerospace": Preset(
-            rotation="ZYX",
-            about="yaw, pitch, roll; from the reference frame to the axes of the aircraft",
-            source=Citation(
-                text="B. Stevens, F. Lewis, Aircraft Control and Simulation (2003)",
-                section="section 1.3",
-            ),
-            names=("psi", "theta", "phi"),
-            passive=True,
-            z_down=True,
-        ),
-        "wertz": Preset(
-            rotation="ZXZ",
-            about="3-1-3 of spacecraft attitude, the direction cosine matrix",
-            source=Citation(
-                text="J. Wertz (ed.), Spacecraft Attitude Determination and Control (1978), "
-                "appendix E"
-            ),
-            passive=True,
-        ),
-        "rpy": Preset(
-            rotation="xyz",
-            about="roll, pitch, yaw about fixed axes, as in robotics",
-            source=Citation(
-                text="J. Craig, Introduction to Robotics (2005)", section="section 2.8"
-            ),
-            names=("roll", "pitch", "yaw"),
-        ),
-        "davenport": Preset(
-            rotation="z(phi) x(theta) [0,b,c](psi)",
-            about="Davenport's three turns, the second axis at right angles to the others",
-            source=Citation(
-                text="P. Davenport, Rotations about nonorthogonal axes, AIAA Journal 11 (1973)"
-            ),
-        ),
-        "bunge": Preset(
-            rotation="ZXZ",
-            about="Bunge's angles of texture analysis, from the sample to the crystal",
-            source=Citation(text="H.-J. Bunge, Texture Analysis in Materials Science (1982)"),
-            names=("phi_1", "Phi", "phi_2"),
-            passive=True,
-        ),
-    }
-)
+        passive=True,
+    ),
+    "rpy": Preset(
+        "xyz",
+        "roll, pitch, yaw about fixed axes, as in robotics",
+        Citation("J. Craig, Introduction to Robotics (2005)", section="section 2.8"),
+        ("roll", "pitch", "yaw"),
+    ),
+    "davenport": Preset(
+        "z(phi) x(theta) [0,b,c](psi)",
+        "Davenport's three turns, the second axis at right angles to the others",
+        Citation("P. Davenport, Rotations about nonorthogonal axes, AIAA Journal 11 (1973)"),
+    ),
+    "bunge": Preset(
+        "ZXZ",
+        "Bunge's angles of texture analysis, from the sample to the crystal",
+        Citation("H.-J. Bunge, Texture Analysis in Materials Science (1982)"),
+        ("phi_1", "Phi", "phi_2"),
+        passive=True,
+    ),
+}

@@ -62,37 +62,26 @@ def body_of(
     if not isinstance(distribution, Distribution):
         raise BodyError(f"expected a distribution of mass, got {distribution!r}")
     try:
-        return _integrated(distribution, name, title, parameters, allow)
+        moments = moments_of(distribution)
+        if moments.mass == 0:
+            raise BodyError(f"{name}: the mass is zero; expected a positive mass")
+        centre, inertia = _central(moments)
+        kind = type(distribution).__name__
+        known = distribution.title if isinstance(distribution, Solid) else _TITLES.get(kind, kind)
+        return RigidBody(
+            name=name,
+            title=title or known,
+            mass=moments.mass,
+            inertia=inertia,
+            centre=centre,
+            parameters=described(parameters, *((entry, "") for entry in moments.expressions)),
+            declared=tuple(parameters),
+            allow=allow,
+            distribution=distribution,
+        )
     except BodyError as error:
         place = error.place or (KEYS[type(distribution)],)
         raise BodyError(str(error), place=place) from error
-
-
-def _integrated(
-    distribution: Distribution,
-    name: str,
-    title: str,
-    parameters: Sequence[Parameter],
-    allow: bool,
-) -> RigidBody:
-    moments = moments_of(distribution)
-    if moments.mass == 0:
-        raise BodyError(f"{name}: the mass is zero; expected a positive mass")
-    centre, inertia = _central(moments)
-    kind = type(distribution).__name__
-    known = distribution.title if isinstance(distribution, Solid) else _TITLES.get(kind, kind)
-    symbols = [(entry, "") for entry in moments.expressions]
-    return RigidBody(
-        name=name,
-        title=title or known,
-        mass=moments.mass,
-        inertia=inertia,
-        centre=centre,
-        parameters=described(parameters, *symbols),
-        declared=tuple(parameters),
-        allow=allow,
-        distribution=distribution,
-    )
 
 
 def _central(moments: Moments) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:

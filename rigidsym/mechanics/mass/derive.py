@@ -6,9 +6,8 @@ the body's constants, and, for the tensor in space, over the ring of the rotatio
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from types import MappingProxyType
 
 import sympy as sp
 
@@ -25,15 +24,13 @@ from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Composite, Known, Part, Particles
 
 _ONE = sp.eye(3)
-WITHOUT = MappingProxyType(  # why a body may not have a quantity
-    {
-        "mass": "it is given, not added up",
-        "centre_of_mass": "how its mass is distributed is not given",
-        "principal_moments": "no closed form was found, which a general tensor has not",
-        "principal_axes": "no closed form was found, or none that is short enough for use",
-        "inertia_ellipsoid": "no principal moments were found, or one of them is 0",
-    }
-)
+WITHOUT: Mapping[str, str] = {  # why a body may not have a quantity
+    "mass": "it is given, not added up",
+    "centre_of_mass": "how its mass is distributed is not given",
+    "principal_moments": "no closed form was found, which a general tensor has not",
+    "principal_axes": "no closed form was found, or none that is short enough for use",
+    "inertia_ellipsoid": "no principal moments were found, or one of them is 0",
+}
 
 
 def steps(values: Values, wanted: Sequence[str]) -> Iterator[tuple[str, Found]]:
@@ -125,32 +122,22 @@ class _Inertia:
         return total
 
     def inertia_tensor_point(self) -> Found:
-        body = self.body
-        rest = self._about_point - body.inertia - _moved(body.mass, self.point - body.centre)
+        body, second, d = self.body, self._second_about_point, self.point - self.body.centre
+        about_point = second.trace() * _ONE - second  # ∫ (|x − p|² 1 − (x − p)(x − p)ᵀ) dm
+        rest = about_point - body.inertia - _moved(body.mass, d)
+
+        def shifted(i: int, j: int) -> sp.Expr:
+            """An entry of I′ + M (|d|² 1 − d dᵀ), as short as it can be written."""
+            if i != j:
+                return body.inertia[i, j] - body.mass * d[i] * d[j]
+            return body.inertia[i, i] + body.mass * sum(d[k] ** 2 for k in range(3) if k != i)
+
         return Found(
-            sp.ImmutableMatrix(body.inertia + self._shift),
+            sp.ImmutableMatrix(3, 3, shifted),
             "By the parallel-axis (Steiner) theorem, the mass is added as if concentrated in the "
             "centre of mass.",
             (identity(rest, self._over_mass(claims.OF_POINT), body.name),),
         )
-
-    @property
-    def _shift(self) -> sp.Matrix:
-        """M (|d|² 1 − d dᵀ) from the centre to the point, written entry by entry."""
-        d, mass = self.point - self.body.centre, self.body.mass
-        return sp.Matrix(
-            3,
-            3,
-            lambda i, j: (
-                mass * sum(d[k] ** 2 for k in range(3) if k != i) if i == j else -mass * d[i] * d[j]
-            ),
-        )
-
-    @property
-    def _about_point(self) -> sp.Matrix:
-        """∫ (|x − p|² 1 − (x − p)(x − p)ᵀ) dm, from the moments."""
-        second = self._second_about_point
-        return second.trace() * _ONE - second
 
     @property
     def _second_about_point(self) -> sp.Matrix:
@@ -159,34 +146,25 @@ class _Inertia:
         return m.second - m.first * p.T - p * m.first.T + m.mass * p * p.T
 
     def moment_of_inertia(self) -> Found:
-        moment = self._line
-        rest = _scalar(self._from_moments - moment)
+        n, body, second = self.direction, self.body, self._second_about_point
+        squares: dict[sp.Expr, sp.Expr] = {}  # by entry, since equal ones have a factor in common
+        for k, entry in enumerate(body.inertia.diagonal()):
+            squares[entry] = squares.get(entry, sp.S.Zero) + n[k] ** 2
+        about_centre = sp.Add(
+            *(entry * square for entry, square in squares.items()),
+            *(2 * body.inertia[i, j] * n[i] * n[j] for i in range(3) for j in range(i + 1, 3)),
+        )
+        crossed = n.cross(self.point - body.centre)
+        moment = about_centre + body.mass * crossed.dot(crossed)
+        # ∫ |n × (x − p)|² dm, where |n × y|² = n·n y·y − (n·y)²
+        from_moments = n.dot(n) * second.trace() - (n.T * second * n)[0]
         return Found(
             _scalar(moment),
             "The moment about a line is the quadratic form of the tensor about a point p of it. "
-            "The direction n is a unit vector, and |n × (x′ − p)| is the distance from the line.",
-            (identity(rest, self._over_mass(claims.OF_LINE), self.body.name),),
+            "The direction is a unit vector, and n × (x′ − p) is as long as the distance from the "
+            "line.",
+            (identity(_scalar(from_moments - moment), claims.OF_LINE, self.body.name),),
         )
-
-    @property
-    def _line(self) -> sp.Expr:
-        """nᵀ I′ n, and the mass times the square of the distance of its centre."""
-        n, body = self.direction, self.body
-        squares: dict[sp.Expr, sp.Expr] = {}
-        for k, entry in enumerate(body.inertia.diagonal()):
-            squares[entry] = squares.get(entry, sp.S.Zero) + n[k] ** 2
-        about_centre = sp.Add(*(entry * square for entry, square in squares.items()))
-        about_centre += sp.Add(
-            *(2 * body.inertia[i, j] * n[i] * n[j] for i in range(3) for j in range(i + 1, 3))
-        )
-        crossed = n.cross(self.point - body.centre)
-        return about_centre + body.mass * crossed.dot(crossed)
-
-    @property
-    def _from_moments(self) -> sp.Expr:
-        """∫ |n × (x − p)|² dm, where |n × y|² = n·n y·y − (n·y)²."""
-        n, second = self.direction, self._second_about_point
-        return n.dot(n) * second.trace() - (n.T * second * n)[0]
 
     def radii_of_gyration(self) -> Found:
         body = self.body
