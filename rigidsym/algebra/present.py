@@ -246,13 +246,16 @@ def halved(
     return [present.quotient(codec.encode_quotient(entry)) for entry in entries]
 
 
-def _vanishing(entry: sp.Expr) -> Iterator[sp.Expr]:
+@lru_cache(maxsize=4096)  # of the same entries for every language
+def _vanishing(entry: sp.Expr) -> tuple[sp.Expr, ...]:
     """The angles of the divisors a ± a cos θ."""
+    found = []
     for power in entry.atoms(sp.Pow):
         number, rest = power.base.as_coeff_Add()
         size, cosine = rest.as_coeff_Mul()
         if power.exp.is_negative and isinstance(cosine, sp.cos) and abs(size) == abs(number):
-            yield cosine.args[0]
+            found.append(cosine.args[0])
+    return tuple(found)
 
 
 class _Expressions(dict[int, sp.Expr]):

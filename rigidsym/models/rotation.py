@@ -12,6 +12,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
+from rigidsym.algebra.adjoin import rate_of
 from rigidsym.algebra.angles import reduced
 from rigidsym.algebra.codec import codec_for
 from rigidsym.errors import ModelError
@@ -65,6 +66,11 @@ class Turn:
         if self.components and len(self.components) != 3:
             raise ModelError(f"an axis has three components, got {len(self.components)}")
         object.__setattr__(self, "angle", reduced(sp.sympify(self.angle)))
+
+    @property
+    def rate(self) -> sp.Expr:
+        """The time derivative of the angle."""
+        return rate_of(self.angle)
 
     @property
     def direction(self) -> tuple[sp.Expr, ...]:

@@ -196,7 +196,12 @@ def period_of(symbol: sp.Expr, model: RotationModel) -> float:
     matrix = model.matrix
     within = [f for f in matrix.atoms(sp.sin, sp.cos) if f.has(symbol)]
     outside = matrix.xreplace({f: sp.Dummy() for f in within})
-    slopes = [f.args[0].diff(symbol) for f in within]
+    slopes = [_slope(f.args[0], symbol) for f in within]
     if not within or outside.has(symbol) or not all(slope.is_Rational for slope in slopes):
         return 0.0
     return 2 * pi * lcm(*(int(slope.q) for slope in slopes))
+
+
+@lru_cache(maxsize=1024)
+def _slope(angle: sp.Expr, symbol: sp.Expr) -> sp.Expr:
+    return angle.diff(symbol)

@@ -7,13 +7,14 @@ from typing import Any
 
 import sympy as sp
 
+from rigidsym.algebra import adjoin
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula, Numeral, Symbol
 from rigidsym.mechanics.derivation import Quantity, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import AXES, TIME
+from rigidsym.models.so3 import AXES
 from rigidsym.notes.figure.camera import STANDARD, Vector
 from rigidsym.notes.figure.scene import BODY, MOST_TURNS, RADII, Scene, scene_of, turns_of
 from rigidsym.notes.figure.svg import as_in_formulas
@@ -63,7 +64,7 @@ def label(symbol: Formula) -> str:
 
 def rate_of(angle: sp.Expr, letters: Letters) -> Formula:
     """The rate of the angle of a turn: φ̇."""
-    return formula_of(angle.diff(TIME), letters)
+    return formula_of(adjoin.rate_of(angle), letters)
 
 
 def _rays_of(scene: Scene) -> Iterator[dict[str, Any]]:
@@ -102,7 +103,7 @@ def _turns(model: RotationModel, scene: Scene | None, letters: Letters) -> Itera
 
 def turns_step(model: RotationModel) -> Step:
     """The function of the axis, the angle and the rate of each turn."""
-    rows = [[*turn.direction, turn.angle, turn.angle.diff(TIME)] for turn in model.turns]
+    rows = [[*turn.direction, turn.angle, turn.rate] for turn in model.turns]
     about = "axis, angle and rate of each turn, one turn a row"
     return step_of("turns", sp.ImmutableMatrix(rows), about, ("q", "q_dot"), model)
 

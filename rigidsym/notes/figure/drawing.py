@@ -103,8 +103,9 @@ class Box(NamedTuple):
             ):
                 if change == 0:
                     continue
-                ends = sorted(((-half - position) / change, (half - position) / change))
-                start, end = max(start, ends[0]), min(end, ends[1])
+                half = half if change > 0 else -half
+                start = max(start, (-half - position) / change)
+                end = min(end, (half - position) / change)
             if start <= end:
                 found.append(segment)
         return found

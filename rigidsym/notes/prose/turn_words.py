@@ -22,7 +22,6 @@ from rigidsym.formula.tree import (
 )
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.rotation import Citation, RotationModel
-from rigidsym.models.so3 import TIME
 from rigidsym.notes.document.document import (
     Cited,
     Equation,
@@ -111,7 +110,7 @@ def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:
 
 def sum_of_turns(model: RotationModel, letters: Letters) -> Formula:
     """Ω = φ̇ e_z + θ̇ e_N + ψ̇ e_z′; turns by constant angles add nothing."""
-    rates = [turn.angle.diff(TIME) for turn in model.turns]
+    rates = [turn.rate for turn in model.turns]
     axes = axes_of_turns(model, letters)
     terms = [
         row(bracketed(formula_of(rate, letters)), axis)
@@ -123,7 +122,7 @@ def sum_of_turns(model: RotationModel, letters: Letters) -> Formula:
 
 def sum_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
     """Ω read off the figure, with the axes in space components."""
-    if len(model.turns) < 2 or not all(turn.angle.diff(TIME) for turn in model.turns):
+    if len(model.turns) < 2 or not all(turn.rate for turn in model.turns):
         return
     see = "; see Figure 1" if scene_of(model, letters) else ""
     yield said(
