@@ -98,6 +98,7 @@ class VectorForm(NamedTuple):
     components: tuple[sp.Expr, ...]  # of v, which coordinates they are
     length: sp.Symbol  # stands for |v| in the coefficients
     proof: Proof
+    last: VectorTerm | None = None  # the last row, of a coordinate that is not in v
 
 
 class FirstIntegral(NamedTuple):

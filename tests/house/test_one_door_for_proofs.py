@@ -61,13 +61,13 @@ def test_a_second_door_would_be_seen(source):
     ["angular_velocity_space", "rotation_matrix", "rates_from_angular_velocity_body"],
 )
 def test_a_wrong_coefficient_of_a_vector_form_is_refused(monkeypatch, quantity):
-    right = Vectors._terms
+    right = Vectors.terms
 
     def wrong(*given):
         first, *others = right(*given)
         return (VectorTerm(first.coefficient + 1, first.vector), *others)
 
-    monkeypatch.setattr(Vectors, "_terms", wrong)
+    monkeypatch.setattr(Vectors, "terms", wrong)
     with pytest.raises(DerivationError, match=r"in terms of v.* is false"):
         rs.derive("gibbs_vector", [quantity])
 

@@ -9,7 +9,9 @@ import sympy as sp
 import rigidsym as rs
 from rigidsym.models.so3 import TIME
 from rigidsym.notes.document.document import EquationRow
+from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.prose.algebra_words import is_told, rates_in_words, rotation_in_words
+from rigidsym.notes.prose.vector_words import sum_of_vectors
 
 COEFFICIENTS = {  # of v × x′ and v × (v × x′), for the length n of the vector
     "rotation_vector": lambda n: (np.sin(n) / n, (1 - np.cos(n)) / n**2),
@@ -62,6 +64,21 @@ def test_a_turn_whose_axis_moves_has_the_angular_velocity_of_the_note():
     np.testing.assert_allclose(across - rotated(motion.model, values) @ across, moved, atol=1e-15)
     found = np.array(motion.angular_velocity_space.xreplace(rates).xreplace(values), dtype=float)
     np.testing.assert_allclose(found.ravel(), rate * e + moved, atol=1e-15)
+
+
+def test_the_rates_of_axis_and_angle_are_those_of_the_note():
+    motion = rs.derive("axis_angle", ["rates_from_angular_velocity_space"])
+    letters = letters_of(motion.arguments, model=motion.model)
+    form = motion.step("rates_from_angular_velocity_space").vector_form
+    assert form.proof.is_exact
+    assert sum_of_vectors(form, letters).text == "(−½(v × Ω + cot(φ/2) v × (v × Ω)); v·Ω)"
+    e, angle, omega = np.array([1, 2, 2]) / 3, 0.7, np.array([0.3, -0.2, 0.5])
+    values = dict(zip(motion.model.coordinates, map(sp.Float, (*e, angle)), strict=True))
+    values |= dict(zip(motion.argument("omega_space").symbols, map(sp.Float, omega), strict=True))
+    found = motion.rates_from_angular_velocity_space.xreplace(values)
+    across = np.cross(e, omega)
+    expected = -(across + np.cross(e, across) / np.tan(angle / 2)) / 2
+    np.testing.assert_allclose(np.array(found, float).ravel(), [*expected, e @ omega], atol=1e-14)
 
 
 @pytest.mark.parametrize(

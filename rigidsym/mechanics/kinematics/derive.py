@@ -15,7 +15,7 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.matrix import RingMatrix, hat
 from rigidsym.formula.tree import Bracket, Formula, Rate, equal, row
 from rigidsym.mechanics.derivation import Found, Proof, VectorForm
-from rigidsym.mechanics.kinematics.vector_forms import applied_form, matrix_form, vector_form
+from rigidsym.mechanics.kinematics.vector_forms import matrix_form, vector_form
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities import claims
 from rigidsym.mechanics.quantities.kinematics import (
@@ -196,7 +196,7 @@ class Expanded(Kinematics):
         if inverse is None:
             return None
         given = frame.omega, self.values.argument(f"omega_{where}")
-        return applied_form(prove, vector, *inverse, RATES, to=given)
+        return matrix_form(prove, vector, *inverse, RATES, to=given)
 
     def _shown(self, matrix: RingMatrix) -> RingMatrix:
         return matrix.T if self.model.passive else matrix

@@ -17,7 +17,7 @@ from rigidsym.algebra.matrix import RingMatrix, cross, hat
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.ring import Quotient
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.mechanics.derivation import VectorForm, VectorTerm
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.so3 import TIME
@@ -40,6 +40,7 @@ _APPLIED = {  # to a vector w
     _SQUARE: r"\mathbf{v}\times(\mathbf{v}\times #1)",
     _OUTER: r"(\mathbf{v}\cdot #1)\,\mathbf{v}",
 }
+_ROW = formula(r"\mathbf{v}^{\mathsf T}")
 _TERMS_OF = r"#1\text{ in terms of }\mathbf{v}"
 
 Weighted = list[tuple[PolyElement, Formula, RingMatrix]]  # coefficient, its vector, over the ring
@@ -62,34 +63,35 @@ def matrix_form(
     matrix: RingMatrix,
     below: PolyElement,
     symbol: Formula,
-) -> VectorForm | None:
-    """A matrix (3, 3) over `below` as a 1 + b C(v) + c v vᵀ, or with C(v)²; None if it is not."""
-    if not vector or matrix.shape != (3, 3):
-        return None
-    work = Vectors(vector, prove)
-    claim = formula(_TERMS_OF, symbol)
-    return work.shortest(work.matrix_forms(matrix), matrix, below, claim)
-
-
-def applied_form(
-    prove: Prover,
-    vector: Sequence[sp.Expr],
-    matrix: RingMatrix,
-    below: PolyElement,
-    symbol: Formula,
     *,
-    to: tuple[Formula, RingMatrix],
+    to: tuple[Formula, RingMatrix] | None = None,
 ) -> VectorForm | None:
-    """A matrix (3, 3) over `below`, applied to a vector w, (3, 1): a w + b v × w + ..."""
-    if not vector or matrix.shape != (3, 3):
+    """A matrix (3, 3) over `below` as a 1 + b C(v) + c v vᵀ, or with C(v)²; None if it is not.
+
+    Applied `to` a vector w, (3, 1), it is a w + b v × w + ... Of a unit vector, there may be a
+    fourth row, f vᵀ.
+    """
+    work = Vectors(vector, prove) if vector else None
+    rows = 4 if work is not None and work.is_unit and len(matrix.rows) == 4 else 3
+    if work is None or matrix.shape != (rows, 3):
         return None
-    work, (name, w) = Vectors(vector, prove), to
+    name, w = to or (NOTHING, RingMatrix.identity(work.ring, 3))
+    claim = formula(_TERMS_OF + (", #2" if to else ""), symbol, name)
+    whole = RingMatrix(work.ring, matrix.rows[:3])
     forms = [
-        [(c, formula(_APPLIED[basis], name), part @ w) for c, basis, part in form]
-        for form in work.matrix_forms(matrix)
+        [(c, formula(_APPLIED[basis], name) if to else basis, part @ w) for c, basis, part in form]
+        for form in work.matrix_forms(whole)
     ]
-    claim = formula(_TERMS_OF + ", #2", symbol, name)
-    return work.shortest(forms, matrix @ w, below, claim)
+    if rows == 3:
+        return work.shortest(forms, whole @ w, below, claim)
+    row = RingMatrix(work.ring, matrix.rows[3:])
+    last = work.row_form(row, formula(r"\mathbf{v}\cdot #1", name) if to else _ROW)
+    if not last:
+        return None
+    (term,) = work.terms(last, below)
+    residual = work.residual([term], [last[0][2] @ w], row @ w, below)
+    found = work.shortest(forms, whole @ w, below, claim, residual)
+    return found and found._replace(last=term)
 
 
 def _length_of_form(terms: Sequence[VectorTerm]) -> int:
@@ -116,7 +118,7 @@ class Vectors:
         self.square = self.ring.dot([(part, part) for part in self.v])
         self._places = [self.ring.index[part] for part in vector]
         self._root = self.ring.index.get(sp.sqrt(sum(part**2 for part in vector)))
-        self._is_unit = self.ring.reduce(self.square - self.ring.one) == self.ring.zero
+        self.is_unit = self.ring.reduce(self.square - self.ring.one) == self.ring.zero
 
     def forms(self, omega: RingMatrix) -> list[Weighted]:
         """The candidates: with (v·v̇) v, and with v × (v × v̇) in its place."""
@@ -156,21 +158,35 @@ class Vectors:
             self.lifted([(along, _ONE, one), (once, _SKEW, skew), (outer, _SQUARE, skew @ skew)]),
         ]
 
+    def row_form(self, row: RingMatrix, name: Formula) -> Weighted:
+        """A row (1, 3) as f vᵀ; empty if it is not."""
+        coefficient = self.by_length(self.special(row[0, 0]))
+        form = [(coefficient, name, self.column(self.v).T)] if coefficient is not None else []
+        return form if self._is_equal(form, row) else []
+
     def shortest(
-        self, forms: Iterable[Weighted], whole: RingMatrix, below: PolyElement, claim: Formula
+        self,
+        forms: Iterable[Weighted],
+        whole: RingMatrix,
+        below: PolyElement,
+        claim: Formula,
+        more: Sequence[Quotient] = (),
     ) -> VectorForm | None:
-        """The shortest of the forms that equal whole/below, proved as it is printed."""
+        """The shortest of the forms that equal whole/below, proved as it is printed.
+
+        The proof is that `more` vanishes, too.
+        """
         equal = [form for form in forms if self._is_equal(form, whole)]
         if not equal:
             return None
-        printed = [(self._terms(form, below), form) for form in equal]
+        printed = [(self.terms(form, below), form) for form in equal]
         terms, form = min(printed, key=lambda pair: _length_of_form(pair[0]))
         vectors = [vector for coefficient, _, vector in form if coefficient]
         return VectorForm(
             terms=terms,
             components=self.vector,
             length=LENGTH,
-            proof=self.prove.cancel(self._residual(terms, vectors, whole, below), claim),
+            proof=self.prove.cancel([*self.residual(terms, vectors, whole, below), *more], claim),
         )
 
     def _is_equal(self, form: Weighted, whole: RingMatrix) -> bool:
@@ -178,7 +194,7 @@ class Vectors:
         total = reduce(add, (vector.scale(c) for c, _, vector in form), whole.scale(-self.ring.one))
         return bool(form) and total.is_zero()
 
-    def _terms(self, form: Weighted, below: PolyElement) -> tuple[VectorTerm, ...]:
+    def terms(self, form: Weighted, below: PolyElement) -> tuple[VectorTerm, ...]:
         """What is printed: the coefficients over `below` as functions of the length."""
         present = presenter_for(self.codec)
         along_axis = dict(zip(self.vector, (LENGTH, 0, 0), strict=True))
@@ -189,7 +205,7 @@ class Vectors:
             if coefficient
         )
 
-    def _residual(
+    def residual(
         self,
         terms: Sequence[VectorTerm],
         vectors: Sequence[RingMatrix],
@@ -216,7 +232,7 @@ class Vectors:
             if any(monomial[place] for place in others):
                 continue
             powers = list(monomial)
-            if self._is_unit:
+            if self.is_unit:
                 powers[first] %= 2
             elif self._root is not None:
                 powers[self._root] += powers[first]
@@ -230,7 +246,7 @@ class Vectors:
             root = self.ring.generators[self._root].expression
             return self.ring.reduce(element * self.codec.encode(1 / root))
         gen = self.ring.generator(self._places[0])
-        if self._is_unit:
+        if self.is_unit:
             return self.special(element * gen)
         whole, inverse = self._without_inverses(element)
         if any(monomial[self._places[0]] == 0 for monomial in whole):

@@ -206,7 +206,7 @@ def _vector_form(form: VectorForm | None, names: Names) -> dict[str, Any] | None
         "length": str(form.length),
         "terms": [
             {"coefficient": _plain(term.coefficient, names), "vector": term.vector.markup}
-            for term in form.terms
+            for term in (*form.terms, *([form.last] if form.last else []))
         ],
     }
 

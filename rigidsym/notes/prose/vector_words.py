@@ -9,7 +9,7 @@ import sympy as sp
 
 from rigidsym.formula.letters import Letters, VectorLength, is_negative, power_of
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import MINUS, PLUS, Bracket, Formula, bracketed, row
+from rigidsym.formula.tree import MINUS, PLUS, Bracket, Formula, Matrix, bracketed, row
 from rigidsym.mechanics.derivation import VectorForm
 
 
@@ -33,7 +33,10 @@ def sum_of_vectors(form: VectorForm, letters: Letters) -> Formula:
             parts.append(MINUS if minus else PLUS)
         parts += _factor(common, shared, letters)
         parts.append(_bracket(terms, common, letters) if len(terms) > 1 else vector)
-    return row(*parts)
+    if form.last is None:
+        return row(*parts)
+    below = _factor(form.last.coefficient, _Shared(), letters)
+    return Matrix(((row(*parts),), (row(*below, form.last.vector),)))
 
 
 class _Shared(NamedTuple):
@@ -98,7 +101,8 @@ def by_half_angle(coefficient: sp.Expr) -> sp.Expr:
             scale = (below / factor).as_coeff_Mul()[0]
             whole = sp.Add(over / scale, times / scale * sp.cot(cosine.args[0] / 2))
             return whole * scale * factor / below
-    return coefficient
+    number, rest = coefficient.as_content_primitive()  # 2 − 2 cos n is 2 (1 − cos n)
+    return coefficient if number == 1 else number * by_half_angle(rest)
 
 
 def sign_outside(coefficient: sp.Expr) -> tuple[bool, sp.Expr]:
