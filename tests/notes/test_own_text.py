@@ -87,6 +87,7 @@ def test_the_byline_stands_below_the_title_in_every_format():
         ({"before": {"Sumary": "x"}}, "no 'Sumary'"),
         ({"after": {"Convention": "costs $5"}}, "a dollar sign without its pair"),
         ({"after": {"Convention": r"$\frac{1}$"}}, "no formula"),
+        ({"after": {"Convention": "[euller]"}, "sources": {"euler": "x"}}, "did you mean euler"),
     ],
 )
 def test_a_name_or_a_sentence_that_cannot_be_is_shown(own, message):

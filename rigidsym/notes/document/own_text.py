@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 
 from rigidsym.errors import ModelError, offer
 from rigidsym.formula.reader import formula
@@ -110,6 +111,8 @@ class OwnText:
         for place, part in enumerate(_KEY.split(words)):
             if place % 2 and part in self.sources:
                 yield Cited(Citation(text=self.sources[part]))
+            elif place % 2 and get_close_matches(part, self.sources):
+                raise ModelError(f"no source has the key {part!r}; {offer(part, self.sources)}")
             else:
                 yield f"[{part}]" if place % 2 else part
 

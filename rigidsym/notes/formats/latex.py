@@ -188,7 +188,8 @@ class _LatexPrinter(NotePrinter):
         is_said = table.caption.lower() in self.heading.lower()
         caption = "" if is_said else escape(table.caption)
         height = 3 + sum(2.5 if r"\tall" in line else 1.2 for line in lines)
-        room = [rf"\room{{{height:.1f}\baselineskip}}"] if len(lines) <= _TOGETHER else []
+        is_short = bool(caption) and len(lines) <= _TOGETHER
+        room = [rf"\room{{{height:.1f}\baselineskip}}"] if is_short else []
         begin = rf"\begin{{ruled}}{{{columns}}}{{{len(head)}}}{{{caption}}}"
         return "\n".join([*room, begin, f"{{{lines[0]}}}", *lines[1:], r"\end{ruled}"])
 

@@ -9,7 +9,7 @@ import sympy as sp
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import COMMA, Bracket, equal, joined, row
+from rigidsym.formula.tree import COMMA, Bracket, joined
 from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Composite, Part
@@ -78,7 +78,7 @@ def parallel_axis(rng: Random) -> Exercise:
         question=(
             said(
                 f"A {solid.title.lower()} has {described} and a mass of {mass} kg. Find its moment "
-                "of inertia about its axis of symmetry, and about the parallel axis at a distance "
+                "of inertia about its axis of symmetry, and about a parallel axis at a distance "
                 f"of {_length(distance)}."
             ),
         ),
@@ -144,11 +144,11 @@ def rotational_energy(rng: Random) -> Exercise:
 
 
 def _moments(place: int, body: RigidBody) -> Equation:
-    """m₁ = 36, I₁ = (0.4, 1.2, 1.5)."""
-    mass = equal(formula(f"m_{place}"), numeral(float(body.mass)))
+    """m₁ = 36 kg, J₁ = (0.4, 1.2, 1.5) kg m²."""
     entries = [numeral(float(moment)) for moment in body.inertia.diagonal()]
-    moments = equal(formula(rf"\mathbf{{I}}_{place}"), Bracket(joined(entries, COMMA)))
-    return Equation(sides=(row(mass, COMMA, moments),))
+    typed = rf"m_{place} = #1\text{{ kg}}\qquad\mathbf{{J}}_{place} = #2\text{{ kg m}}^2"
+    moments = Bracket(joined(entries, COMMA))
+    return Equation(sides=(formula(typed, numeral(float(body.mass)), moments),))
 
 
 def _answers(whole: RigidBody) -> Iterator[Asked]:
