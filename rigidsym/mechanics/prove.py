@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
+from itertools import filterfalse
 from typing import NamedTuple, Protocol
 
 import sympy as sp
@@ -83,12 +84,18 @@ class Prover:
     ) -> Proof:
         """The proof that a matrix is zero, and that its divisor is not.
 
+        A residual that reduces to zero is also evaluated at a real point, from its factors and to
+        50 digits; raises Defect if that value is not zero.
         Raises DerivationError if the matrix is shown not to be zero. If the ring does not know
         enough to tell, the proof is *unproved* and holds what is left.
         """
         divisors = () if divided_by is None else (divided_by,)
         if residual.is_zero():
-            self._compare(residual, claim)
+            if self.subject.pullback is None and self.witness.disagrees(residual, self._values):
+                raise Defect(
+                    f"{self.subject.name}: {claim.text} is proved, and yet is false at a point; "
+                    "this is a defect of rigidsym, please report it"
+                )
             return self._unless_zero(divisors, claim)
         left = self._decoded(residual)
         if self.subject.pullback is not None and self._pulled_back(left).is_zero():
@@ -135,17 +142,6 @@ class Prover:
                 f"left over: {self._plain(self._decoded(residual))}"
             ) from error
 
-    def _compare(self, residual: RingMatrix, claim: Formula) -> None:
-        """Evaluate a residual that reduced to zero at a real point, from its factors, to 50 digits.
-
-        Raises Defect if the values disagree.
-        """
-        if self.subject.pullback is None and self.witness.disagrees(residual, self._values):
-            raise Defect(
-                f"{self.subject.name}: {claim.text} is proved, and yet is false at a point; this "
-                "is a defect of rigidsym, please report it"
-            )
-
     def _pulled_back(self, left: sp.ImmutableMatrix) -> RingMatrix:
         """The residual in the ring of the functions that the coordinates are pulled back to."""
         codec, values = self._pullback
@@ -167,10 +163,9 @@ class Prover:
 
     def _unless_zero(self, divisors: Iterable[PolyElement], claim: Formula) -> Proof:
         """Exact, unless a divisor may be zero everywhere; the divisor is then the residual."""
-        for divisor in divisors:
-            if not self.witness.is_nonzero(divisor):
-                left = self._decoded(RingMatrix.of(self.codec.ring, [[divisor]]))
-                return Proof(claim=claim, status="unproved", residual=left)
+        for divisor in filterfalse(self.witness.is_nonzero, divisors):
+            left = self._decoded(RingMatrix.of(self.codec.ring, [[divisor]]))
+            return Proof(claim=claim, status="unproved", residual=left)
         return Proof(claim=claim, status="exact")
 
     def _decoded(self, residual: RingMatrix) -> sp.ImmutableMatrix:

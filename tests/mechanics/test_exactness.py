@@ -16,6 +16,7 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import Ring
+from rigidsym.algebra.witness import Witness
 from rigidsym.errors import AlgebraError, Defect, ModelError, NotARotation
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import Derivation
@@ -320,14 +321,20 @@ def test_a_wrong_product_in_the_ring_is_a_failure(monkeypatch):
 
 @pytest.mark.parametrize("rotation", ["ZXZ", "unit_quaternion", "rotation_vector", "axis_angle"])
 def test_every_claim_of_a_derivation_is_evaluated(monkeypatch, rotation):
-    seen = []
-    right = Prover._compare
+    seen, values = [], []
+    vanishes, disagrees = Prover.vanishes, Witness.disagrees
 
-    def compare(self, residual, claim):
-        seen.append(claim)
-        right(self, residual, claim)
+    def evaluated(self, residual, known):
+        values.append(residual)
+        return disagrees(self, residual, known)
 
-    monkeypatch.setattr(Prover, "_compare", compare)
+    def claimed(self, residual, claim, **given):
+        proof = vanishes(self, residual, claim, **given)
+        seen.extend([claim] * (values[-1:] == [residual]))
+        return proof
+
+    monkeypatch.setattr(Witness, "disagrees", evaluated)
+    monkeypatch.setattr(Prover, "vanishes", claimed)
     found = rs.derive(rotation)
     assert {proof.claim for proof in found.proofs} <= set(seen)
 

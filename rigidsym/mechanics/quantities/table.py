@@ -9,7 +9,7 @@ from typing import cast
 
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.mechanics.derivation import Quantity, Shape
-from rigidsym.models.rotation import Citation, lecture
+from rigidsym.models.rotation import LECTURE, Citation
 
 Formulas = Mapping[str, tuple[Formula, ...]]  # name: symbol and, if there is one, definition
 _COLUMNS = re.compile(r" {2,}")
@@ -53,4 +53,4 @@ def _read(head: str, about: str, formulas: Formulas, sources: Mapping[str, Citat
 
 def _of_lecture(source: str) -> Citation:
     section, _, equation = source.partition(" ")
-    return lecture(equation.strip("()"), f"section {section}")
+    return Citation(LECTURE, equation.strip("()"), f"section {section}")

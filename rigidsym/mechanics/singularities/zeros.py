@@ -80,7 +80,7 @@ def matrix_at(matrix: RingMatrix, zero: Zero) -> RingMatrix:
     places = [place for root in zero for place, _ in root.becomes]
     if not any(monomial[k] for entry in matrix.entries for monomial in entry for k in places):
         return matrix
-    return matrix.map(lambda entry: substituted(entry, zero))
+    return RingMatrix.of(matrix.ring, [[substituted(e, zero) for e in row] for row in matrix.rows])
 
 
 @lru_cache(maxsize=32)

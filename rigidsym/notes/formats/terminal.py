@@ -93,7 +93,7 @@ class _Steps:
             names = entry_names(step, self.arguments)
             yield from self.console.matrix(sides, step.expression, names)
         for proof in step.proofs:
-            if not proof.is_exact:
+            if proof.status != "exact":
                 yield f"{INDENT}✗ unproved: {self.console.text(proof.claim)}"
         if step.vector_form is not None:  # Ω = v̇ + ...
             yield from self._said(
@@ -250,7 +250,7 @@ class _Screen(_Steps):
             yield from self._proof("", self.conversions.from_matrix)
 
     def _proof(self, label: str, proof: Proof) -> Iterator[str]:
-        mark = "✓" if proof.is_exact else "✗"
+        mark = "✓" if proof.status == "exact" else "✗"
         yield f"{INDENT}{mark} {label:<5}{proof.status:<10}{self.console.text(proof.claim)}"
         if proof.residual is not None:
             yield f"{2 * INDENT}left over:"

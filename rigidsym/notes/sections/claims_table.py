@@ -24,7 +24,7 @@ Claim = tuple[str, Proof]  # the label of an equation, and what was claimed ther
 
 def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[NoteBlock]:
     """Each claim with the label of its equation; below, what is left over of those unproved."""
-    unproved = [proof for _, proof in claims if not proof.is_exact]
+    unproved = [proof for _, proof in claims if proof.status != "exact"]
     yield Paragraph(proofs_in_words(is_proved=not unproved))
     yield NoteTable(
         caption="Identities verified",
@@ -38,7 +38,7 @@ def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[NoteBlock]:
 
 
 def _status(proof: Proof) -> Text:
-    return EXACT if proof.is_exact else (Strong(proof.status),)
+    return EXACT if proof.status == "exact" else (Strong(proof.status),)
 
 
 def _left_over(proof: Proof) -> Iterator[NoteBlock]:
