@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from base64 import b64decode
 from pathlib import Path
+from xml.etree import ElementTree
 
 import nbformat
 import numpy as np
@@ -138,7 +140,11 @@ def test_the_notebook_says_what_the_markdown_says():
         for cell in cells
     ]
     _, _, written = printed.markdown().partition("\n\n")  # behind the comment
-    assert "\n\n".join(sources) + "\n" == written
+    picture = re.compile(r"!\[\]\(data:image/svg\+xml;base64,([^)]+)\)\n\n(?=\*\*Figure 1)")
+    (drawn,) = picture.findall("\n\n".join(sources))
+    assert picture.sub("", "\n\n".join(sources)) + "\n" == written
+    labels = ElementTree.fromstring(b64decode(drawn)).iter("{http://www.w3.org/2000/svg}text")
+    assert [label.text for label in labels] == [*list("ϕθψxyz"), "x′", "y′", "z′", "N"]
 
 
 @pytest.mark.parametrize("rotation", ["ZXZ", "quaternion", "z(yaw) y(pitch) x(roll)"])

@@ -236,7 +236,7 @@ class Expanded(Kinematics):
         if len(coordinates) == 1:
             return "The angular velocity is the rate times the axis of the turn."
         turns = [turn.angle for turn in self.model.turns]
-        if turns and all(a == q for a, q in zip(turns, coordinates, strict=False)):
+        if len(turns) == len(coordinates) and set(turns) == set(coordinates):
             if frame == "body":
                 return "The columns of W′ are the same axes, with their components in the body."
             return (
@@ -254,8 +254,8 @@ class Expanded(Kinematics):
             return f"The {kind} of W′ is found in the same way."
         if is_square:
             return (
-                "The inverse of W, its adjugate divided by its determinant, gives the rates for a "
-                "known angular velocity."
+                "The inverse of W, its adjugate over its determinant, gives the rates for a known "
+                "angular velocity."
             )
         if self.values.bound is not None:
             return (

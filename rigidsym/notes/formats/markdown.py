@@ -8,6 +8,7 @@ that could end an emphasis.
 from __future__ import annotations
 
 import re
+from base64 import b64encode
 from collections.abc import Iterator, Sequence
 
 from rigidsym.formula.display import display, pack
@@ -24,6 +25,7 @@ from rigidsym.notes.document.document import (
     Section,
     Text,
 )
+from rigidsym.notes.figure.svg import alone, svg
 from rigidsym.notes.formats.printer import NotePrinter
 from rigidsym.notes.sanitize import cleaned
 from rigidsym.version import OWNERSHIP
@@ -43,9 +45,12 @@ def render(document: Document) -> str:
     return "\n\n".join([head, *pieces]) + "\n"
 
 
-def parts(document: Document) -> Iterator[str | CodeBlock]:
-    """The note in pieces, in order: Markdown text, and the programs between."""
-    printer = _MarkdownPrinter(document)
+def parts(document: Document, *, has_pictures: bool = False) -> Iterator[str | CodeBlock]:
+    """The note in pieces, in order: Markdown text, and the programs between.
+
+    Jupyter shows pictures that are in the text; GitHub does not, and has their words.
+    """
+    printer = _MarkdownPrinter(document, has_pictures=has_pictures)
     lines = (document.subtitle, " · ".join(document.byline))
     yield "\n\n".join([f"# {escape(document.title)}", *map(escape, filter(None, lines))])
     for section in document.sections:
@@ -65,8 +70,9 @@ def _unlisted(start: re.Match[str]) -> str:
 
 
 class _MarkdownPrinter(NotePrinter):
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, *, has_pictures: bool) -> None:
         super().__init__(document, MarkdownPen(document.letters.notation))
+        self.has_pictures = has_pictures
 
     def section(self, section: Section) -> Iterator[str | CodeBlock]:
         prose = [f"## {escape(section.title)}"]
@@ -100,7 +106,12 @@ class _MarkdownPrinter(NotePrinter):
         return _display(pack(block.equations, self.document.letters, _WIDTH, self.pen))
 
     def figure(self, figure: Figure) -> str:
-        return self.text(figure.description)
+        words = self.figure_words(figure)
+        if not self.has_pictures:
+            return words
+        picture = alone(svg(figure.drawing, title="", description="", name="figure"))
+        data = b64encode(picture.encode()).decode()
+        return f"![](data:image/svg+xml;base64,{data})\n\n{words}"
 
     def notetable(self, table: NoteTable) -> str:
         rows = [self._row(table.head), "|---" * len(table.head) + "|", *map(self._row, table.rows)]

@@ -23,7 +23,7 @@ def render(document: Document) -> str:
     Raises MissingExtra without nbformat.
     """
     nbformat = _nbformat()
-    pieces = list(parts(document))
+    pieces = list(parts(document, has_pictures=True))
     if document.program and not any(isinstance(part, CodeBlock) for part in pieces):
         pieces += [document.language.words("In Python:"), CodeBlock(document.program)]
     cells = [_cell(nbformat, part, place) for place, part in enumerate(pieces, start=1)]
