@@ -15,6 +15,7 @@ from rigidsym.errors import ModelError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.example import OMEGA as OMEGA
+from rigidsym.models.so3 import TIME, as_typed
 from rigidsym.simulation.sampled_motion import Array
 from rigidsym.simulation.trajectory import Trajectory
 
@@ -48,14 +49,24 @@ class Problem:
         if np.abs(left).max() > _UNIT:
             values = ", ".join(f"{n} = {initial[n]}" for n in self.coordinates)
             raise ModelError(f"{derivation.name}: no rotation has the coordinates {values}")
+        changes = map(abs, self._bound(self.start, order=1))
+        if max(changes, default=0) > _UNIT * np.abs(self.start).max():
+            bounds = " and ".join(f"{as_typed(c)} = 0" for c in derivation.model.constraints)
+            raise ModelError(
+                f"{derivation.name}: the rates do not keep {bounds}; expected rates that do, or "
+                f"{OMEGA}"
+            )
 
-    def _bound(self, y: Array) -> list[float]:
-        """What the conditions on the coordinates leave over."""
+    def _bound(self, y: Array, order: int = 0) -> list[float]:
+        """What the conditions on the coordinates, or their rates, leave over."""
         model = self.derivation.model
         names = map(sp.Symbol, self.names.get("parameters", ()))
-        values = dict(zip(model.coordinates, y.tolist(), strict=False))
+        state = [*model.coordinates, *(sp.diff(q, TIME) for q in model.coordinates)]
+        values = dict(zip(state, y.tolist(), strict=False))
         values |= dict(zip(names, self.parameters, strict=True))
-        return [float(condition.xreplace(values)) for condition in model.constraints]
+        if order and self.is_euler:
+            return []
+        return [float(sp.diff(c, TIME, order).xreplace(values)) for c in model.constraints]
 
     def _parameters(self, given: Mapping[str, float]) -> list[float]:
         constants = self.names.get("parameters", ())

@@ -325,7 +325,7 @@ def test_forces_need_a_body_and_free_coordinates():
         rs.derive("ZXZ", potential=TOP)
     with pytest.raises(rs.RigidsymError, match="need free coordinates"):
         rs.derive(
-            "unit_quaternion",
+            "direction_cosines",
             body=rs.principal_moments(A, A, C),
             potential=0,
             method="lagrange",

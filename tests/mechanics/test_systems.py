@@ -322,3 +322,76 @@ def test_the_elliptic_functions_of_a_free_body_are_its_motion():
     )  # of the axis in space
     about = np.cross(across, velocity) @ momentum / np.linalg.norm(momentum)
     assert about / np.sum(across**2, axis=1) == pytest.approx(precession, abs=1e-8)
+
+
+W, X, Y, Z = dynamicsymbols("w x y z")
+K = sp.Symbol("k")
+ALONG = W**2 - X**2 - Y**2 + Z**2  # the cosine between the vertical and the third body axis
+
+
+@cache
+def bound(name: str, potential: sp.Expr) -> rs.Motion:
+    wanted = ["rotation_matrix", "energy", "generalised_momenta", "bias_vector", "accelerations"]
+    body = rs.principal_moments(A, B, C)
+    return rs.derive(name, wanted, body=body, potential=potential, method="lagrange")
+
+
+def test_lagrange_on_the_unit_quaternion_has_the_accelerations_of_sympy_with_a_multiplier():
+    q = [W, X, Y, Z]
+    rates = [x.diff(T) for x in q]
+    rows = [[-X, W, Z, -Y], [-Y, -Z, W, X], [-Z, Y, -X, W]]
+    omega = 2 * sp.Matrix(rows) * sp.Matrix(rates)
+    moving = sum(m * part**2 for m, part in zip((A, B, C), omega, strict=True)) / 2
+    method = LagrangesMethod(moving - K * ALONG, q, hol_coneqs=[sum(x**2 for x in q) - 1])
+    method.form_lagranges_equations()
+    generator = np.random.default_rng(5)
+    for _ in range(3):
+        place, rate = generator.normal(size=(2, 4))
+        place /= np.linalg.norm(place)
+        rate -= place * (place @ rate)
+        known = dict(zip([*rates, *q], [*rate, *place], strict=True))
+        known |= {A: 1.1, B: 1.7, C: 2.3, K: 0.6}
+        left = np.array(method.mass_matrix_full.subs(known), float)
+        right = np.array(method.forcing_full.subs(known), float)
+        theirs = np.linalg.solve(left, right)[4:8, 0]
+        ours = bound("unit_quaternion", K * ALONG).accelerations
+        assert np.array(ours.subs(known), float)[:, 0] == pytest.approx(theirs, rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("name", "potential"),
+    [
+        ("unit_quaternion", K * ALONG),
+        ("quaternion", K * ALONG / (W**2 + X**2 + Y**2 + Z**2)),
+        ("cayley_klein", sp.S.Zero),
+        ("axis_angle", sp.S.Zero),
+    ],
+)
+def test_lagrange_on_coordinates_that_depend_on_one_another_is_proved(name, potential):
+    motion = bound(name, potential)
+    assert motion.is_proved
+    assert len(motion.step("accelerations").proofs) == 2
+    found = {integral.name for integral in motion.first_integrals}
+    assert found >= {"energy", "angular_momentum_3"}
+
+
+def test_lagrange_on_a_quaternion_moves_as_euler_does():
+    motion = bound("unit_quaternion", K * ALONG)
+    euler = rs.derive("unit_quaternion", body=motion.body, potential=K * ALONG)
+    start = {"w": 0.6, "x": 0.8, "y": 0, "z": 0, "angular_velocity_body": (1, 2, 0.3)}
+    values = {"A": 1, "B": 1.4, "C": 2, "k": 0.7}
+    one, other = (m.simulate(start, values, 3.0, samples=4) for m in (motion, euler))
+    assert one.rotation_matrix == pytest.approx(other.rotation_matrix, abs=1e-8)
+    assert max(one.drift.values()) < 1e-9
+
+
+def test_a_potential_of_the_length_of_a_quaternion_is_refused():
+    with pytest.raises(rs.RigidsymError, match="such as the length of a quaternion"):
+        bound("quaternion", K * ALONG)
+
+
+def test_rates_that_leave_the_condition_on_the_coordinates_are_refused():
+    start = {"w": 1, "x": 0, "y": 0, "z": 0, "w_dot": 1, "x_dot": 0, "y_dot": 0, "z_dot": 0}
+    values = {"A": 1, "B": 1.4, "C": 2, "k": 0.7}
+    with pytest.raises(rs.RigidsymError, match=r"rates do not keep w\*\*2 \+ x\*\*2"):
+        bound("unit_quaternion", K * ALONG).simulate(start, values, 1.0)

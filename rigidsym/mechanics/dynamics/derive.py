@@ -17,11 +17,11 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.squares import half_form
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Consequence, FirstIntegral, Found
+from rigidsym.mechanics.derivation import Consequence, FirstIntegral, Found, Proof
 from rigidsym.mechanics.dynamics.cosine import Cosine
 from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.flow import Flow, StateBlock
-from rigidsym.mechanics.dynamics.lagrange import Lagrange, is_free
+from rigidsym.mechanics.dynamics.lagrange import Lagrange, is_bound
 from rigidsym.mechanics.dynamics.reduced import Reduced
 from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.quantities import dynamics as claims
@@ -35,10 +35,7 @@ _NONE = Found(sp.ImmutableMatrix([[0]]), "")  # of a quantity that a system does
 
 def equations_of_motion(model: RotationModel, body: RigidBody, forces: Forces) -> Flow:
     """Lagrange's equations for free coordinates, else Euler's, unless one is asked for."""
-    has_none_to_spare = bool(model.turns) or len(model.coordinates) == 3
-    is_lagrange = is_free(model) and has_none_to_spare
-    method = forces.method or ("lagrange" if is_lagrange else "euler")
-    if method == "euler":
+    if (forces.method or ("euler" if is_bound(model) else "lagrange")) == "euler":
         return EulerEquations(model, body, forces)
     return LagrangeEquations(Lagrange(model, body, forces))
 
@@ -104,14 +101,35 @@ class LagrangeEquations(Flow):
         turning = work.mass_matrix @ work.column(work.accelerations)
         return work.momenta.dt() - self._slopes - turning - work.gyroscopic
 
+    def _along_possible(self) -> Iterator[Proof]:
+        """Uᵀ (M q̈ + h − Q) = 0 and Uᵀ (d/dt ∂L/∂q̇ − ∂L/∂q − Q) = 0 for the accelerations found.
+
+        So says d'Alembert's principle for the displacements U δθ, which are possible.
+        """
+        work = self.work
+        above, below = work.solved
+        back, acting = work.possible[0].T, work.column(work.forces)
+        left = work.mass_matrix @ above + (work.bias - acting).scale(below)
+        yield self.prove.vanishes(back @ left, claims.POSSIBLE_EQUATIONS, divided_by=below)
+        rates = [self.rate(sp.diff(self.kinetic, rate)) for rate in work.rates]
+        divisor = rates[0][1]
+        changes = RingMatrix(work.ring, tuple(above.rows[0] for above, _ in rates))
+        slopes = self._slopes - work.column(work.gradient) + acting
+        left = changes - slopes.scale(divisor)
+        claim = claims.possible_equations_of_lagrange(self._symbol)
+        yield self.prove.vanishes(back @ left, claim, divided_by=divisor)
+
     @cached_property
     def _slopes(self) -> RingMatrix:
-        """∂T/∂q."""
+        """∂T/∂q; of T as it is written, if the coordinates depend on one another."""
+        if self.work.is_bound:
+            return self.column([sp.diff(self.kinetic, q) for q in self.model.coordinates])
         return self.work.slopes(self.codec.encode(self.kinetic))
 
     @cached_property
     def is_holonomic(self) -> bool:
-        return all(part.turns for part in self.work.moving) or self._of_lagrange.is_zero()
+        turn = all(part.turns for part in self.work.moving)
+        return turn or self.work.is_bound or self._of_lagrange.is_zero()
 
     @cached_property
     def _symbol(self) -> Formula:
@@ -148,15 +166,19 @@ class LagrangeEquations(Flow):
 
     @cached_property
     def _energy_rate(self) -> RingMatrix:
-        """dE/dt − q̇·(M q̈ + h) − ∂V/∂t."""
+        """dE/dt − q̇·(M q̈ + h) − ∂V/∂t; times a divisor if the coordinates depend on one another."""
+        if self.work.is_bound:
+            rate, divisor = self.rate(self.whole)
+            power = self.work.q_dot.T @ self.work.column(self.work.forces)
+            return rate - (power + self.driving).scale(divisor)
         power = self.work.q_dot.T @ self._left_side
         return self._scalar(self.whole).dt() - power - self.driving
 
     def generalised_momenta(self) -> Found:
         if not self.is_holonomic:
             return _NONE
-        places = [self.work.ring.index[rate] for rate in self.work.rates]
-        residual = self._scalar(self.kinetic).jacobian(places).T - self.work.momenta
+        slopes = self.column([sp.diff(self.kinetic, rate) for rate in self.work.rates])
+        residual = slopes - self.work.momenta
         return Found(
             self.present.matrix(self.work.momenta),
             "The generalised momenta are the derivatives of the kinetic energy by the rates.",
@@ -181,7 +203,7 @@ class LagrangeEquations(Flow):
     def coriolis_matrix(self) -> Found:
         """By Christoffel's symbols of M."""
         work = self.work
-        if not self.is_holonomic or work.acting.frame_rate:
+        if not self.is_holonomic or work.acting.frame_rate or work.is_bound:
             return _NONE
         places = range(len(work.rates))
         half = work.ring.one / 2
@@ -221,15 +243,26 @@ class LagrangeEquations(Flow):
             if self.is_holonomic
             else "The constraint forces do no work on motions that the rolling allows; so says "
             "d'Alembert's principle.",
-            (self.prove.vanishes(self._of_lagrange, claim),) if self.is_holonomic else (),
+            (self.prove.vanishes(self._of_lagrange, claim),)
+            if self.is_holonomic and not work.is_bound
+            else (),
         )
 
     def accelerations(self) -> Found:
         work = self.work
         above, below = work.solved
+        found = self.present.matrix(above, below)
+        if work.is_bound:
+            because = (
+                "The coordinates depend on one another. The equations of motion hold for the "
+                "displacements that are possible, on which constraint forces do no work, and are "
+                "solved for the accelerations."
+            )
+            proofs, definition = tuple(self._along_possible()), claims.ACCELERATIONS_OF_RATES
+            return Found(found, because, proofs, definition=definition)
         residual = work.mass_matrix @ above + (work.bias - work.column(work.forces)).scale(below)
         return Found(
-            self.present.matrix(above, below),
+            found,
             "The equations of motion are solved for the accelerations.",
             (self.prove.vanishes(residual, claims.EQUATIONS, divided_by=below),),
         )
@@ -237,7 +270,7 @@ class LagrangeEquations(Flow):
     def hamiltonian(self) -> Found:
         """H(q, p), with the momenta as inputs in a ring of their own."""
         work = self.work
-        if not self.is_holonomic or work.acting.frame_rate:
+        if not self.is_holonomic or work.acting.frame_rate or work.is_bound:
             return _NONE
         residual = work.momenta.T @ work.mass_matrix.adjugate() @ work.momenta
         residual -= self._scalar(2 * self.kinetic).scale(work.mass_matrix.det())
@@ -331,13 +364,17 @@ class LagrangeEquations(Flow):
 
     def own_integrals(self) -> Iterator[FirstIntegral]:
         work = self.work
-        if not any(work.forces) and self.driving.is_zero():
+        if not any(work.forces) and self.driving.is_zero() and not work.is_bound:
             yield FirstIntegral(
                 name="energy",
                 symbol=claims.ENERGY,
                 expression=self.whole,
                 proof=self.prove.vanishes(self._energy_rate, claims.is_constant(claims.ENERGY)),
             )
+        if work.is_bound:
+            euler = EulerEquations(self.model, self.body, self.forces).own_integrals()
+            yield from (self.constant(i.name, i.symbol, i.expression) for i in euler)
+            return
         if not self.is_holonomic:
             return
         momenta = self.present.matrix(work.momenta)

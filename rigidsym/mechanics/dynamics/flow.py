@@ -114,7 +114,11 @@ class Flow:
     @cached_property
     def first_integrals(self) -> tuple[FirstIntegral, ...]:
         """What is constant along every motion, with its proof."""
-        return (*self.own_integrals(), *map(self._claimed, self.forces.first_integrals.items()))
+        claimed = (
+            self.constant(name, claims.integral_symbol(name), value)
+            for name, value in self.forces.first_integrals.items()
+        )
+        return (*self.own_integrals(), *claimed)
 
     def own_integrals(self) -> Iterator[FirstIntegral]:
         """The first integrals that this form of the equations looks for."""
@@ -140,12 +144,10 @@ class Flow:
         """The value with Ω′ written in the state."""
         return value
 
-    def _claimed(self, claimed: tuple[str, sp.Expr]) -> FirstIntegral:
-        """One that the user claims. Raises DerivationError if it is not constant."""
-        name, value = claimed
+    def constant(self, name: str, symbol: Formula, value: sp.Expr) -> FirstIntegral:
+        """One that is claimed. Raises DerivationError if it is not constant."""
         value = self.in_state(value)
         residual, divisor = self.rate(value)
-        symbol = claims.integral_symbol(name)
         proof = self.prove.vanishes(residual, claims.is_constant(symbol), divided_by=divisor)
         return FirstIntegral(name=name, symbol=symbol, expression=value, proof=proof)
 

@@ -46,11 +46,8 @@ class Lagrange:
     """T, V, p, M, h and the accelerations of one rotation, its body, and what moves with it."""
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces) -> None:
-        if not is_free(model):
-            raise ModelError(
-                f"{model.name}: Lagrange's equations need free coordinates, such as the "
-                "Euler angles; expected such a rotation, or Euler's equations"
-            )
+        self.is_bound = is_bound(model)
+        self.back = self._inverse_rates(model, forces) if self.is_bound else None
         self.model, self.body, self.acting = model, body, forces
         self.potential = forces.potential
         self.rates = [sp.diff(q, TIME) for q in model.coordinates]
@@ -67,10 +64,33 @@ class Lagrange:
         self.gradient = [sp.diff(self.potential, q) for q in model.coordinates]
         held = [e for part in self.moving for m in part[:3] for e in m]
         held += [*omega, sp.Rational(1, 2), self.potential]
-        held += [*self.gradient, *self.forces, *self.rates, *self.accelerations]
+        held += [*self.gradient, *self.forces, *self.rates]
         held += [*forces.first_integrals.values()]
-        self.codec = codec_for([entry for entry in held if entry != 0])
+        held += self.accelerations if self.back is None else [*self.back[0], self.back[1]]
+        order = 1 if self.is_bound else 2
+        bounds = model.constraints
+        self.codec = codec_for([e for e in held if e != 0], constraints=bounds, order=order)
         self.ring = self.codec.ring
+
+    @staticmethod
+    def _inverse_rates(model: RotationModel, forces: Forces) -> tuple[sp.ImmutableMatrix, sp.Expr]:
+        """U and its divisor, with q̇ = U Ω′, which spans the motions that are possible.
+
+        Raises ModelError if there is no U, and for other parts.
+        """
+        values = Values(model)
+        if model.pullback is not None or values.inverse_body is None or forces.parts:
+            raise ModelError(
+                f"{model.name}: Lagrange's equations need free coordinates, such as the Euler "
+                "angles, or rates of one body that follow from its angular velocity; expected "
+                "such a rotation, or Euler's equations"
+            )
+        above, below = values.inverse_body
+        short = values.present.matrix(above, below)
+        if all(sp.denom(entry).is_number for entry in short):
+            return short, sp.S.One
+        decode = values.codec.decode
+        return sp.ImmutableMatrix(*above.shape, [decode(e) for e in above.entries]), decode(below)
 
     def _moving(self) -> Iterator[Moving]:
         """The body itself first."""
@@ -170,7 +190,9 @@ class Lagrange:
 
         Raises ModelError if the mass matrix has no inverse.
         """
-        if len(self.terms) == 1 and len(self.rates) == 3:
+        if self.is_bound:
+            above, below = self._solved_in_bounds()
+        elif len(self.terms) == 1 and len(self.rates) == 3:
             above, below = self._solved_by_euler()
         else:
             above = self.mass_matrix.adjugate() @ (self.column(self.forces) - self.bias)
@@ -194,7 +216,43 @@ class Lagrange:
         torque = tensor.adjugate() @ (back.T @ acting)
         return back @ (torque - inner.scale(below)), self.ring.reduce(size * below * below)
 
+    @cached_property
+    def possible(self) -> tuple[RingMatrix, PolyElement]:
+        """U and its divisor; the equations of motion hold for the displacements U δθ.
 
-def is_free(model: RotationModel) -> bool:
-    """Whether nothing binds the coordinates."""
-    return not model.constraints and model.pullback is None
+        Raises ModelError for forces on what does not matter, such as the length of a quaternion.
+        """
+        assert self.back is not None
+        back, below = encoded(self.codec, self.back[0]), self.codec.encode(self.back[1])
+        acting = self.column(self.forces) - self.column(self.gradient)
+        seen = self.terms[0][0].T @ (back.T @ acting)
+        if not self.model.constraints and not (seen - acting.scale(below)).is_zero():
+            raise ModelError(
+                f"{self.model.name}: the potential or a force depends on coordinates that R does "
+                "not determine, such as the length of a quaternion; expected one that does not, "
+                "or unit_quaternion"
+            )
+        return back, below
+
+    def _solved_in_bounds(self) -> Inverse:
+        """W′ q̈ = dΩ′/dt − dj/dt − dW′/dt q̇, and the rest of q̈ is that of d/dt(U W′ q̇).
+
+        dΩ′/dt follows from Euler's equations with the torque Uᵀ (Q − ∂V/∂q).
+        """
+        back, below = self.possible
+        ((jacobian, shift, tensor, _),) = self.terms
+        size, turning = tensor.det(), jacobian @ self.q_dot
+        acting = self.column(self.forces) - self.column(self.gradient)
+        torque = back.T @ acting - turned(tensor, self.omega).scale(below)
+        slopes = (shift.dt() + jacobian.dt() @ self.q_dot).scale(size * below)
+        within = back @ (tensor.adjugate() @ torque - slopes)  # over det I d²
+        moving = (back.dt().scale(below) - back.scale(self.ring.dt(below))) @ turning  # over d²
+        across = moving.scale(below) - back @ (jacobian @ moving)  # over d³
+        above = within.scale(below) + across.scale(size)
+        return above, self.ring.reduce(size * below**3)
+
+
+def is_bound(model: RotationModel) -> bool:
+    """Whether coordinates depend on one another, or do not matter, as the length of q."""
+    is_spare = not model.turns and len(model.coordinates) > 3
+    return bool(model.constraints) or model.pullback is not None or is_spare

@@ -27,6 +27,7 @@ FORCES = formula(r"\mathbf{Q}")
 HAMILTONIAN = formula("H")
 TORQUE = formula(r"\mathbf{N}'")
 _RATE_MATRIX = BODY.matrix
+_POSSIBLE = formula(r"\left(#1\right)^T", BODY.right_inverse)  # along possible displacements
 _PLUS, _MINUS = "#1 + #2", "#1 - #2"
 
 _SOURCES = {
@@ -161,6 +162,16 @@ def slopes(kinetic: Formula) -> Formula:
     return formula(r"\frac{\partial #1}{\partial #2}", kinetic, RATES)
 
 
+def possible_equations_of_lagrange(kinetic: Formula) -> Formula:
+    """Of the kinetic energy, with ∂V/∂q among the forces."""
+    return formula(
+        r"#1\left(\frac{d}{dt}\frac{\partial #2}{\partial #3} "
+        r"- \frac{\partial #2}{\partial\mathbf{q}} "
+        r"+ \frac{\partial #4}{\partial\mathbf{q}} - #5\right) = 0",
+        *(_POSSIBLE, kinetic, RATES, POTENTIAL, FORCES),
+    )
+
+
 def lagrange_is_euler(kinetic: Formula) -> Formula:
     """With E_R the right side is Euler's; else M q̈ + h − ∂V/∂q."""
     left = formula(
@@ -204,6 +215,11 @@ SKEW = formula(
     r"\left(\dot{#1} - 2#2\right) + \left(\dot{#1} - 2#2\right)^T = 0",
     *(MASS_MATRIX, CORIOLIS_MATRIX),
 )
+POSSIBLE_EQUATIONS = formula(
+    r"#1\left(#2#3 + #4 - #5\right) = 0",
+    *(_POSSIBLE, MASS_MATRIX, ACCELERATIONS, BIAS, FORCES),
+)
+ACCELERATIONS_OF_RATES = formula(r"\frac{d}{dt}\left(#1\,#2\right)", BODY.right_inverse, BODY.omega)
 EQUATIONS = formula("#1#2 + #3 = #4", MASS_MATRIX, ACCELERATIONS, BIAS, FORCES)
 HAMILTONIAN_IS_ENERGY = formula("#1 = #2", HAMILTONIAN, ENERGY)
 EULER = formula(r"#1\,#2 + #3\times#1\,#3 = #4", INERTIA, ALPHA_BODY, BODY.omega, TORQUE)
