@@ -271,10 +271,11 @@ def derive(
     With a `potential` V(q, t) or `forces` by coordinate ("theta": "-c*theta_dot") its equations of
     motion about a fixed point follow; the inertia tensor is then about that point. The same
     follows from a `torque` in body components. `method` is "lagrange", with the state (q, q̇)
-    and constraint forces that do no work, or "euler", with the state (q, Ω′); `first_integrals` are claims to be proved, by name; `parts`
-    move with the body: {"rotation", "principal_moments"} or {"velocity", "mass"}; `frame_rate` is
-    the angular velocity of the frame that R is measured in. `examples` are motions that the note
-    draws, {"parameters", "initial", "time"}; each takes from the first what it does not name.
+    and constraint forces that do no work, or "euler", with the state (q, Ω′);
+    `first_integrals` are claims to be proved, by name; `parts` move with the body: {"rotation",
+    "principal_moments"} or {"velocity", "mass"}; `frame_rate` is the angular velocity of the frame
+    that R is measured in. `examples` are motions that the note draws, {"parameters", "initial",
+    "time"}; each takes from the first what it does not name.
     `theory` adds equations 1 to 16 of the lecture, which hold for every body and rotation.
     `timeout` limits the time, in seconds.
 
