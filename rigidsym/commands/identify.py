@@ -8,6 +8,7 @@ import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
@@ -25,25 +26,19 @@ _COUNTS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
 _BRACKETS = str.maketrans("[](){};", "      ,")
 
 
+def _samples(name: str, form: str, about: str) -> Any:
+    return option(f"--{name}", multiple=True, metavar=form, help=about)
+
+
 @dataclass(frozen=True, kw_only=True)
 class IdentifyOptions:
     """All options of `identify`."""
 
-    angles: tuple[str, ...] = option(
-        "--angles", multiple=True, metavar="A,B,C", help="Three angles; roll=A,... names them."
-    )
-    matrix: tuple[str, ...] = option(
-        "--matrix", multiple=True, metavar="R11,R12,...", help="Nine numbers, row by row."
-    )
-    quaternion: tuple[str, ...] = option(
-        "--quaternion", multiple=True, metavar="A,B,C,D", help="Scalar first or last."
-    )
-    rates: tuple[str, ...] = option(
-        "--rates", multiple=True, metavar="A,B,C", help="Rates of the angles; needs --omega."
-    )
-    omega: tuple[str, ...] = option(
-        "--omega", multiple=True, metavar="X,Y,Z", help="The angular velocity."
-    )
+    angles: tuple[str, ...] = _samples("angles", "A,B,C", "Three angles; roll=A,... names them.")
+    matrix: tuple[str, ...] = _samples("matrix", "R11,R12,...", "Nine numbers, row by row.")
+    quaternion: tuple[str, ...] = _samples("quaternion", "A,B,C,D", "Scalar first or last.")
+    rates: tuple[str, ...] = _samples("rates", "A,B,C", "Rates of the angles; needs --omega.")
+    omega: tuple[str, ...] = _samples("omega", "X,Y,Z", "The angular velocity.")
     columns: list[str] | None = option(
         "--columns",
         type=NAMES,

@@ -31,6 +31,11 @@ class Chunk:
         return Chunk(self.table[which], self.rows[which], self.share, kept)
 
 
+def none(columns: Sequence[int]) -> Chunk:
+    """No rows."""
+    return Chunk(np.empty((0, len(columns))), np.empty(0, np.intp), 1.0)
+
+
 class TableReader(Protocol):
     """A table whose rows can be read from the beginning, in chunks."""
 

@@ -13,7 +13,7 @@ from warnings import catch_warnings
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidsym.data.chunk import ROWS, Chunk, Table, TableReader
+from rigidsym.data.chunk import ROWS, Chunk, Table, TableReader, none
 from rigidsym.data.text import TextReader
 from rigidsym.errors import DataError, MissingExtra
 
@@ -236,7 +236,4 @@ class ParquetReader:
 
     def spread(self, columns: Sequence[int], rows: int) -> Chunk:
         """As `TableReader.spread`: its first rows."""
-        return next(self.chunks(columns, rows), Chunk(np.empty((0, len(columns))), _NO_ROWS, 1.0))
-
-
-_NO_ROWS = np.empty(0, np.intp)
+        return next(self.chunks(columns, rows), none(columns))

@@ -19,7 +19,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidsym.data.chunk import ROWS, Chunk, Table
+from rigidsym.data.chunk import ROWS, Chunk, Table, none
 from rigidsym.data.columns import counted, is_unit, unit_in
 from rigidsym.errors import DataError
 
@@ -195,7 +195,7 @@ class TextReader:
             except DataError:
                 continue
         if not good:
-            return next(self.chunks(columns, rows), Chunk(np.empty((0, len(columns))), _NONE, 1.0))
+            return next(self.chunks(columns, rows), none(columns))
         return Chunk(np.concatenate(good), np.zeros(len(good), np.intp), 0.0)
 
     def _table(
@@ -308,7 +308,6 @@ class TextReader:
         return np.array(table, float).reshape(-1, len(columns))
 
 
-_NONE = np.empty(0, np.intp)
 _QUOTES = "quotes that do not end where the field does; expected one row a line"
 
 

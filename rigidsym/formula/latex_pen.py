@@ -8,19 +8,12 @@ from itertools import pairwise
 from typing import ClassVar
 
 from rigidsym.formula.pen import Height, Piece
+from rigidsym.formula.reader import FUNCTIONS, LETTERS, SIGNS
 from rigidsym.formula.sheet_pen import Aligned, SheetPen, Size
 from rigidsym.formula.tree import Big, Formula, FunctionCall, Numeral, Radical, Rate, Row, Symbol
 
-_SIGNS = {
-    "−": "-",
-    "×": r"\times ",
-    "·": r"\cdot ",
-    "±": r"\pm ",
-    "≤": r"\le ",
-    "∈": r"\in ",
-    "⇔": r"\Leftrightarrow ",
-}
-_LETTERS = {"⊥": r"\perp", "∥": r"\parallel", "∗": "*", "…": r"\ldots", "+": "+"}
+_SIGNS = {"−": "-"} | {sign: f"{macro} " for macro, sign in SIGNS.items()}
+_LETTERS = {letter: macro for macro, letter in LETTERS.items()} | {"∗": "*"}
 
 
 def _macro(letter: str) -> str:
@@ -32,7 +25,6 @@ def _macro(letter: str) -> str:
 # without omicron and the capitals that look like Latin letters, which have no macro
 GREEK = {letter: _macro(letter) for letter in "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ"}
 _DOTS = ("", r"\dot", r"\ddot")
-_MACROS = ("sin", "cos", "tan", "cot", "det", "exp", "arctan")
 _LEFT = {"flat": ("", ""), "large": (r"\Bigl", r"\Bigr"), "stretched": (r"\left", r"\right")}
 _BIG = {"∑": r"\sum", "∫": r"\int"}
 
@@ -87,7 +79,7 @@ class LatexPen(SheetPen):
         return " " if isinstance(before, Numeral | Big) or isinstance(after, FunctionCall) else ""
 
     def spelt_function(self, function: str, exponent: int, argument: Piece) -> str:
-        known = function in _MACROS
+        known = function in FUNCTIONS
         head = f"\\{function}" if known else rf"\operatorname{{{function.replace('_', '')}}}"
         if exponent != 1:
             head += f"^{_braced(str(exponent))}"

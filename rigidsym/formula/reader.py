@@ -29,20 +29,15 @@ _TOKEN = re.compile(
     r"|\\begin\{(?P<begin>\w+)\}|\\end\{(?P<end>\w+)\}"
     r"|#\d|\\\\(?:\[\w+\])?|\\[A-Za-z]+|\\.|\d+|\s+|."
 )
+SIGNS = {r"\times": "×", r"\cdot": "·", r"\pm": "±", r"\le": "≤", r"\in": "∈"}
+SIGNS |= {r"\Leftrightarrow": "⇔"}
+LETTERS = {r"\ldots": "…", r"\perp": "⊥", r"\parallel": "∥", r"\ast": "∗"}
 _ATOMS: dict[str, tree.Formula] = {
     **{sign: tree.Sign(sign) for sign in "+=/,;<"},
+    **{macro: tree.Sign(sign) for macro, sign in SIGNS.items()},
+    **{macro: tree.Symbol(letter) for macro, letter in LETTERS.items()},
     "…": tree.Symbol("…"),
     "-": tree.MINUS,
-    r"\times": tree.Sign("×"),
-    r"\cdot": tree.Sign("·"),
-    r"\pm": tree.Sign("±"),
-    r"\le": tree.Sign("≤"),
-    r"\in": tree.Sign("∈"),
-    r"\Leftrightarrow": tree.Sign("⇔"),
-    r"\ldots": tree.Symbol("…"),
-    r"\perp": tree.Symbol("⊥"),
-    r"\parallel": tree.Symbol("∥"),
-    r"\ast": tree.Symbol("∗"),
     r"\varphi": tree.Symbol("φ"),
     r"\sum": tree.Big("∑"),
     r"\int": tree.Big("∫"),

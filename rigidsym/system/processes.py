@@ -24,11 +24,6 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
 
 
-def _may_be_copied() -> bool:
-    """Whether a copy goes on; the threads of JAX are not copied, and it would wait for them."""
-    return "jax" not in sys.modules
-
-
 def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     """The result of each item, in order. The work writes nothing, and its results can be pickled.
 
@@ -38,7 +33,8 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     """
     yield from map(work, items[:1])
     rest = items[1:]
-    count = max(min(cores(), len(rest)), 1) if _may_be_copied() else 1
+    # the threads of JAX are not copied, and a copy would wait for them
+    count = 1 if "jax" in sys.modules else max(min(cores(), len(rest)), 1)
     with _copies(work, [rest[first::count] for first in range(1, count)]) as copies:
         for place, item in enumerate(rest):
             try:

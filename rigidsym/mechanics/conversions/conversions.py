@@ -128,21 +128,23 @@ def _unit_variants(model: RotationModel, form: ClosedForm | None) -> tuple[Step,
     names = [model.coordinates[place].func.__name__ for place in form.order]
     unit = UnitQuaternion(names, scalar_last=form.order[0] != 0, passive=model.passive)
     steps = (derive(unit).step(name) for name in _OF_UNIT_LENGTH)
-    return tuple(replace(step, number=0, quantity=_of_unit_length(step.quantity)) for step in steps)
-
-
-def _of_unit_length(quantity: Quantity) -> Quantity:
-    return quantity._replace(
-        name=quantity.name + UNIT,
-        about=f"{quantity.about}, for a quaternion of length one",
+    return tuple(
+        replace(
+            step,
+            number=0,
+            quantity=step.quantity._replace(
+                name=step.quantity.name + UNIT,
+                about=f"{step.quantity.about}, for a quaternion of length one",
+            ),
+        )
+        for step in steps
     )
 
 
 def _forward(model: RotationModel, form: ClosedForm | None) -> Step | None:
     """The unit quaternion as a formula in the coordinates; None where R has to be taken apart."""
     if form is not None:
-        step = _step(model, form) if form.quaternion else None
-        return _scalar_last(step) if step and form.is_scalar_last else step
+        return _of_form(model, form) if form.quaternion else None
     if not model.turns or len(model.turns) > LONGEST_CHAIN:
         return None
     try:
@@ -153,12 +155,16 @@ def _forward(model: RotationModel, form: ClosedForm | None) -> Step | None:
     return step if all(proof.is_exact for proof in step.proofs) else None
 
 
-def _scalar_last(step: Step) -> Step:
-    """The quaternion in the order of the coordinates, (x, y, z, w)."""
+def _of_form(model: RotationModel, form: ClosedForm) -> Step:
+    """In the order of the coordinates: (x, y, z, w) if the scalar is last."""
+    codec = codec_for([*model.matrix, *form.quaternion], constraints=model.constraints, order=0)
+    shown = sp.ImmutableMatrix(form.quaternion)
+    step = _proved_step(model, codec, shown, sentence(form.forward))
+    if not form.is_scalar_last:
+        return step
     quantity = step.quantity._replace(about="unit quaternion of the rotation, scalar last")
-    return replace(
-        step, quantity=quantity, expression=sp.ImmutableMatrix(scalar_last(tuple(step.expression)))
-    )
+    moved = sp.ImmutableMatrix(scalar_last(form.quaternion))
+    return replace(step, quantity=quantity, expression=moved)
 
 
 def _step_of_turns(model: RotationModel) -> Step:
@@ -171,18 +177,7 @@ def _step_of_turns(model: RotationModel) -> Step:
     )
     whole = reduce(product, (tuple(map(codec.encode, factor)) for factor in factors))
     column = RingMatrix.column(codec.ring, map(codec.ring.reduce, whole))
-    shown = presenter_for(codec).matrix(column)
-    return _proved_step(
-        model,
-        codec,
-        shown,
-        _FACTORS,
-    )
-
-
-def _step(model: RotationModel, form: ClosedForm) -> Step:
-    codec = codec_for([*model.matrix, *form.quaternion], constraints=model.constraints, order=0)
-    return _proved_step(model, codec, sp.ImmutableMatrix(form.quaternion), sentence(form.forward))
+    return _proved_step(model, codec, presenter_for(codec).matrix(column), _FACTORS)
 
 
 def _proved_step(

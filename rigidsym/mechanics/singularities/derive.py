@@ -32,20 +32,16 @@ def singularities_of(values: Values) -> Singularities:
     if values.model.pullback is not None:
         inverse = values.inverse_space
         if inverse is not None and inverse[1].is_ground:
-            return _without_divisor()
+            # W G = 1 with a G that holds no divisor: the rank is 3 wherever the coordinates may be
+            return Singularities(
+                rank=3, measure="det W Wᵀ", determinant=None, minors=(), points=(), is_solved=True
+            )
     study = _Study(values)
     found = study.singularities()
     if found.is_solved or not study.solver.missing:
         return found
     wider = Values(values.model, also=study.solver.missing)
     return _Study(wider).singularities()
-
-
-def _without_divisor() -> Singularities:
-    """W G = 1 with a G that holds no divisor: the rank is 3 wherever the coordinates may be."""
-    return Singularities(
-        rank=3, measure="det W Wᵀ", determinant=None, minors=(), points=(), is_solved=True
-    )
 
 
 class _Study:

@@ -21,16 +21,13 @@ from rigidsym.tools.identify.readings import (
 )
 from rigidsym.tools.identify.turns import quaternion_of
 
-_FRAME, _QUATERNION = "sympy.physics.vector import ReferenceFrame", "sympy import Quaternion"
 _CONVERSIONS = {RATES_IN_DEGREES: "np.pi / 180 * ", RATES_IN_RADIANS: "180 / np.pi * "}
 
 
 def calls(reading: Reading) -> dict[str, str]:
     """The statements by library."""
-    velocity = reading.velocity
-    sympy = _sympy_motion(reading, velocity) if velocity else _sympy(reading)
-    statements = {"SciPy": _scipy(reading), "SymPy": sympy, "rigidsym": _rigidsym(reading)}
-    return {library: "\n".join(lines) for library, lines in statements.items()}
+    of_libraries = {"SciPy": _scipy, "SymPy": _sympy, "rigidsym": _rigidsym}
+    return {library: "\n".join(lines(reading)) for library, lines in of_libraries.items()}
 
 
 def _turns(reading: Reading) -> Iterator[str]:
@@ -75,25 +72,36 @@ def _scipy(reading: Reading) -> Iterator[str]:
 
 
 def _sympy(reading: Reading) -> Iterator[str]:
-    is_matrix = reading.scalar_last is None
-    yield f"from {_FRAME if is_matrix else _QUATERNION}"
+    """With rates the angles are functions of time; their values are substituted last."""
+    velocity, is_matrix = reading.velocity, reading.scalar_last is None
+    if not is_matrix:
+        yield "from sympy import Quaternion"
+    if velocity:
+        yield "from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols, msubs"
+    elif is_matrix:
+        yield "from sympy.physics.vector import ReferenceFrame"
     yield from _turns(reading)
+    if velocity:
+        yield 'q = dynamicsymbols("q1:4")'
+        yield f"at = dict(zip(q, {_radians(reading)}))"
+        yield f"rates_at = dict(zip([x.diff() for x in q], {_rates(reading)}))"
+    if velocity or is_matrix:
+        manner = "Body" if reading.is_intrinsic else "Space"
+        turns = "q" if velocity else f"list({_radians(reading)})"
+        yield 'N = ReferenceFrame("N")'
+        yield f'A = N.orientnew("A", "{manner}", {turns}, "{reading.sequence.upper()}")'
     if is_matrix:
-        yield from _sympy_frames(reading, f"list({_radians(reading)})")
-        yield f"matrix = {_sympy_matrix(reading)}"
+        matrix = "A.dcm(N)" if reading.passive else "N.dcm(A)"
+        yield f"matrix = {f'msubs({matrix}, at)' if velocity else matrix}"
         yield from _framed_matrix(reading, "np.array(matrix, float)")
     else:
         yield from _sympy_quaternion(reading)
-
-
-def _sympy_frames(reading: Reading, turns: str) -> Iterator[str]:
-    manner = "Body" if reading.is_intrinsic else "Space"
-    yield 'N = ReferenceFrame("N")'
-    yield f'A = N.orientnew("A", "{manner}", {turns}, "{reading.sequence.upper()}")'
-
-
-def _sympy_matrix(reading: Reading) -> str:
-    return "A.dcm(N)" if reading.passive else "N.dcm(A)"
+    if velocity:
+        frame = "N" if velocity.frame == "space" else "A"
+        yield f"omega = msubs(A.ang_vel_in(N).to_matrix({frame}), rates_at, at)"
+        if side := _side_of(velocity, reading):
+            yield f"omega = np.array(omega, float).ravel() @ {side}"
+        yield from _scaled(velocity)
 
 
 def _sympy_quaternion(reading: Reading) -> Iterator[str]:
@@ -107,28 +115,6 @@ def _sympy_quaternion(reading: Reading) -> Iterator[str]:
         inverse = ".conjugate()" if reading.passive else ""
         yield f"p = {_framed(reading, 'p', '{}', '*', inverse)}"
     yield f"quaternion = [{order}]"
-
-
-def _sympy_motion(reading: Reading, velocity: Velocity) -> Iterator[str]:
-    """With rates the angles are functions of time; their values are substituted last."""
-    if reading.scalar_last is not None:
-        yield f"from {_QUATERNION}"
-    yield "from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols, msubs"
-    yield from _turns(reading)
-    yield 'q = dynamicsymbols("q1:4")'
-    yield f"at = dict(zip(q, {_radians(reading)}))"
-    yield f"rates_at = dict(zip([x.diff() for x in q], {_rates(reading)}))"
-    yield from _sympy_frames(reading, "q")
-    if reading.scalar_last is None:
-        yield f"matrix = msubs({_sympy_matrix(reading)}, at)"
-        yield from _framed_matrix(reading, "np.array(matrix, float)")
-    else:
-        yield from _sympy_quaternion(reading)
-    frame = "N" if velocity.frame == "space" else "A"
-    yield f"omega = msubs(A.ang_vel_in(N).to_matrix({frame}), rates_at, at)"
-    if side := _side_of(velocity, reading):
-        yield f"omega = np.array(omega, float).ravel() @ {side}"
-    yield from _scaled(velocity)
 
 
 def _rigidsym(reading: Reading) -> Iterator[str]:

@@ -49,20 +49,12 @@ class Answer:
         return calls(self.reading)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Outcome:
-    """The readings that fit every row, and the tolerance for that."""
-
-    answers: tuple[Answer, ...]  # in the order of plainness; only the nearest if none fits
-    tolerance: Tolerance
-    scale: float  # the largest |Ω| of the rows tried first
-
-
 def fit(
     source: SampleSource, tolerance: float | None = None, progress: Progress | None = None
-) -> Outcome:
-    """The readings that fit the samples or, if none does, the nearest.
+) -> tuple[tuple[Answer, ...], Tolerance, float]:
+    """The readings that fit the samples or, if none does, the nearest; in the order of plainness.
 
+    Also the tolerance for that, and the largest |Ω| of the rows tried first.
     Raises SampleError for samples that are not finite or not rotations, after reading them all.
     """
     check_tolerance(tolerance)
@@ -78,7 +70,7 @@ def fit(
         tally.add(block)
         if progress:
             progress(block.done)
-    return Outcome(answers=tally.answers(source), tolerance=chosen, scale=scale)
+    return tally.answers(source), chosen, scale
 
 
 def _good(source: SampleSource, slack: float) -> Iterator[SampleBlock]:

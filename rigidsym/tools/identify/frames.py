@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import permutations, product
-from math import acos, degrees, sqrt
+from math import acos, degrees, prod, sqrt
 
 Matrix = tuple[tuple[float, ...], ...]  # (3, 3), a rotation
 
@@ -29,21 +29,14 @@ def multiplied(first: Matrix, second: Matrix) -> Matrix:
     )
 
 
-def _determinant(m: Matrix) -> float:
-    (a, b, c), (d, e, f), (g, h, i) = m
-    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
-
-
+_EVEN = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 PERMUTATIONS: tuple[Matrix, ...] = tuple(
-    matrix
-    for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3))
-    if _determinant(
-        matrix := tuple(
-            tuple(sign if column == place else 0.0 for column in range(3))
-            for place, sign in zip(order, signs, strict=True)
-        )
+    tuple(
+        tuple(sign if column == place else 0.0 for column in range(3))
+        for place, sign in zip(order, signs, strict=True)
     )
-    > 0
+    for order, signs in product(permutations(range(3)), product((1.0, -1.0), repeat=3))
+    if prod(signs) == (1 if order in _EVEN else -1)
 )
 
 

@@ -65,18 +65,18 @@ def identify_source(
     source: SampleSource, *, tolerance: float | None = None, progress: Progress | None = None
 ) -> Identification:
     """The same for any source of samples."""
-    outcome = fit(source, tolerance, progress)
-    best = outcome.answers[0]
+    answers, chosen, scale = fit(source, tolerance, progress)
+    best = answers[0]
     has_velocity = best.reading.velocity is not None
     count = sum(1 for _ in distinct(source.columns.layouts))
     return Identification(
-        answers=outcome.answers if best.fits else (),
+        answers=answers if best.fits else (),
         nearest=None if best.fits else best,
-        tolerance=outcome.tolerance,
+        tolerance=chosen,
         samples=best.samples,
         tried=count * (len(VELOCITIES) if has_velocity else 1),
         names=source.columns.names,
         converted=source.columns.converted,
         has_velocity=has_velocity,
-        further=separation([answer.reading for answer in outcome.answers], outcome),
+        further=separation([answer.reading for answer in answers], chosen, scale),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import degrees
 from textwrap import indent
 from typing import Any
@@ -52,7 +52,7 @@ class Identification:
 
     def record(self) -> dict[str, Any]:
         """The report of `rigidsym identify --json`: dictionaries, lists, texts and numbers."""
-        tolerance, names = self.tolerance, self.names
+        tolerance, names, further = self.tolerance, self.names, self.further
         return {
             "schema": SCHEMA,
             "schema_version": SCHEMA_VERSION,
@@ -67,7 +67,12 @@ class Identification:
             },
             "answers": [_answer(answer, names) for answer in self.answers],
             "nearest": self.nearest and _answer(self.nearest, names),
-            "further": self.further and _separation(self.further),
+            "further": further
+            and {
+                "samples": [asdict(sample) for sample in further.samples],
+                "difference_rad": further.difference,
+                "velocity_difference": further.velocity_difference,
+            },
         }
 
     def __str__(self) -> str:
@@ -250,15 +255,4 @@ def _reading(reading: Reading, names: Sequence[str]) -> dict[str, Any]:
         "frames": {"space": reading.frames.space, "body": reading.frames.body},
         "velocity": velocity
         and {"frame": velocity.frame, "opposite": velocity.is_opposite, "units": velocity.units},
-    }
-
-
-def _separation(further: Separation) -> dict[str, Any]:
-    return {
-        "samples": [
-            {"angles": list(sample.angles), "rates": sample.rates and list(sample.rates)}
-            for sample in further.samples
-        ],
-        "difference_rad": further.difference,
-        "velocity_difference": further.velocity_difference,
     }

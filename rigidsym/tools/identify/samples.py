@@ -15,7 +15,6 @@ from rigidsym.errors import DataError
 from rigidsym.tools.identify.turns import Array, quaternion_of
 
 SLACK = 0.05  # how far M Mᵀ may be from 1, and |q| from 1, before data are refused
-_WIDTHS = {"angles": 3, "matrix": 9, "quaternion": 4, "rates": 3, "omega": 3}
 
 
 class SampleError(DataError):
@@ -60,7 +59,7 @@ class SampleBlock:
 
     @property
     def is_matrix(self) -> bool:
-        return self.attitude.shape[1] == _WIDTHS["matrix"]
+        return self.attitude.shape[1] == 9
 
     @property
     def parts(self) -> dict[str, Array]:

@@ -9,8 +9,8 @@ from math import pi
 
 import numpy as np
 
-from rigidsym.tools.identify.fit import Outcome
 from rigidsym.tools.identify.readings import Reading
+from rigidsym.tools.identify.tolerance import Tolerance
 from rigidsym.tools.identify.turns import Array, ReadingTable, angle_between
 from rigidsym.tools.identify.velocity import angular_velocities, as_given
 
@@ -43,7 +43,9 @@ class Separation:
     velocity_difference: float | None  # the least |difference of Ω|, over the largest |Ω|
 
 
-def separation(readings: Sequence[Reading], outcome: Outcome) -> Separation | None:
+def separation(
+    readings: Sequence[Reading], tolerance: Tolerance, scale: float
+) -> Separation | None:
     """Further samples, as few as can be found, that leave one of these readings.
 
     None where one is left already, and where the tolerance is too wide for any sample.
@@ -51,11 +53,11 @@ def separation(readings: Sequence[Reading], outcome: Outcome) -> Separation | No
     if len(readings) < 2:
         return None
     orientations = list(dict.fromkeys(reading.orientation for reading in readings))
-    angles, difference = _angles(orientations, _CLEAR * outcome.tolerance.orientation)
-    if difference <= _CLEAR * outcome.tolerance.orientation:
+    angles, difference = _angles(orientations, _CLEAR * tolerance.orientation)
+    if difference <= _CLEAR * tolerance.orientation:
         return None
-    rates, apart = _rates(readings, angles[0], outcome)
-    if apart is not None and apart <= _CLEAR * outcome.tolerance.velocity:
+    rates, apart = _rates(readings, angles[0], tolerance, scale)
+    if apart is not None and apart <= _CLEAR * tolerance.velocity:
         return None
     return Separation(
         samples=tuple(FurtherSample(angles=triple, rates=rates) for triple in angles),
@@ -108,14 +110,14 @@ def _closest(known: Array, quaternions: Array) -> tuple[float, tuple[int, int]]:
 
 
 def _rates(
-    readings: Sequence[Reading], angles: Triple, outcome: Outcome
+    readings: Sequence[Reading], angles: Triple, tolerance: Tolerance, scale: float
 ) -> tuple[Triple | None, float | None]:
     """Rates at which the readings of Ω differ, about as fast as those in the data."""
     if readings[0].velocity is None:
         return None, None
     given = _velocities(readings, angles)
-    found = [(_apart(given * size, outcome.scale), size) for size in _MAGNITUDES]
-    clear = [pair for pair in found if pair[0] > _CLEAR * outcome.tolerance.velocity]
+    found = [(_apart(given * size, scale), size) for size in _MAGNITUDES]
+    clear = [pair for pair in found if pair[0] > _CLEAR * tolerance.velocity]
     difference, size = clear[0] if clear else max(found)
     first, second, third = _RATES
     return (first * size, second * size, third * size), difference

@@ -18,7 +18,6 @@ from rigidsym.tools.identify.turns import Array
 FLOOR = 1e-6  # the least tolerance, since data may have been in single precision
 _EXACT = 1e-9  # a matrix this close to orthogonal was not rounded
 _MOST_FOR_ANGLES = 0.05  # radians; angles as coarse as that are taken to be exact
-_SPAN = {"matrix": 3.0, "quaternion": 4.0}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -90,7 +89,7 @@ def _attitude(block: SampleBlock) -> float:
     rounding = np.where(
         defects <= _EXACT, 0.0, np.maximum(rounding_of(block.attitude), defects / 2)
     )
-    return _SPAN["matrix" if block.is_matrix else "quaternion"] * _largest(rounding)
+    return (3 if block.is_matrix else 4) * _largest(rounding)
 
 
 def _largest(rounding: Array) -> float:
