@@ -7,7 +7,7 @@ rotation vector converts as one. Nothing cancels on the way back.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import sympy as sp
@@ -125,16 +125,12 @@ def _quaternion(make: Make, q: Vector) -> ClosedForm:
 
 def _unit(make: Make, q: Vector) -> ClosedForm:
     because = "The coordinates are the unit quaternion."
-    return make(
-        rule="quaternion",
+    return replace(
+        _quaternion(make, q),
         quaternion=q,
         forward=because,
-        back=unit,
         backward=because,
-        choice=f"The length is 1. {_KEPT}",
         residuals=(_equal([square(q)], [sp.S.One], r"\mathbf{q}\cdot\mathbf{q} = 1"),),
-        has_both_signs=True,
-        continuity=_OF_TWO_SIGNS,
     )
 
 

@@ -322,22 +322,14 @@ def _middle_of_half(
     a, b = values.each("ab", (part / (size * whole) for part in given))
     half = _nearest(values, (a, b), m, guesses)
     for _ in range(_STEPS):
-        cosine, sine = values.each(("cosine", "sine"), (sp.cos(half), sp.sin(half)))
-        misses = values.each(
-            ("miss", "miss"),
-            (a - (cosine * m[0] + sine * m[2]), b - (cosine * m[1] + sine * m[3])),
-        )
-        slopes = values.each(
-            ("slope", "slope"), (cosine * m[2] - sine * m[0], cosine * m[3] - sine * m[1])
-        )
-        along, across = values.each(
-            ("along", "across"), (cosine * n[0] + sine * n[2], cosine * n[1] + sine * n[3])
-        )
-        radius = values.length("radius", (along, across))
-        grows = values.let(
-            "grows",
-            along * (cosine * n[2] - sine * n[0]) + across * (cosine * n[3] - sine * n[1]),
-        )
+        cosine, sine = turned = values.each(("cosine", "sine"), (sp.cos(half), sp.sin(half)))
+        onwards = (-sine, cosine)
+        x, y = _on_ellipse(m, turned)
+        misses = values.each(("miss", "miss"), (a - x, b - y))
+        slopes = values.each(("slope", "slope"), _on_ellipse(m, onwards))
+        reached = values.each(("along", "across"), _on_ellipse(n, turned))
+        radius = values.length("radius", reached)
+        grows = values.let("grows", dot(reached, _on_ellipse(n, onwards)))
         slope = values.let("slope", grows / Where(sp.Eq(radius, 0), sp.S.One, radius))
         miss = values.let("miss", length / whole - radius)
         step = values.let("step", dot((*misses, miss), (*slopes, slope)))
@@ -345,6 +337,12 @@ def _middle_of_half(
         half = values.let("half", half + step / (weight + values.tiny))  # not rounding alone
     beyond = values.let("beyond", 2 * values.length("missed", misses))
     return values.wrapped("middle", 2 * half), beyond
+
+
+def _on_ellipse(m: Vector, turned: Vector) -> Vector:
+    """The components of m± by its matrix, column by column, for the cosine and the sine of β/2."""
+    cosine, sine = turned
+    return cosine * m[0] + sine * m[2], cosine * m[1] + sine * m[3]
 
 
 def _measured(values: NamedValues, found: Vector) -> tuple[sp.Expr | Vector, ...]:
@@ -367,10 +365,8 @@ def _nearest(values: NamedValues, given: Vector, m: Vector, guesses: Sequence[sp
     half, least = sp.S.Zero, sp.oo
     for guess, handicap in ((guesses[0] / 2, 0), (guesses[1] / 2, 0), (third, values.reach)):
         angle = values.let("guess", guess)
-        cosine, sine = values.each(("cosine", "sine"), (sp.cos(angle), sp.sin(angle)))
-        along, across = values.each(
-            ("along", "across"), (cosine * m[0] + sine * m[2], cosine * m[1] + sine * m[3])
-        )
+        turned = values.each(("cosine", "sine"), (sp.cos(angle), sp.sin(angle)))
+        along, across = values.each(("along", "across"), _on_ellipse(m, turned))
         is_opposite = values.let("agreement", a * along + b * across) < 0
         angle = values.let("guess", Where(is_opposite, angle + sp.pi, angle))
         differences = (

@@ -55,18 +55,10 @@ def rotation_of(parts: Sequence[sp.Expr]) -> sp.Matrix:
 
 def outer_product(matrix: sp.MatrixBase) -> sp.Matrix:
     """K(R) = 4 p pᵀ, (4, 4), of a rotation matrix (Shepperd, 1978)."""
-    r = matrix
-    trace = r[0, 0] + r[1, 1] + r[2, 2]
-    diagonal = [1 + trace, *(1 + 2 * r[k, k] - trace for k in range(3))]
-    above = {
-        (0, 1): r[2, 1] - r[1, 2],
-        (0, 2): r[0, 2] - r[2, 0],
-        (0, 3): r[1, 0] - r[0, 1],
-        (1, 2): r[1, 0] + r[0, 1],
-        (1, 3): r[0, 2] + r[2, 0],
-        (2, 3): r[2, 1] + r[1, 2],
-    }
-    return sp.Matrix(4, 4, lambda i, j: diagonal[i] if i == j else above[min(i, j), max(i, j)])
+    r, trace = sp.Matrix(matrix), matrix.trace()
+    vector = [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]]
+    block = r + r.T + (1 - trace) * sp.eye(3)
+    return sp.Matrix([[1 + trace, *vector], *([v, *block[k, :]] for k, v in enumerate(vector))])
 
 
 def shepperd(values: NamedValues, matrix: sp.Matrix) -> Vector:
