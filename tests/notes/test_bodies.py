@@ -132,6 +132,12 @@ def test_the_mass_of_particles_is_a_sum_and_that_of_a_solid_an_integral():
         assert any(claim.startswith(f"Iₙ = {sign}") for claim in claims)
 
 
+def test_principal_moments_that_can_be_compared_are_in_ascending_order():
+    (step,) = (s for s in three_particles().steps if s.quantity.name == "principal_moments")
+    shares = [sp.cancel(2 * moment / step.expression[0]) for moment in step.expression]
+    assert shares == [2, 3, 5]
+
+
 def test_momenta_in_space_have_no_names_for_their_parts():
     """Where they would need any, they are said by the momentum in the body."""
     document = three_particles().note().document

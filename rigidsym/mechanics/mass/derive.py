@@ -161,9 +161,8 @@ class _Inertia:
         return Found(
             _scalar(moment),
             "The moment about a line is the quadratic form of the tensor about a point p of it. "
-            "The direction is a unit vector, and n × (x′ − p) is as long as the distance from the "
-            "line.",
-            (identity(_scalar(from_moments - moment), claims.OF_LINE, self.body.name),),
+            "The direction n is a unit vector, and |n × (x′ − p)| is the distance from the line.",
+            (identity(_scalar(from_moments - moment), self._over_mass(claims.OF_LINE), body.name),),
         )
 
     def radii_of_gyration(self) -> Found:

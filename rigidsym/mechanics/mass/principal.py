@@ -135,7 +135,12 @@ def _factored(inertia: sp.ImmutableMatrix) -> Principal | None:
     because = "The characteristic polynomial factors"
     if repeated:
         because += "; two moments are equal, so that every axis across the third is principal"
-    roots = sorted(roots, key=lambda root: (roots.count(root) == 1, str(root)))  # a single one last
+    shares = {root: sp.cancel(root / sum(roots)) for root in roots}
+    is_ordered = all(share.is_Rational for share in shares.values())
+    roots = sorted(
+        roots,  # a single one last, the others by their size if it is known
+        key=lambda root: (roots.count(root) == 1, shares[root] if is_ordered else 0, str(root)),
+    )
     axes = _axes(inertia, roots)
     moments = sp.ImmutableMatrix([sp.factor(root) for root in roots])
     return Principal(moments=moments, axes=axes, because=f"{because}.")
