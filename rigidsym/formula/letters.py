@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -19,6 +20,7 @@ from rigidsym.formula.tree import Formula, Symbol
 Place = tuple[int, int]  # order of the time derivative, index of the component
 
 TIME = sp.Symbol("t")
+_MASS = re.compile(r"[mM](_?\d+)?")  # written before other constants: m g l, m R²
 _CONSTANTS: Mapping[sp.Expr, Formula] = {sp.pi: Symbol("π")}
 
 
@@ -173,7 +175,7 @@ def _base_key(base: sp.Expr, letters: Letters) -> Key:
         return (Rank.FUNCTION, _angle_key(base.args[0], letters), len(FUNCTIONS))
     place = letters.places.get(base)
     if place is None:
-        return (Rank.CONSTANT, 0, base.sort_key())
+        return (Rank.CONSTANT, 0 if _MASS.fullmatch(str(base)) else 1, base.sort_key())
     order, index = place
     return (Rank.RATE if order else Rank.COORDINATE, (-order, index), 0)
 

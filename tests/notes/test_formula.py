@@ -71,9 +71,10 @@ FORMS = [
     (A * sin(theta) ** 2, r"A \sin^2\theta", "A sin² θ"),
     (phi_dot**2 / 2, r"\frac{1}{2}\,\dot{\phi}^2", "½φ̇²"),
     (omega_body[0] ** 2, r"{\Omega'_1}^2", "Ω′₁²"),
-    ((A + m) ** 2, r"(A + m_1)^2", "(A + m₁)²"),
+    ((A + m) ** 2, r"(m_1 + A)^2", "(m₁ + A)²"),
+    (m * A, r"m_1\,A", "m₁ A"),
     (sp.sqrt(A), r"\sqrt{A}", "√A"),
-    (1 / sp.sqrt(A + m), r"\frac{1}{\sqrt{A + m_1}}", "1/√(A + m₁)"),
+    (1 / sp.sqrt(A + m), r"\frac{1}{\sqrt{m_1 + A}}", "1/√(m₁ + A)"),
     (A ** sp.Rational(3, 2), r"A^{3/2}", "A^(3/2)"),
     # quotients
     (1 / sin(theta), r"\frac{1}{\sin\theta}", "1/sin θ"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -112,3 +113,8 @@ def test_a_file_tells_the_place_of_a_wrong_example():
     )
     with pytest.raises(SpecError, match=r"line 8: dynamics.examples\[0\].initial.theta"):
         read_spec(text, source="top.toml", name="top")
+
+
+def test_without_the_equations_of_motion_there_is_no_picture():
+    spec = replace(read("heavy_symmetric_top"), quantities=("energy",))
+    assert "energy" in motion_of(spec).note(with_kernels=False).latex()

@@ -28,6 +28,7 @@ from rigidsym.notes.figure.scene import BODY
 
 Numbers = list[float]
 
+_NEEDED = {"state_derivative", "angular_velocity_body"}
 _SAMPLES = 400
 _MOST_STEPS = 256  # from one sample to the next
 _SEEN = 2e-3  # of the range of a value
@@ -46,12 +47,13 @@ class MotionPicture(NamedTuple):
 
 
 def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | None:
-    """The pictures of all examples in a row; None without one.
+    """The pictures of all examples in a row; None without one, or without the equations.
 
     Raises ModelError if values are missing, and if the motion is too fast to follow.
     """
     forces = derivation.forces
-    if forces is None or not forces.examples:
+    derived = {*(step.quantity.name for step in derivation.steps), *derivation.functions}
+    if forces is None or not forces.examples or not derived >= _NEEDED:
         return None
     motions = [
         ExampleMotion(derivation, forces, example) for example in forces.examples[:_IN_A_ROW]
