@@ -15,7 +15,7 @@ from rigidsym.algebra.present import Rationals
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Found
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.mass.moments import Moments, moments_of
+from rigidsym.mechanics.mass.moments import Moments, about_centre, moments_of
 from rigidsym.mechanics.mass.principal import Principal, principal_of
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import mass as claims
@@ -113,12 +113,8 @@ class _Inertia:
         """Σ (R I R ᵀ + m (|d|² 1 − d dᵀ)), a hole with a minus sign."""
         total = sp.zeros(3)
         for part in parts:
-            m = moments_of(part.what)
-            centre = m.first / m.mass
-            second = m.second - m.mass * centre * centre.T
-            own = part.turned * (second.trace() * _ONE - second) * part.turned.T
-            away = part.turned * centre + part.at - self.body.centre
-            total += (own + _moved(m.mass, away)) * (-1 if part.hole else 1)
+            mass, centre, own = about_centre(part)
+            total += part.turned * own * part.turned.T + _moved(mass, centre - self.body.centre)
         return total
 
     def inertia_tensor_point(self) -> Found:

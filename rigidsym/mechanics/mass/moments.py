@@ -120,6 +120,15 @@ def _of_part(part: Part, place: int) -> Moments:
         raise BodyError(str(error), place=("parts", place, *error.place)) from error
 
 
+def about_centre(part: Part) -> tuple[sp.Expr, sp.Matrix, sp.Matrix]:
+    """Mass, centre (in the axes of the whole) and tensor about it (in its own); less for a hole."""
+    m, sign = moments_of(part.what), -1 if part.hole else 1
+    centre = m.first / m.mass
+    second = m.second - m.mass * centre * centre.T
+    own = second.trace() * sp.eye(3) - second
+    return sign * m.mass, part.turned * centre + part.at, sign * own
+
+
 @moments_of.register
 @lru_cache(maxsize=64)
 def _(solid: Solid) -> Moments:

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from rigidsym.mechanics.mass.moments import about_centre
 from rigidsym.models.body import Parameter, RigidBody, given_inertia
+from rigidsym.models.distribution import Composite
 
 if TYPE_CHECKING:
     from rigidsym.data.mass.properties import MassProperties
@@ -33,6 +35,17 @@ def in_numbers(body: RigidBody) -> MassProperties | None:
         centre=np.array(list(centre), dtype=float),
         inertia=np.array(inertia.tolist(), dtype=float),
     )
+
+
+def parts_of(body: RigidBody) -> list[tuple[sp.Expr, sp.Matrix, sp.Matrix, sp.Matrix]]:
+    """Of each part of a composite body its mass, centre, tensor about it, and turn; of others none.
+
+    Empty for parts whose turns hold symbols that satisfy conditions.
+    """
+    whole = body.distribution
+    if not isinstance(whole, Composite) or whole.conditions:
+        return []
+    return [(*about_centre(part), part.turned) for part in whole.parts]
 
 
 def is_measured(body: RigidBody) -> bool:

@@ -6,7 +6,7 @@ Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -75,6 +75,7 @@ def record(
         ],
         "singularities": _singularities(derivation.singularities, names),
         **({"body": _body(derivation.body, names)} if derivation.body else {}),
+        **_motion(derivation, names),
         **({"conversions": _conversions(conversions, names)} if conversions else {}),
     }
 
@@ -107,20 +108,44 @@ def _turn(turn: Turn, names: Names) -> Iterator[str]:
 
 def _body(body: RigidBody, names: Names) -> dict[str, Any]:
     """The body itself; its principal axes in numbers, where all its parameters have values."""
-    from rigidsym.mechanics.mass.numbers import in_numbers
+    from rigidsym.mechanics.mass.numbers import in_numbers, parts_of
 
-    found = in_numbers(body)
+    found, parts = in_numbers(body), parts_of(body)
     return {
         "title": body.title,
         "mass": _plain(body.mass, names),
         "centre": _vector(body.centre, names),
         "inertia": _entries(body.inertia, names, is_vector=False),
+        **({"parts": [_part(part, names) for part in parts]} if parts else {}),
         "parameters": [
             {"name": p.symbol.name, "about": p.about, "unit": p.unit, "value": p.value}
             for p in body.parameters
         ],
         "in_numbers": None if found is None else found.record(),
     }
+
+
+def _part(part: Sequence[Any], names: Names) -> dict[str, Any]:
+    """A part about its centre of mass; `turn` takes its axes to those of the whole."""
+    mass, centre, inertia, turn = part
+    return {
+        "mass": _plain(mass, names),
+        "centre": _vector(centre, names),
+        "inertia": _entries(inertia, names, is_vector=False),
+        "turn": _entries(turn, names, is_vector=False),
+    }
+
+
+def _motion(derivation: Derivation, names: Names) -> dict[str, Any]:
+    """V and the generalised forces, if nothing else enters Lagrange's equations of the body."""
+    acting, groups = derivation.forces, {argument.name for argument in derivation.arguments}
+    if acting is None or "momenta" not in groups or acting.depend_on_time or any(acting.torque):
+        return {}
+    if acting.parts or acting.frame_rate:
+        return {}
+    coordinates = derivation.model.coordinates
+    forces = [_plain(sp.sympify(acting.generalised.get(q, 0)), names) for q in coordinates]
+    return {"motion": {"potential": _plain(acting.potential, names), "forces": forces}}
 
 
 def _conversions(found: Conversions, names: Names) -> dict[str, Any]:

@@ -105,6 +105,8 @@ def _claims(record: Mapping[str, Any]) -> tuple[Language, dict[str, list[Equatio
     for name, denominator in re.findall(r"(\w+)/(\d+)", json.dumps(record["rotation"])):
         parts[name] = math.lcm(parts.get(name, 1), int(denominator))
     names = [quantity["name"] for quantity in record["quantities"]]
+    names += [f"constant {integral['name']}" for integral in record["first_integrals"]]
+    names += ["sum of parts"] * ("parts" in record.get("body", ()))
     covered = [name for name in names if _is_stated(record, parts, name)]
     known = Language(record, parts)
     found = stated(record, known, covered)

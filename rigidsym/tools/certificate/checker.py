@@ -15,6 +15,7 @@ import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -93,6 +94,17 @@ def hat(vector: Array) -> Array:  # C(v), the operator v ×
     return Array([[ZERO, z * -1, y], [z, ZERO, x * -1], [y * -1, x, ZERO]])
 
 
+def moved(tensor: Array, mass: Array, by: Array) -> Array:  # the parallel-axis theorem
+    return tensor + hat(by) @ hat(by) * mass.entries[0] * -1
+
+
+def rotates(x: Array) -> Arrays:  # the products of columns, and the determinant
+    first, second, third = (Array([row]) for row in x.T.rows)
+    return x.T @ x, UNITS, first @ hat(second) @ third.T, Array([[ONE]])
+
+
+Arrays = tuple[Array, ...]  # each of odd number equals the next
+Claims = dict[str, Callable[[Array, str], Arrays]]
 ZERO, ONE = Poly({}), Poly({(): 1})
 UNITS = Array([ONE if j == k else ZERO for k in range(3)] for j in range(3))
 
@@ -105,8 +117,9 @@ class Language:
         self.parts = parts  # of the angle φ, φ/n has a cosine
         self.relations: dict[str, Poly] = {}
         self.flow = dict.fromkeys(("pi", *self.groups.get("parameters", ())), ZERO)  # d/dt
-        for name in self.groups["q"]:
-            self.flow |= {name: letter(f"{name}_dot"), f"{name}_dot": letter(f"{name}_ddot")}
+        self.rates, self.second = ([q + d for q in self.groups["q"]] for d in ("_dot", "_ddot"))
+        moving = zip(self.groups["q"] + self.rates, self.rates + self.second, strict=True)
+        self.flow |= {name: letter(rate) for name, rate in moving}
 
     def matrix(self, given: Any) -> Array:
         rows = given if isinstance(given, list) else [given]
@@ -184,9 +197,10 @@ class Language:
                 c, s = c * one + s * other * -sign, c * other * sign + s * one
         return c, s
 
-    def rate(self, value: Poly) -> Poly:
+    def rate(self, value: Poly, flow: Mapping[str, Poly] | None = None) -> Poly:
         """d/dt by the chain rule; raises KeyError for a letter whose rate is not known."""
-        return sum((value.derivative(n) * self.flow[n] for n in sorted(value.names)), ZERO)
+        rates = self.flow if flow is None else flow
+        return sum((value.derivative(n) * rates[n] for n in sorted(value.names)), ZERO)
 
     def rotation(self, given: Mapping[str, Any]) -> Array:
         """R, active, as the product of its turns or by its entries, under stated conditions."""
@@ -209,54 +223,116 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
     R_dot = Array(map(known.rate, row) for row in R.rows)
     shown, shown_dot = (R.T, R_dot.T) if record["presentation"] == "passive" else (R, R_dot)
     spin = {"space": R_dot @ R.T, "body": R.T @ R_dot}
-    volume = Array([R.rows[0]]) @ hat(Array([R.rows[1]])) @ Array([R.rows[2]]).T
     omega = {f: Array([[s.rows[2][1]], [s.rows[0][2]], [s.rows[1][0]]]) for f, s in spin.items()}
-    rates = [f"{name}_dot" for name in known.groups["q"]]
-    steady = {"sqrt", "cos", "sin", "tan", "cot", *known.flow} - {*rates}
+    steady = {"sqrt", "cos", "sin", "tan", "cot", *known.flow} - {*known.rates}
     given = {f: known.matrix([f"omega_{f}_{k}" for k in (1, 2, 3)]) for f in spin}
-    W = {f: Array([e.derivative(n) for n in rates] for e in w.entries) for f, w in omega.items()}
-    claims: dict[str, Callable[[Array, str], tuple[Array, Array]]] = {
+    W = {f: Array(map(w.derivative, known.rates) for w in v.entries) for f, v in omega.items()}
+    claims: Claims = {
         "rotation_matrix": lambda x, _: (x, shown),
         "rotation_rate": lambda x, _: (x, shown_dot),
         "spin_matrix": lambda x, _: (x, shown_dot @ shown.T),
         "angular_velocity": lambda x, f: (hat(x), spin[f]),
         "angular_acceleration": lambda x, f: (x, Array(map(known.rate, r) for r in omega[f].rows)),
-        "rate_matrix": lambda x, f: (x @ known.matrix(rates), omega[f]),
+        "rate_matrix": lambda x, f: (x @ known.matrix(known.rates), omega[f]),
         "inverse_rate_matrix": lambda x, f: (W[f] @ x, UNITS),
         "rates_from_angular_velocity": lambda x, f: (W[f] @ x, given[f]),
+        "R is a rotation": lambda _, __: rotates(R.T),
     }
+    texts = {"R is a rotation": [], **{q["name"]: q["expression"] for q in record["quantities"]}}
+    if len(texts) <= len(record["quantities"]):
+        raise ValueError("a quantity is printed twice")
     if "body" in record:
-        m, at, tensor = (known.matrix(record["body"][g]) for g in ("mass", "centre", "inertia"))
-        texts = "X Y Z", "X_dot Y_dot Z_dot", "n_x n_y n_z", "p_x p_y p_z"
-        r, v, n, p = (known.matrix(text.split()) for text in texts)
-        w, spun = omega["body"], tensor @ omega["body"]
-        about = tensor + hat(p + at * -1) @ hat(p + at * -1) * m.entries[0] * -1
-        o, t = given["body"], known.matrix(["torque_1", "torque_2", "torque_3"])
-        claims |= {
-            "angular_acceleration_from_torque": lambda x, _: (tensor @ x + hat(o) @ tensor @ o, t),
-            "inertia_tensor": lambda x, _: (x, tensor),
-            "inertia_tensor_point": lambda x, _: (x, about),
-            "moment_of_inertia": lambda x, _: (x, n.T @ about @ n),
-            "inertia_tensor_space": lambda x, _: (x, R @ tensor @ R.T),
-            "translational_energy": lambda x, _: (x * 2, v.T @ v @ m),
-            "rotational_energy": lambda x, _: (x * 2, w.T @ spun),
-            "kinetic_energy": lambda x, _: (x * 2, v.T @ v @ m + w.T @ spun),
-            "angular_momentum_centre": lambda x, _: (x, hat(r) @ v @ m),
-            "angular_momentum_rotation_body": lambda x, _: (x, spun),
-            "angular_momentum_rotation": lambda x, _: (x, R @ spun),
-            "angular_momentum": lambda x, _: (x, hat(r) @ v @ m + R @ spun),
-        }
-    lengths = zip((R @ R.T).entries, UNITS.entries, strict=True)
-    found = {"R is a rotation": [*lengths, (volume.entries[0], ONE)]}
-    for name, text in ((q["name"], q["expression"]) for q in record["quantities"]):
-        if name in names:
-            kind, _, frame = name.rpartition("_")
-            used = {getattr(n, "id", "pi") for n in ast.walk(ast.parse(str(text).replace("'", "")))}
-            if "rate" in kind and (left := used - steady - {f"omega_{frame}_{k}" for k in "123"}):
-                raise ValueError(f"{name} holds {min(left)}")
-            left, right = (claims.get(name) or claims[kind])(known.matrix(text), frame)
-            found[name] = [*found.get(name, ()), *zip(left.entries, right.entries, strict=True)]
+        claims |= of_body(known, R, omega["body"], record["body"], texts)
+        texts |= {"sum of parts": []} if "parts" in record["body"] else {}
+    if "motion" in record:
+        claims |= of_motion(known, omega["body"], record, texts)
+        texts |= {f"constant {e['name']}": e["expression"] for e in record["first_integrals"]}
+    found = {}
+    for name in ("R is a rotation", *(name for name in texts if name in names)):
+        kind, _, frame = name.rpartition("_")
+        text = str(texts[name]).replace("'", "")
+        used = {getattr(n, "id", "pi") for n in ast.walk(ast.parse(text))}
+        if "rate" in kind and (left := used - steady - {f"omega_{frame}_{k}" for k in "123"}):
+            raise ValueError(f"{name} holds {min(left)}")
+        sides = (claims.get(name) or claims[kind])(known.matrix(texts[name]), frame)
+        pairs = zip(sides[::2], sides[1::2], strict=True)
+        found[name] = [e for a, b in pairs for e in zip(a.entries, b.entries, strict=True)]
     return found
+
+
+def of_body(known: Language, R: Array, w: Array, body: Any, texts: Mapping[str, Any]) -> Claims:
+    """With the mass, the centre of mass, and the tensor about it or about a fixed point."""
+    m, at, tensor = (known.matrix(body[g]) for g in ("mass", "centre", "inertia"))
+    lines = "X Y Z", "X_dot Y_dot Z_dot", "n_x n_y n_z", "p_x p_y p_z"
+    r, v, n, p = (known.matrix(line.split()) for line in lines)
+    o, t = (known.matrix([f"{g}_{k}" for k in (1, 2, 3)]) for g in ("omega_body", "torque"))
+    spun, about = tensor @ w, moved(tensor, m, p + at * -1)
+    sums = [m * 0, at * 0, tensor * 0]
+    for part in body.get("parts", ()):
+        mass, c, own, turn = (known.matrix(part[g]) for g in ("mass", "centre", "inertia", "turn"))
+        parts = mass, c @ mass, moved(turn @ own @ turn.T, mass, c + at * -1)
+        sums = [total + part for total, part in zip(sums, parts, strict=True)]
+
+    def principal(_: Array, __: str) -> Arrays:
+        axes, moments = (known.matrix(texts[f"principal_{g}"]) for g in ("axes", "moments"))
+        columns = zip(axes.T.rows, moments.entries, strict=True)
+        return *rotates(axes), tensor @ axes, Array([e * k for e in row] for row, k in columns).T
+
+    return {
+        "sum of parts": lambda _, __: (sums[0], m, sums[1], at @ m, sums[2], tensor),
+        "mass": lambda x, _: (x, m),
+        "centre_of_mass": lambda x, _: (x, at),
+        "inertia_tensor": lambda x, _: (x, tensor),
+        "inertia_tensor_point": lambda x, _: (x, about),
+        "moment_of_inertia": lambda x, _: (x, n.T @ about @ n),
+        "inertia_tensor_space": lambda x, _: (x, R @ tensor @ R.T),
+        **dict.fromkeys(("principal_moments", "principal_axes"), principal),
+        "translational_energy": lambda x, _: (x * 2, v.T @ v @ m),
+        "rotational_energy": lambda x, _: (x * 2, w.T @ spun),
+        "kinetic_energy": lambda x, _: (x * 2, v.T @ v @ m + w.T @ spun),
+        "angular_momentum_centre": lambda x, _: (x, hat(r) @ v @ m),
+        "angular_momentum_rotation_body": lambda x, _: (x, spun),
+        "angular_momentum_rotation": lambda x, _: (x, R @ spun),
+        "angular_momentum": lambda x, _: (x, hat(r) @ v @ m + R @ spun),
+        "angular_acceleration_from_torque": lambda x, _: (tensor @ x + hat(o) @ tensor @ o, t),
+    }
+
+
+def of_motion(known: Language, w: Array, record: Any, texts: Mapping[str, Any]) -> Claims:
+    """With p = ∂T/∂q̇ and M = ∂p/∂q̇, Lagrange's equations d/dt p − ∂(T − V)/∂q = Q."""
+    potential, forces = (known.matrix(record["motion"][g]) for g in ("potential", "forces"))
+    kinetic = w.T @ known.matrix(record["body"]["inertia"]) @ w * Fraction(1, 2)
+    p = Array(map(e.derivative, known.rates) for e in kinetic.entries).T
+    mass = Array(map(e.derivative, known.rates) for e in p.entries)
+    momenta, whole, free = known.groups["momenta"], kinetic + potential, kinetic + potential * -1
+    own = {"energy": whole} | dict(zip(momenta, (Array([[e]]) for e in p.entries), strict=True))
+
+    def bias() -> Array:
+        flows = ({n: rate.derivative(d) for n, rate in known.flow.items()} for d in known.rates)
+        slopes = Array([known.rate(e, flow) * -1 for e in free.entries] for flow in flows)
+        change = Array([known.rate(e)] for e in p.entries)
+        return change + mass @ known.matrix(known.second) * -1 + slopes
+
+    def constant(name: str, x: Array, _: str) -> Arrays:
+        solved = known.matrix(texts["accelerations"]).entries
+        flow = known.flow | dict(zip(known.rates, solved, strict=True))
+        return Array([[known.rate(x.entries[0], flow)]]), x * 0, x, own[name]
+
+    def hamiltonian(x: Array, _: str) -> Arrays:
+        slope, given = Array([x.entries[0].derivative(n)] for n in momenta), known.matrix(momenta)
+        return mass @ slope, given, (x + potential * -1) * 2, given.T @ slope
+
+    constants = {f"constant {n.replace('p_', 'momentum_', 1)}": partial(constant, n) for n in own}
+    return constants | {
+        "potential_energy": lambda x, _: (x, potential),
+        "lagrangian": lambda x, _: (x, free),
+        "energy": lambda x, _: (x, whole),
+        "generalised_momenta": lambda x, _: (x, p),
+        "mass_matrix": lambda x, _: (x, mass),
+        "bias_vector": lambda x, _: (x, bias()),
+        "accelerations": lambda x, _: (mass @ x + bias(), forces),
+        "hamiltonian": hamiltonian,
+    }
 
 
 def verify(record: Mapping[str, Any], certificate: Mapping[str, Any]) -> list[str]:
