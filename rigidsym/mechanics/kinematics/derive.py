@@ -234,11 +234,13 @@ class Expanded(Kinematics):
     def _columns_in_words(self, frame: str) -> str:
         coordinates = self.model.coordinates
         if len(coordinates) == 1:
+            if frame == "body":
+                return "The column of W′ is the same axis, with its components in the body."
             return "The angular velocity is the rate times the axis of the turn."
         turns = [turn.angle for turn in self.model.turns]
         if len(turns) == len(coordinates) and set(turns) == set(coordinates):
             if frame == "body":
-                return "The columns of W′ are the same axes, with their components in the body."
+                return WORDS["rate_matrix_body"]
             return (
                 "The angular velocity depends linearly on the rates; the columns of W are the axes "
                 "of the turns, with their components in space."
@@ -275,6 +277,7 @@ class Expanded(Kinematics):
 
 _COMPONENTS = "The components of Ω are the entries (3,2), (1,3) and (2,1) of this skew matrix."
 WORDS = {
+    "rate_matrix_body": "The columns of W′ are the same axes, with their components in the body.",
     "rotation_rate": "The chain rule gives the time derivative of each entry.",
     "spin_matrix": "Multiplying the derivative by the transpose gives a skew matrix.",
     "angular_velocity_space": _COMPONENTS,

@@ -282,7 +282,12 @@ _WORDS: dict[str, tuple[str, str | None]] = {  # how it follows, and the recursi
         "Seen from the body, each turn rotates the sum of the turns before it backwards.",
         rf"\mathbf{{w}}_{{LAST}}, \quad {_LAWS['omega_body']}",
     ),
-    "rate_matrix": ("The columns of the rate matrix are the axes of the turns.", None),
+    "rate_matrix_space": ("The columns of W are the axes of the turns.", None),
+    "rate_matrix_body": (WORDS["rate_matrix_body"], None),
+    "inverse_rate_matrix_body": (
+        "The right inverse of W′ is found in the same way.",
+        r"#2\left(#1\,#2\right)^{-1}",
+    ),
     "inverse_rate_matrix": (
         "q̇ is not unique, since there are more coordinates than dimensions; we choose the "
         "solution of least norm.",

@@ -86,7 +86,7 @@ def meaning(found: Singularities) -> Text:
 def failures(derivation: Derivation, found: Singularities) -> Iterator[Text]:
     """All that is said of them: where, and then what is lost at each point."""
     letters = letters_of(derivation.arguments, model=derivation.model)
-    yield _zeros(found, letters)
+    yield _zeros(found, derivation, letters)
     if len(found.points) == 1 and len(found.points[0].places) > _MOST_PLACES:
         yield ("There ", *_loss(found.points[0], derivation))
         return
@@ -96,7 +96,7 @@ def failures(derivation: Derivation, found: Singularities) -> Iterator[Text]:
         yield (f"The other {more} singular points are listed in the JSON record.",)
 
 
-def _zeros(found: Singularities, letters: Letters) -> Text:
+def _zeros(found: Singularities, derivation: Derivation, letters: Letters) -> Text:
     """Where the determinant vanishes, as far as that was decided."""
     if found.determinant is None and not found.is_solved:
         return (
@@ -119,7 +119,10 @@ def _zeros(found: Singularities, letters: Letters) -> Text:
         return ("The axes of all turns never lie in one plane, so there is no singularity.",)
     unless = ", unless the constants make it zero" if _has_constants(found.determinant) else ""
     if found.rank == 3:
-        return (f"It never vanishes{unless}, so this parametrisation has no singularity.",)
+        several = "so this parametrisation has no singularity"
+        three = "so the singularity that any three coordinates have is at infinity"
+        conclusion = three if len(derivation.model.coordinates) == 3 else several
+        return (f"It never vanishes{unless}, {conclusion}.",)
     return (
         f"It never vanishes{unless}: the rank is {found.rank} everywhere, and the angular velocity "
         f"is confined to {_CONFINED[found.rank]}.",

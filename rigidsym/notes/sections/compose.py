@@ -103,7 +103,7 @@ class Composer:
         self.letters = letters_of(derivation.arguments, notation, derivation.model)
         self.symbols = symbols_of(derivation)
         self.fitter = Fitter(derivation, self.letters)
-        self.said: set[str | Citation] = set()
+        self.cited: set[Citation] = set()
 
     @property
     def subtitle(self) -> str:
@@ -288,12 +288,12 @@ class Composer:
                 yield from others
 
     def _lead(self, step: Step) -> Text:
-        """How the quantity follows; what has been said once is not said again."""
-        if step.because in self.said:
-            return (f"Likewise, the {step.quantity.about}:",)
+        """How the quantity follows; a source is cited once."""
         source = self._source(step)
-        source = None if source in self.said else source
-        self.said |= {step.because, *([source] if source else [])}
+        if source in self.cited:
+            source = None
+        elif source:
+            self.cited.add(source)
         is_matrix = step.quantity.name == "rotation_matrix"
         if is_matrix and is_told(self.model) and not self.model.passive:
             return with_source(("The matrix of this turn is:",), source)
