@@ -94,15 +94,15 @@ class Ring:
         times = self.polynomials.monomial_mul
         total: Terms = {}
         known = total.get
-        for sign, group in ((1, pairs), (-1, minus)):
+        for sign, group in ((1, pairs), (-1, minus)) if minus else ((1, pairs),):
             for first, second in group:
-                if not second:
-                    continue
-                for monomial, coefficient in first.items():
-                    weight = sign * coefficient
-                    for other, factor in second.items():
-                        product = times(monomial, other)
-                        total[product] = known(product, 0) + weight * factor
+                if first and second:
+                    terms = second.items()
+                    for monomial, coefficient in first.items():
+                        weight = sign * coefficient
+                        for other, factor in terms:
+                            product = times(monomial, other)
+                            total[product] = known(product, 0) + weight * factor
         return self._settled(total) if total else self.zero
 
     def difference(self, first: PolyElement, second: PolyElement) -> PolyElement:
@@ -121,16 +121,18 @@ class Ring:
     def _settled(self, terms: Terms) -> PolyElement:
         """The polynomial of these terms, in normal form."""
         forms = self._normal_forms
-        if forms.standard.issuperset(terms):
-            return self.zero.new({m: c for m, c in terms.items() if c})
-        result: Terms = {}
-        for monomial, coefficient in terms.items():
-            form = forms[monomial]
-            if form is None:
-                result[monomial] = result.get(monomial, 0) + coefficient
-            else:
-                _add(result, coefficient, form)
-        return self.zero.new({m: c for m, c in result.items() if c})
+        result = terms
+        if not forms.standard.issuperset(terms):
+            result = {}
+            for monomial, coefficient in terms.items():
+                form = forms[monomial]
+                if form is None:
+                    result[monomial] = result.get(monomial, 0) + coefficient
+                elif coefficient:
+                    _add(result, coefficient, form)
+        if not all(result.values()):
+            result = {m: c for m, c in result.items() if c}
+        return self.zero.new(result) if result else self.zero
 
     def partial(self, element: PolyElement, place: int) -> PolyElement:
         """∂/∂g by the generator at one place, the others held; of a normal form it is one."""

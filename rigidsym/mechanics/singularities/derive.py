@@ -207,6 +207,9 @@ def _rank_and_minors(matrix: RingMatrix, most: int | None = None) -> tuple[int, 
 def _minors(matrix: RingMatrix, size: int) -> Iterator[PolyElement]:
     """The determinants of all parts of a matrix with so many rows and columns."""
     dot = matrix.ring.dot
+    if matrix.shape == (size, size):
+        yield matrix.det()
+        return
     for rows in combinations(matrix.rows, size):
         if size == 2:
             first, second = rows
