@@ -157,6 +157,6 @@ def test_long_twins_give_nan_where_arrays_do(long_chain):
     assert_allclose(margin, functions.singularity_margin_scalar(*[1.0] * 20), rtol=1e-13)
 
 
-@pytest.mark.parametrize("target", ["numpy", "c"])
+@pytest.mark.parametrize("target", ["numpy", "c", "numba"])
 def test_the_text_of_a_long_chain_takes_less_than_eight_kilobytes_a_turn(twenty_turns, target):
     assert len(twenty_turns.kernels(target).source.encode()) < 20 * 8000

@@ -274,6 +274,20 @@ def test_rows_of_any_number_are_computed_by_compiled_functions(count, monkeypatc
 
 
 @pytest.mark.skipif(bool(TARGETS["numba"].missing), reason=TARGETS["numba"].missing)
+def test_far_angles_and_poles_change_no_bit_of_other_rows_in_numba():
+    rates = module("ZXZ", "numba").rates_from_angular_velocity_body
+    q, omega = np.random.default_rng(1).uniform(0.2, 3, (2, 300, 3))
+    others = rates(q, omega)[3:]
+    q[:3] = [[1.0, 1e9, 2.0], [1.0, 0.0, 2.0], [np.nan, np.nan, 1.0]]
+    found = rates(q, omega)
+    np.testing.assert_array_equal(found[3:], others)
+    for dtype in (np.float64, np.float32):
+        given = q[:3].astype(dtype), omega[:3].astype(dtype)
+        expected = module("ZXZ", "numpy").rates_from_angular_velocity_body(*given)
+        np.testing.assert_allclose(rates(*given), expected, rtol=64 * np.finfo(dtype).eps)
+
+
+@pytest.mark.skipif(bool(TARGETS["numba"].missing), reason=TARGETS["numba"].missing)
 def test_functions_of_numba_are_called_in_compiled_functions():
     from numba import njit
 

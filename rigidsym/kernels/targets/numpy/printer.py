@@ -50,13 +50,13 @@ _SCALAR = python.Statements(
     guard="_or_nan_scalar",
     series="_entire_scalar",
 )
-_BLOCK = python.Statements(
+BLOCK = python.Statements(
     indent=4,
     functions={"sin": "_sin", "cos": "_cos", "eps": "_eps"}
     | {"sqrt": "np.sqrt", "abs": "np.abs", "atan2": "np.arctan2"},
     library="np",
 )
-_SHARED = _BLOCK._replace(  # for arrays and for plain floats
+_SHARED = BLOCK._replace(  # for arrays and for plain floats
     functions={name: f"_of.{name}" for name in ("sin", "cos", "sqrt")} | {"abs": "abs"},
     guard="_of.or_nan",
 )
@@ -78,12 +78,13 @@ def module_text(
     *,
     compute: str = "_compute",
     at_once: str = "",
+    block: python.Statements = BLOCK,
     **more: object,
 ) -> str:
     """The text of a module, in a template that may extend this one and needs more.
 
     `compute` is the function there that computes all orientations, `at_once` that of each kernel
-    which is tried first.
+    which is tried first, and `block` how the functions of arrays are written.
     """
     kernels = list(map(_fitted, program.kernels))
     unwrap = [unwrap_text(program.unwrapping, _block)] if program.unwrapping else []
@@ -97,10 +98,10 @@ def module_text(
             imports=f"from math import {', '.join(sorted(_imports(kernels)))}\n",
             exports=python.lines(f'"{name}",' for name in sorted(exports)),
             components=python.components(program),
-            functions=[_function(kernel, at_once) for kernel in kernels],
+            functions=[_function(kernel, at_once, block) for kernel in kernels],
             has_shared=any(map(_is_shared, kernels)),
             has_parts=any(kernel.parts for kernel in kernels),
-            helpers="".join(f"\n\n{text}" for text in (*_helpers(kernels), *unwrap)),
+            helpers="".join(f"\n\n{text}" for text in (*_helpers(kernels, block), *unwrap)),
             compute=compute,
             **more,
         )
@@ -117,14 +118,14 @@ def _imports(kernels: Sequence[Kernel]) -> set[str]:
     return {"prod", *named, *series, *shared, *(["nan"] if has_nan else [])}
 
 
-def _helpers(kernels: Sequence[Kernel]) -> list[str]:
+def _helpers(kernels: Sequence[Kernel], block: python.Statements) -> list[str]:
     """The functions behind guards and series, if the kernels need them."""
     environment = resources.environment()
     found = []
     has_guards = any(kernel.guards for kernel in kernels)
     if has_guards:
         found.append(environment.get_template("numpy/divisors.py").render())
-    if any(map(_is_shared, kernels)):
+    if block is BLOCK and any(map(_is_shared, kernels)):
         template = environment.get_template("numpy/shared.py.jinja")
         found.append(template.render(has_guards=has_guards))
     if last_order(kernels) >= 0:
@@ -149,7 +150,7 @@ def _fitted(kernel: Kernel) -> Kernel:
     return narrowed(kernel, infix, line=WIDTH - 8, output=WIDTH - deepest - len(","))
 
 
-def _function(kernel: Kernel, at_once: str) -> dict[str, str]:
+def _function(kernel: Kernel, at_once: str, statements: python.Statements) -> dict[str, str]:
     """The pieces of text that stand for one kernel in the template."""
     block, scalar = f"_{kernel.name}", f"{kernel.name}_scalar"
     results = kernel.parts or (kernel.shape,)
@@ -178,7 +179,7 @@ def _function(kernel: Kernel, at_once: str) -> dict[str, str]:
         "scalar_signature": bracketed(0, f"def {scalar}(", floats, f") -> {_type(results)}:"),
         "scalar_about": docstring(twin, indent=4),
         "scalar_body": _scalar_body(kernel, [block, shape, *points]),
-        "block": _block(kernel),
+        "block": _block(kernel, statements),
     }
 
 
@@ -244,7 +245,7 @@ def _scalar_lines(kernel: Kernel) -> Iterator[str]:
         yield f"        {name} = {2.0**-52!r}" if is_eps else _SCALAR.text(name, value)
 
 
-def _block(kernel: Kernel) -> str:
+def _block(kernel: Kernel, statements: python.Statements = BLOCK) -> str:
     """The function of arrays with the components on their first axis.
 
     An output that is a component is a copy, since writing results may change the arguments.
@@ -256,20 +257,21 @@ def _block(kernel: Kernel) -> str:
         f"+{output.text}" if isinstance(output, Name) and output.text in parts else infix(output)
         for output in kernel.outputs
     ]
-    lines = [bracketed(0, f"def _{kernel.name}(", vectors, "):")]
-    if _is_shared(kernel):
-        lines = [bracketed(0, f"def _{kernel.name}(", [*vectors, "_of=None"], "):")]
-        lines.append("    _of = _of or _ARRAYS")
+    head, more = "_", [f"{statements.eps}=None"] if statements.eps else []
+    if statements is BLOCK and _is_shared(kernel):
+        head, statements, more = "_of.", _SHARED, ["_of=None"]
+    lines = [bracketed(0, f"def _{kernel.name}(", [*vectors, *more], "):")]
+    lines += ["    _of = _of or _ARRAYS"] if statements is _SHARED else []
     for vector, argument in zip(vectors, kernel.arguments, strict=True):
         lines += _unpacked(vector, argument.components, kernel.used)
-    return "\n".join([*lines, *_block_lines(_fitted(kernel)), _tuple(4, "return ", outputs)])
+    lines += _block_lines(_fitted(kernel), statements, head)
+    return "\n".join([*lines, _tuple(4, "return ", outputs)])
 
 
 def _unpacked(vector: str, components: Sequence[str], used: Container[str]) -> list[str]:
     """The components of an array; to index a few costs half of what unpacking does."""
     if len(components) > python.MANY:
-        names = [name if name in used else "_" for name in components]
-        return [exploded(4, "(", names, f") = {vector}")]
+        return list(_in_lines(vector, components, used))
     found = {name: f"{vector}[{k}]" for k, name in enumerate(components) if name in used}
     line = f"    {', '.join(found)} = {', '.join(found.values())}"
     if len(line) <= WIDTH:
@@ -277,10 +279,22 @@ def _unpacked(vector: str, components: Sequence[str], used: Container[str]) -> l
     return [f"    {name} = {place}" for name, place in found.items()]
 
 
-def _block_lines(kernel: Kernel) -> Iterator[str]:
+def _in_lines(vector: str, components: Sequence[str], used: Container[str]) -> Iterator[str]:
+    """Neighbours together, as many as a line has room for: a1, a2, a3 = q[1:4]"""
+    first, together = 0, ""
+    for k, name in enumerate([*components, ""]):
+        place = f"[{first}:{k}]" if k > first + 1 else f"[{first}]"
+        line = f"    {together} = {vector}{place}"
+        if together and (name not in used or len(f"{line}, {name}0") > WIDTH):
+            yield line
+            together = ""
+        if name in used:
+            first, together = (k, name) if not together else (first, f"{together}, {name}")
+
+
+def _block_lines(kernel: Kernel, statements: python.Statements, head: str) -> Iterator[str]:
     """The assignments on arrays, the sines and the cosines of several angles in one call."""
     together = _gathered(kernel)
-    head, statements = ("_of.", _SHARED) if _is_shared(kernel) else ("_", _BLOCK)
     for name, value in kernel.statements:
         call = value if isinstance(value, Call) and value.function in ("sin", "cos") else None
         if call is None or len(kernel.sines[call.argument]) < 2:

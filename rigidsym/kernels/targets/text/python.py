@@ -44,7 +44,9 @@ class Statements(NamedTuple):
     functions: Mapping[str, str]  # its names for those of `ir.FUNCTIONS`
     guard: str = "_or_nan"
     series: str = "_entire"
-    library: str = ""  # whose `where` chooses; "" for Python's own `if`
+    library: str = ""  # whose NaN a choice may hold; "" for Python's own `if`
+    where: str = "{}.where"  # its function that chooses
+    eps: str = ""  # a name for the eps of the result, which the values do not tell
 
     def text(self, name: str, value: Expression | dict[str, Call]) -> str:
         """One assignment, or that of all functions c_k of one square."""
@@ -53,18 +55,24 @@ class Statements(NamedTuple):
                 return self.call(name, self.functions[function], value)
             case Choice() if self.library:
                 values = [infix(part, {"nan": f"{self.library}.nan"}) for part in parts(value)]
-                return bracketed(self.indent, f"{name} = {self.library}.where(", values, ")")
+                head = f"{name} = {self.where.format(self.library)}("
+                return bracketed(self.indent, head, values, ")")
             case Choice():
                 return self._choice(name, value)
             case Guarded():
-                given = guard_arguments(value, "None")
+                given = [*guard_arguments(value, "None"), *self._eps]
                 return bracketed(self.indent, f"{name} = {self.guard}(", given, ")")
             case dict():
                 return self._series(value)
         return assignment_lines(self.indent, name, infix(value))
 
+    @property
+    def _eps(self) -> list[str]:
+        return [f"eps={self.eps}"] if self.eps else []
+
     def call(self, names: str, function: str, call: Call) -> str:
         given = [argument.text for argument in call.arguments]
+        given += self._eps if call.function == "eps" else []
         return bracketed(self.indent, f"{names} = {function}(", given, ")")
 
     def _choice(self, name: str, choice: Choice) -> str:
