@@ -15,7 +15,7 @@ from rigidsym.kernels.targets.text.precision import DOUBLE
 TEMPLATE = "numba/module.py.jinja"
 RESERVED = numpy.RESERVED | {"njit", "types"}
 _BLOCK = numpy.BLOCK._replace(
-    functions=numpy.BLOCK.functions | {"atan2": "_arctan2", "eps": "_eps_of"},
+    functions={**numpy.BLOCK.functions, "atan2": "_arctan2", "eps": "_eps_of"},
     guard="_or_nan_of",
     where="_where",
     eps="_eps",
