@@ -262,7 +262,8 @@ def _output_table(rng: Random) -> list[str]:
         f"kernels = {some(2, 'numpy', 'c', 'jax', 'numba', 'forth')}",
         f"note = {some(1, 'tex', 'html', 'md', 'ipynb', 'doc')}",
         "conversions = true",
-        'derivatives = ["angular_velocity_body by q"]',
+        'derivatives = ["angular_velocity_body by q", "rotation_matrix by q vjp"]',
+        f"degrees = {_value(rng, 0) if rng.random() < 0.1 else 'true'}",
         f"style = {some(1, 'paper', 'audit', 'prose').strip('[]')}",
     )
     notation = ["[notation]", f"frames = {_names(rng, 2)}"] if rng.random() < 0.2 else []
@@ -341,7 +342,8 @@ OPTIONS: dict[str, dict[str, tuple[str, ...]]] = {
         "--rates": ("dot", "fraction", "prime"),
         "--frames": ("inertial,spacecraft", "one", "a,a"),
         "--conversions": _SWITCH,
-        "--derivative": ("angular_velocity_body:q", "rotation_matrix:q:jvp", "q"),
+        "--derivative": ("angular_velocity_body:q", "rotation_matrix:q:vjp", "q"),
+        "--degrees": _SWITCH,
         "--style": ("paper", "audit", "poem"),
         "--templates": (".", "none"),
         "--nothing": _SWITCH,
