@@ -26,6 +26,8 @@ def _plain(name, value):
     try:
         return jnp.asarray(value)
     except (TypeError, ValueError) as error:
+        if hasattr(value, "mask"):
+            raise TypeError(f"{name}: JAX takes no masked array") from error
         dtype = getattr(value, "dtype", type(value).__name__)
         raise TypeError(f"{name}: JAX takes no array of {dtype}") from error
 

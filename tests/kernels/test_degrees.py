@@ -211,3 +211,5 @@ def test_a_file_and_the_command_line_ask_for_them(tmp_path: Path):
 def test_a_unit_in_place_of_true_is_refused():
     with pytest.raises(KernelError, match=r"^degrees: expected True or False, got 'deg'$"):
         rs.kernels("ZYX", degrees="deg")  # type: ignore[arg-type]
+    with pytest.raises(KernelError, match=r"^numpy has no option angle_unit; .*degrees$"):
+        motion().kernels(angle_unit="deg")

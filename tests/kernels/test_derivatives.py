@@ -392,6 +392,13 @@ def test_weights_have_the_shape_of_the_quantity_or_its_rows_in_one(target):
     assert_allclose(one, expected[0], atol=tolerance)
 
 
+def test_weights_of_two_quantities_have_plain_names():
+    asked = ["rotation_matrix by q vjp", "angular_velocity_body by q vjp"]
+    source = motion("ZXZ").kernels(derivatives=asked).source
+    assert "weight_3" in source
+    assert "weight_3_" not in source
+
+
 @pytest.mark.parametrize("target", [t for t in EVERY if t.values != ("javascript",)])
 def test_weights_of_another_shape_are_refused(target):
     function = products(target).load().inverse_rate_matrix_body_vjp_q

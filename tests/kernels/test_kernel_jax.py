@@ -124,6 +124,8 @@ def test_arguments_that_are_refused():
         functions().rotation_matrix(np.zeros(3, foreign))
     with pytest.raises(TypeError, match=r"^q: JAX takes no array of str$"):
         functions().rotation_matrix("abc")
+    with pytest.raises(TypeError, match=r"^q: JAX takes no masked array$"):
+        functions().rotation_matrix(np.ma.masked_all(3))
 
 
 def test_ruff_would_leave_the_modules_as_they_are(tmp_path):

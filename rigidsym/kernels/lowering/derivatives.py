@@ -164,23 +164,23 @@ def _is_bound(model: RotationModel, by: Argument) -> bool:
 
 
 @cache
-def _symbols(names: tuple[str, ...]) -> tuple[sp.Dummy, ...]:
-    """The components of a vector of a product: the same for all products with this vector."""
-    return tuple(map(sp.Dummy, names))
+def _symbol(name: str) -> sp.Dummy:
+    """A component of the vector of a product: the same for all products."""
+    return sp.Dummy(name)
 
 
 def _tangent(by: Argument) -> Argument:
     names = tuple(f"{name}_tangent" for name in by.names)
     about = f"a direction in the space of {by.name}"
     name = f"{by.name}_tangent"
-    return by._replace(name=name, symbols=_symbols(by.names), names=names, about=about)
+    return by._replace(name=name, symbols=tuple(map(_symbol, names)), names=names, about=about)
 
 
 def _cotangent(step: Step) -> Argument:
     names = tuple(f"weight_{k + 1}" for k in range(len(step.expression)))
     return Argument(
         name=f"{step.quantity.name}_weights",
-        symbols=_symbols(names),
+        symbols=tuple(map(_symbol, names)),
         names=names,
         notation=(),  # it is in no note
         units=("",) * len(names),

@@ -103,7 +103,8 @@ def check_options(target: str, options: Mapping[str, str | bool]) -> None:
     known = TARGETS[target].options
     for name, value in options.items():
         if name not in known:
-            raise KernelError(f"{target} has no option {name}; {offer(name, known)}")
+            every = ("conversions", "derivatives", "degrees", *known)
+            raise KernelError(f"{target} has no option {name}; {offer(name, every)}")
         if not any(type(value) is type(each) and value == each for each in known[name]):
             choices = ", ".join(map(repr, known[name]))
             raise KernelError(f"{target}, {name}: expected one of {choices}, got {value!r}")
