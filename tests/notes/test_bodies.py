@@ -15,7 +15,7 @@ from rigidsym.models.body import given_inertia
 from rigidsym.motion import Motion
 from rigidsym.notes.document.document import Equation, Figure
 from rigidsym.notes.figure.body_drawing import body_drawing
-from rigidsym.notes.figure.body_mesh import HOLE
+from rigidsym.notes.figure.body_mesh import HOLE, evaluator
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.sections.named_body import in_names
 from rigidsym.pipeline import motion_of, read_spec
@@ -165,6 +165,11 @@ def test_an_axis_that_is_no_coordinate_axis_is_named_after_its_moment():
     drawing, is_principal = found
     assert not is_principal
     assert [label.symbol.text for label in drawing.labels] == ["I₁", "I₂", "I₃"]
+
+
+def test_expressions_of_a_drawing_may_hold_a_cotangent():
+    x = sp.Symbol("x")
+    assert evaluator(sp.cot(x) * sp.Abs(x), [x])([-0.3]) == pytest.approx(-0.3 / np.tan(0.3))
 
 
 def _area(points: tuple[tuple[float, float], ...]) -> float:

@@ -50,7 +50,8 @@ _SIZE = 0.95  # of the body drawn, from its centre of mass
 _LENGTHS = (1.0, 0.22, 0.3, 1.4, 0.6, 0.15, 0.8)  # of parameters without a value
 _TWO_LENGTHS = (0.6, 1.0)
 _MOST_TRIES = 500
-_IN_MATH = {"Abs": "fabs"}  # the functions that Python's math names otherwise
+# the functions that Python's math has not, or names otherwise
+_FUNCTIONS = {"Abs": math.fabs, "cot": lambda angle: 1 / math.tan(angle)}
 _ROUND, _CURVED = 24, 8  # divisions of a full circle, and of any other coordinate that bends
 SWELL = "1.01"  # of a hole, so that its rim is seen on the surface
 _THICK = 0.03  # half the width of a line
@@ -191,7 +192,8 @@ def evaluator(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> Evaluator:
     if expression.is_Pow:
         base, exponent = parts
         return lambda values: base(values) ** exponent(values)
-    function = getattr(math, _IN_MATH.get(expression.func.__name__, expression.func.__name__))
+    name = expression.func.__name__
+    function = _FUNCTIONS.get(name) or getattr(math, name)
     return lambda values: function(*(part(values) for part in parts))
 
 
