@@ -6,10 +6,9 @@ from collections.abc import Sequence
 
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
-from rigidsym.errors import ExpressionError, ModelError
+from rigidsym.errors import ModelError
 from rigidsym.models.rotation import DIEBEL, RotationModel, Turn, lecture, product_of
-from rigidsym.models.so3 import AXES, time_function
-from rigidsym.text.names import check_name
+from rigidsym.models.so3 import AXES, time_functions
 
 AXIS_SEQUENCES = tuple(
     first + second + third
@@ -38,7 +37,7 @@ def EulerAngles(
     different names.
     """
     letters = euler_sequence(sequence)
-    coordinates = tuple(time_function(name) for name in _three_names(angles))
+    coordinates = time_functions(angles, 3, "Euler angles need three different names")
     in_order = [
         Turn(axis=axis, angle=angle)
         for axis, angle in zip(letters.lower(), coordinates, strict=True)
@@ -80,18 +79,6 @@ def _what_is_wrong(text: str) -> str:
         return "expected three axes such as ZXZ (intrinsic), zxz (extrinsic) or 313 (intrinsic)"
     place = 1 if letters[0] == letters[1] else 2
     return f"consecutive axes must differ: {text[place]} follows {text[place - 1]}"
-
-
-def _three_names(angles: Sequence[str]) -> Sequence[str]:
-    if not isinstance(angles, Sequence):
-        raise ModelError(f"Euler angles need three different names, got {angles!r}")
-    try:
-        plain = [check_name(angle) for angle in angles]
-    except ExpressionError as error:
-        raise ModelError(str(error)) from error
-    if len(plain) != 3 or len(set(plain)) != 3:
-        raise ModelError(f"Euler angles need three different names, got {', '.join(plain)}")
-    return plain
 
 
 def _order_in_words(manner: str, turns: Sequence[Turn]) -> str:

@@ -14,10 +14,8 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.errors import ModelError
 from rigidsym.models.rotation import Citation, Pullback, RotationModel, lecture
-from rigidsym.models.so3 import hat, rodrigues, time_function
-from rigidsym.text.names import check_name
+from rigidsym.models.so3 import hat, rodrigues, time_functions
 
 _SHUSTER = Citation(
     text="M. Shuster, A Survey of Attitude Representations, Journal of the Astronautical "
@@ -228,12 +226,7 @@ def DirectionCosines(names: Sequence[str] = _COSINES, *, passive: bool = False) 
 
 
 def _coordinates(names: Sequence[str], count: int) -> tuple[sp.Expr, ...]:
-    """Functions of time; raises ModelError unless there are `count` different plain names."""
-    plain = [check_name(name) for name in names] if isinstance(names, Sequence) else []
-    if len(plain) != count or len(set(plain)) != count:
-        got = ", ".join(plain) or repr(names)
-        raise ModelError(f"expected {count} different names, got {got}")
-    return tuple(map(time_function, plain))
+    return time_functions(names, count, f"expected {count} different names")
 
 
 def _square(parts: Sequence[sp.Expr]) -> sp.Expr:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.adjoin import TIME
-from rigidsym.errors import ModelError
+from rigidsym.errors import ExpressionError, ModelError
+from rigidsym.text.names import check_name
 
 __all__ = ["AXES", "TIME", "elementary", "hat", "rodrigues", "symbolic", "time_function"]
-__all__ += ["as_typed", "depends_on_time"]
+__all__ += ["as_typed", "depends_on_time", "time_functions"]
 
 AXES = ("x", "y", "z")
 
@@ -19,6 +21,17 @@ AXES = ("x", "y", "z")
 def time_function(name: str) -> sp.Expr:
     """The function of time `name`(t), the same object that dynamicsymbols(name) gives."""
     return sp.Function(name)(TIME)
+
+
+def time_functions(names: Sequence[str], count: int, expected: str) -> tuple[sp.Expr, ...]:
+    """The functions of time of plain names; raises ModelError unless `count` different ones."""
+    try:
+        plain = [check_name(name) for name in names] if isinstance(names, Sequence) else []
+    except ExpressionError as error:
+        raise ModelError(str(error)) from error
+    if len(plain) != count or len(set(plain)) != count:
+        raise ModelError(f"{expected}, got {', '.join(plain) or repr(names)}")
+    return tuple(map(time_function, plain))
 
 
 def depends_on_time(value: sp.Basic) -> bool:
