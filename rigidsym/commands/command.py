@@ -19,18 +19,18 @@ if TYPE_CHECKING:
 else:  # generic from click 8.2 on
     _Type = click.ParamType
 
-_POSITIVE = click.FloatRange(min=0, min_open=True)
+POSITIVE = click.FloatRange(min=0, min_open=True)
 _LIMITS = (
     click.Option(
         ["--timeout"],
-        type=_POSITIVE,
+        type=POSITIVE,
         default=300.0,
         metavar="SECONDS",
         help="Stop after this time; inf for no limit.  [default: 300]",
     ),
     click.Option(
         ["--memory"],
-        type=_POSITIVE,
+        type=POSITIVE,
         default=4.0,
         metavar="GB",
         help="Stop when this much memory is needed; inf for no limit.  [default: 4]",
@@ -64,6 +64,7 @@ class _NamedNumber(_Type):
 
 
 NAMES, NAMED_NUMBER = _Names(), _NamedNumber()
+EXISTING_FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 FILE = click.Path(dir_okay=False, path_type=Path)
 _OPTION = "click option"
 

@@ -14,7 +14,7 @@ import click
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rigidsym.commands.command import NAMES, command as make, option, with_options
+from rigidsym.commands.command import EXISTING_FILE, NAMES, command as make, option, with_options
 from rigidsym.system.progress import bar
 from rigidsym.tools.identify.identification import identify_file, identify_source
 from rigidsym.tools.identify.readings import ANGLE_NAMES
@@ -63,12 +63,7 @@ class IdentifyOptions:
 
 
 @make("rigidsym identify --angles roll=10,pitch=20,yaw=30 --quaternion 0.95,0.04,0.19,0.24")
-@click.argument(
-    "file",
-    required=False,
-    metavar="[FILE]",
-    type=click.Path(exists=True, dir_okay=False, path_type=Path),
-)
+@click.argument("file", required=False, metavar="[FILE]", type=EXISTING_FILE)
 @with_options(IdentifyOptions)
 @click.pass_context
 def command(context: click.Context, file: Path | None, options: IdentifyOptions) -> None:

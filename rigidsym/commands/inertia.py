@@ -8,24 +8,22 @@ from pathlib import Path
 
 import click
 
-from rigidsym.commands.command import NAMES, command as make, message
+from rigidsym.commands.command import EXISTING_FILE, NAMES, POSITIVE, command as make, message
 from rigidsym.data.mass.mesh import ENDINGS, mesh_inertia, read_mesh_file
 from rigidsym.data.mass.point_masses import inertia_of
 from rigidsym.data.mass.properties import MassProperties
 from rigidsym.system.progress import bar
 
-_POSITIVE = click.FloatRange(min=0, min_open=True)
-
 
 @make("rigidsym inertia cloud.npy\n         rigidsym inertia part.stl --density 2700 --scale 0.001")
-@click.argument("file", type=click.Path(exists=True, dir_okay=False, path_type=Path))
+@click.argument("file", type=EXISTING_FILE)
 @click.option(
     "--columns", type=NAMES, metavar="NAME,...", help="Column order of particles, such as x,y,z,m."
 )
-@click.option("--mass", type=_POSITIVE, metavar="KG", help="Mass of a uniform mesh.")
-@click.option("--density", type=_POSITIVE, metavar="KG/M3", help="Density of a uniform mesh.")
+@click.option("--mass", type=POSITIVE, metavar="KG", help="Mass of a uniform mesh.")
+@click.option("--density", type=POSITIVE, metavar="KG/M3", help="Density of a uniform mesh.")
 @click.option(
-    "--scale", type=_POSITIVE, metavar="M", help="Length unit of a mesh in metres.  [default: 1]"
+    "--scale", type=POSITIVE, metavar="M", help="Length unit of a mesh in metres.  [default: 1]"
 )
 @click.option("--scheduler", metavar="ADDRESS", help="Use a Dask cluster that sees the NPY file.")
 @click.option("--allow", is_flag=True, help="Accept negative masses and open meshes.")

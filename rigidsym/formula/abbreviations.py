@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import chain, islice
+from itertools import islice
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -80,7 +80,8 @@ class Namer:
         """The parts that are long and come up again; all others are written out."""
         written: dict[sp.Symbol, sp.Expr] = {}
         parts: list[Part] = []
-        times = _counted([*(value for _, value in found), *entries])
+        written_down = sp.Tuple(*(value for _, value in found), *entries)
+        times = Counter(node for node in sp.preorder_traversal(written_down) if node.is_Symbol)
         for symbol, value in found:
             whole = value.xreplace(written)
             if self._is_worth_it(whole, times[symbol]):
@@ -145,12 +146,6 @@ def _free_letter(letters: Letters) -> str:
 def _label(symbol: sp.Expr) -> str:
     base = symbol.expr if symbol.is_Derivative else symbol
     return base.func.__name__ if isinstance(base, AppliedUndef) else str(base)
-
-
-def _counted(expressions: Iterable[sp.Expr]) -> Counter[sp.Expr]:
-    """How often each symbol is written in them together."""
-    nodes = chain.from_iterable(map(sp.preorder_traversal, expressions))
-    return Counter(node for node in nodes if node.is_Symbol)
 
 
 def _unbreakable(expression: sp.Expr) -> Iterator[sp.Expr]:

@@ -43,7 +43,8 @@ def chain(
             raise ModelError(f"expected a list of rs.Turn, got {turn!r} in it")
     if not turns:
         raise ModelError("a chain needs at least one turn, such as z(phi)")
-    coordinates = _coordinates(turns)
+    moving = (sp.ordered(turn.angle.atoms(AppliedUndef)) for turn in turns)
+    coordinates = tuple(dict.fromkeys(atom for atoms in moving for atom in atoms))
     if not coordinates:
         raise ModelError(
             f"{' '.join(map(str, turns))} does not move: expected an angle that is a function "
@@ -62,14 +63,6 @@ def chain(
         source=source,
         passive=passive,
     )
-
-
-def _coordinates(turns: Iterable[Turn]) -> tuple[sp.Expr, ...]:
-    found: dict[sp.Expr, None] = {}
-    for turn in turns:
-        for atom in sp.ordered(turn.angle.atoms(AppliedUndef)):
-            found[atom] = None
-    return tuple(found)
 
 
 def _unit_axes(turns: Iterable[Turn]) -> tuple[sp.Expr, ...]:

@@ -84,9 +84,7 @@ def _what_is_wrong(text: str) -> str:
 def _order_in_words(manner: str, turns: Sequence[Turn]) -> str:
     """The turns in the order in which the body makes them."""
     angles = [pretty_symbol(turn.angle.func.__name__) for turn in turns]
-    if manner == "extrinsic":
-        about = [f"{a} about the fixed {t.axis}" for a, t in zip(angles, turns, strict=True)]
-    else:
-        about = [f"{a} about the turned {t.axis}" for a, t in zip(angles, turns, strict=True)]
-        about[0] = about[0].replace("the turned ", "")
+    axes = [f"the {'fixed' if manner == 'extrinsic' else 'turned'} {turn.axis}" for turn in turns]
+    axes[0] = axes[0].replace("the turned ", "")
+    about = [f"{angle} about {axis}" for angle, axis in zip(angles, axes, strict=True)]
     return f"{manner.capitalize()} turns: first {about[0]}, then {about[1]}, then {about[2]}."

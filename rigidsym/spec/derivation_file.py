@@ -13,7 +13,7 @@ from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.forces import forces_on
 from rigidsym.models.rotation import RotationModel
 from rigidsym.spec.body_table import read_body
-from rigidsym.spec.derivation_spec import Body, DerivationSpec, fault_of_name, fault_of_title
+from rigidsym.spec.derivation_spec import DerivationSpec, fault_of_name, fault_of_title
 from rigidsym.spec.faults import Faults, Source, shortened
 from rigidsym.spec.rotation_table import KEYS, read_rotation
 from rigidsym.spec.tables import MOST_CHARACTERS, Table, read_toml
@@ -132,8 +132,11 @@ class _Reader:
         theory = bool(table.flag("theory"))
         if theory and any(model.passive for model in models):
             table.fault("the theory is written for active rotations; remove passive", "theory")
+        body, parameters = table.table("body"), table.table("parameters")
+        if body is None and table.value("parameters") is not None:
+            table.fault("parameters go with a [body]", "parameters")
         choices = {
-            "body": _read_body(table, name, folder),
+            "body": body and read_body(body, parameters, name, folder),
             **_read_dynamics(table, models),
             "notation": self.notation(table),
             "text": self.text(table),
@@ -292,16 +295,6 @@ def _expressions(table: Table, key: str) -> list[str]:
         return value
     table.mistyped(value, "a list of three texts in quotes", key)
     return []
-
-
-def _read_body(table: Table, name: str, folder: Path | None) -> Body | None:
-    """The body of [body] in the symbols of [parameters]."""
-    body, parameters = table.table("body"), table.table("parameters")
-    if body is not None:
-        return read_body(body, parameters, name, folder)
-    if table.value("parameters") is not None:
-        table.fault("parameters go with a [body]", "parameters")
-    return None
 
 
 def _read_bytes(path: Path) -> bytes:

@@ -82,7 +82,17 @@ class Conversions:
     @cached_property
     def quaternion(self) -> Step | None:
         """The unit quaternion; None if it has no formula of its own, but is taken from R."""
-        return _forward(self.model, self._form)
+        model, form = self.model, self._form
+        if form is not None:
+            return _of_form(model, form) if form.quaternion else None
+        if not model.turns or len(model.turns) > LONGEST_CHAIN:
+            return None
+        try:
+            step = _step_of_turns(model)
+        except AlgebraError:  # half of a fixed angle need not have a sine that is a root
+            return None
+        # Where it is a root of a root, the ring may not know that; R, which is proved, is taken.
+        return step if all(proof.is_exact for proof in step.proofs) else None
 
     @property
     def because(self) -> Sentence:
@@ -108,8 +118,13 @@ class Conversions:
 
     @cached_property
     def variants(self) -> tuple[Step, ...]:
-        """Quantities in a shorter form, for coordinates that obey more."""
-        return _unit_variants(self.model, self._form)
+        """Quantities of a quaternion of any length, for those who know that its length is one."""
+        model, form = self.model, self._form
+        if form is None or form.rule != "quaternion" or model.constraints:
+            return ()
+        names = [model.coordinates[place].func.__name__ for place in form.order]
+        unit = UnitQuaternion(names, scalar_last=form.is_scalar_last, passive=model.passive)
+        return tuple(map(_of_unit_length, map(derive(unit).step, _OF_UNIT_LENGTH)))
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
@@ -121,38 +136,12 @@ class Conversions:
         return all(proof.is_exact for proof in self.proofs)
 
 
-def _unit_variants(model: RotationModel, form: ClosedForm | None) -> tuple[Step, ...]:
-    """What a quaternion of any length is good for, for those who know that its length is one."""
-    if form is None or form.rule != "quaternion" or model.constraints:
-        return ()
-    names = [model.coordinates[place].func.__name__ for place in form.order]
-    unit = UnitQuaternion(names, scalar_last=form.order[0] != 0, passive=model.passive)
-    steps = (derive(unit).step(name) for name in _OF_UNIT_LENGTH)
-    return tuple(
-        replace(
-            step,
-            number=0,
-            quantity=step.quantity._replace(
-                name=step.quantity.name + UNIT,
-                about=f"{step.quantity.about}, for a quaternion of length one",
-            ),
-        )
-        for step in steps
+def _of_unit_length(step: Step) -> Step:
+    quantity = step.quantity
+    about = f"{quantity.about}, for a quaternion of length one"
+    return replace(
+        step, number=0, quantity=quantity._replace(name=quantity.name + UNIT, about=about)
     )
-
-
-def _forward(model: RotationModel, form: ClosedForm | None) -> Step | None:
-    """The unit quaternion as a formula in the coordinates; None where R has to be taken apart."""
-    if form is not None:
-        return _of_form(model, form) if form.quaternion else None
-    if not model.turns or len(model.turns) > LONGEST_CHAIN:
-        return None
-    try:
-        step = _step_of_turns(model)
-    except AlgebraError:  # half of a fixed angle need not have a sine that is a root
-        return None
-    # Where it is a root of a root, the ring may not know that: R, which is proved, is taken apart.
-    return step if all(proof.is_exact for proof in step.proofs) else None
 
 
 def _of_form(model: RotationModel, form: ClosedForm) -> Step:

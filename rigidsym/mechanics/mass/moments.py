@@ -310,7 +310,11 @@ def _(given: Polyhedron) -> Moments:
             both = ring.dot([(total[i], total[j])])
             inside = own * codec.encode(square - mixed) + both * codec.encode(mixed)
             second[place] += ring.dot([(six, inside)])
-    _refuse_inverted(codec, volume)
+    value = codec.decode(volume)
+    if value.is_number and value < 0:
+        raise BodyError(
+            f"the surface is inside out: its volume is {float(value):.6g} m³; turn its faces over"
+        )
     scale = _scale(codec, given, volume)
     if given.density is not None:
         scale = codec.encode_quotient(given.density)
@@ -329,14 +333,6 @@ def _triangles(
             if RingMatrix.of(codec.ring, [sides[0], sides[1], side]).det():
                 raise BodyError(f"face {number}: corner {face[place]} is not in its plane")
         yield from ([first, a, b] for a, b in pairwise(others))
-
-
-def _refuse_inverted(codec: Codec, volume: PolyElement) -> None:
-    value = codec.decode(volume)
-    if value.is_number and value < 0:
-        raise BodyError(
-            f"the surface is inside out: its volume is {float(value):.6g} m³; turn its faces over"
-        )
 
 
 def _presented(

@@ -84,7 +84,12 @@ def _single(found: Identification, answer: Answer) -> Iterator[str]:
     same, *others = answer.aliases
     yield from _wrapped("= " + same.brief(found.names), "")
     yield ""
-    yield from _facts(found, answer)
+    kind = "matrix =" if answer.reading.scalar_last is None else "quaternion of"
+    yield f"{kind} {answer.reading.product(found.names)}"
+    yield f"fits {_samples(found.samples)}: {_residual(answer)}"
+    yield f"tolerance {_tolerance(found)}"
+    if found.converted:
+        yield f"converted to {answer.reading.unit}: {', '.join(found.converted)}"
     if others:
         yield ""
         yield "Equivalent descriptions:"
@@ -92,15 +97,6 @@ def _single(found: Identification, answer: Answer) -> Iterator[str]:
         yield from _wrapped(reading.brief(found.names), "  ")
     yield ""
     yield from _calls(answer)
-
-
-def _facts(found: Identification, answer: Answer) -> Iterator[str]:
-    is_matrix = answer.reading.scalar_last is None
-    yield f"{'matrix =' if is_matrix else 'quaternion of'} {answer.reading.product(found.names)}"
-    yield f"fits {_samples(found.samples)}: {_residual(answer)}"
-    yield f"tolerance {_tolerance(found)}"
-    if found.converted:
-        yield f"converted to {answer.reading.unit}: {', '.join(found.converted)}"
 
 
 def _calls(answer: Answer) -> Iterator[str]:

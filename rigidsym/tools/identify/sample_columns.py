@@ -8,7 +8,6 @@ from difflib import get_close_matches
 from itertools import chain
 
 from rigidsym.data.columns import ColumnNames, counted
-from rigidsym.errors import DataError
 from rigidsym.tools.identify.readings import ANGLE_NAMES
 from rigidsym.tools.identify.samples import SampleError
 from rigidsym.tools.spellings import (
@@ -76,16 +75,11 @@ def by_name(names: Sequence[str]) -> Columns:
     """The columns that a header names; others are not read.
 
     Angles, and quaternions whose names do not tell which is the scalar, keep the order of the
-    file. Raises SampleError for missing columns, with the nearest names that are there, for two
-    columns of one name, and for units that are not those of angles and their rates.
+    file. Raises SampleError for missing columns, with the nearest names that are there, and
+    DataError for two columns of one name and for units that are not those of angles and their
+    rates.
     """
-    try:
-        return _by_name(ColumnNames(names))
-    except DataError as error:
-        raise error if isinstance(error, SampleError) else SampleError([str(error)]) from None
-
-
-def _by_name(header: ColumnNames) -> Columns:
+    header = ColumnNames(names)
     angles = tuple(sorted(_nearest(ANGLES, header), key=_order(header)))
     attitude = _attitude(header)
     rates, omega = _rates_of(angles, header), _nearest(OMEGAS, header)

@@ -19,7 +19,8 @@ class ReadingTable:
     def __init__(self, readings: Sequence[Reading]) -> None:
         self.readings = tuple(readings)
         turns = [reading.active().intrinsic() for reading in self.readings]
-        self._sequences = _places([turn.sequence for turn in turns])
+        sequences = np.array([turn.sequence for turn in turns])
+        self._sequences = {s: np.flatnonzero(sequences == s) for s in dict.fromkeys(sequences)}
         self._columns = np.array([turn.columns for turn in turns]).T
         self._signs = np.array([turn.signs for turn in turns], float).T
         self._units = np.array([int(turn.degrees) for turn in turns])
@@ -79,11 +80,6 @@ class ReadingTable:
             space, body = (side[:, None] for side in self._frames)
             found = times(times(space, found), body)
         return found
-
-
-def _places(keys: Sequence[str]) -> dict[str, NDArray[np.intp]]:
-    """The positions of each key."""
-    return {key: np.flatnonzero(np.array(keys) == key) for key in dict.fromkeys(keys)}
 
 
 def _then_about(axis: int, turn: Array, cosine: Array, sine: Array) -> Array:
