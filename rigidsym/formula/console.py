@@ -99,7 +99,7 @@ class Console:
         """A value behind a head; where it is long, its other lines hang below its start."""
         room = self.width - columns(head)
         first, *others = break_lines(self.pen.write(value), room, len(INDENT), self.pen.blank)
-        hanging = (" " * columns(head) + INDENT * line.depth + line.text for line in others)
+        hanging = (" " * columns(head) + INDENT * line.level + line.text for line in others)
         return [head + first.text, *hanging]
 
 

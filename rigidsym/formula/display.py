@@ -15,7 +15,7 @@ import sympy as sp
 
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.pen import Line, break_lines
+from rigidsym.formula.pen import Segment, break_lines
 from rigidsym.formula.scalars import factored, formula_of, listed_entries, matrix_of
 from rigidsym.formula.sheet_pen import Aligned, SheetPen
 from rigidsym.formula.tree import EQUALS, Formula, Matrix, equal, row
@@ -153,7 +153,7 @@ def pack(equations: Sequence[Equation], letters: Letters, width: float, pen: She
     return lines[0] if len(lines) == 1 else pen.gathered(lines, True)
 
 
-def broken(formula: Formula, width: float, pen: SheetPen) -> list[Line]:
+def broken(formula: Formula, width: float, pen: SheetPen) -> list[Segment]:
     """The lines of a formula; within high brackets it is broken only if nothing else will do."""
     lines = break_lines(pen.write(formula), width, QUAD)
     if widest(lines) <= width:
@@ -162,10 +162,10 @@ def broken(formula: Formula, width: float, pen: SheetPen) -> list[Line]:
     return min(lines, loose, key=widest)
 
 
-def widest(lines: Sequence[Line]) -> float:
+def widest(lines: Sequence[Segment]) -> float:
     """The width of the widest line; those after the first are indented."""
     first, *others = lines
-    return max(first.width, *(QUAD * (1 + line.depth) + line.width for line in others), 0.0)
+    return max(first.width, *(QUAD * (1 + line.level) + line.width for line in others), 0.0)
 
 
 class _Setter:
@@ -286,11 +286,11 @@ class _Setter:
             first, *others = hung = self._hung(formula, room)
             tall = self.pen.write(formula).height
             lines.append(Aligned("", first.text, "=", height=tall))
-            lines += [Aligned("", line.text, indent=1 + line.depth, height=tall) for line in others]
+            lines += [Aligned("", line.text, indent=1 + line.level, height=tall) for line in others]
             needed = max(needed, widest(hung))
         return lines, needed
 
-    def _hung(self, formula: Formula, room: float) -> list[Line]:
+    def _hung(self, formula: Formula, room: float) -> list[Segment]:
         """The lines of a formula that fit with their indents, as far as they can be broken."""
         for indents in range(1, _MOST_INDENTS):
             lines = broken(formula, room - indents * QUAD, self.pen)

@@ -44,11 +44,11 @@ class Height(IntEnum):
 
 
 class Segment(NamedTuple):
-    """Part of a line that is never broken; a line may end before it."""
+    """Part of a line that is never broken (a line may end before it), or a whole line."""
 
     text: str
     width: float
-    level: int = 0  # in how many brackets the sign stands that it starts with
+    level: int = 0  # in how many brackets it starts
 
 
 _EMPTY = Segment("", 0.0)
@@ -232,22 +232,14 @@ def _binding(parts: Sequence[tree.Formula]) -> Binding:
     return Binding.QUOTIENT if signs else Binding.PRODUCT
 
 
-class Line(NamedTuple):
-    """One line of a broken formula, and in how many open brackets it starts."""
-
-    text: str
-    width: float
-    depth: int = 0
-
-
-def break_lines(piece: Piece, width: float, indent: float, blank: float = 0.0) -> list[Line]:
+def break_lines(piece: Piece, width: float, indent: float, blank: float = 0.0) -> list[Segment]:
     """The lines of a formula; each after the first starts with its sign.
 
     `indent` is what a line loses for each open bracket, `blank` the width between two chunks.
     What has no place to break stays whole, so that a line may still be too wide.
     """
     return [
-        Line(
+        Segment(
             " ".join(chunk.text for chunk in chunks),
             _width(chunks, blank),
             0 if not place else chunks[0].level % DIVISOR + chunks[0].level // DIVISOR,

@@ -16,7 +16,7 @@ from rigidsym.errors import AlgebraError
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.mathml_pen import MathmlPen
-from rigidsym.formula.pen import Line, break_lines
+from rigidsym.formula.pen import Segment, break_lines
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import factored
 from rigidsym.formula.tree import Big, Symbol
@@ -272,7 +272,7 @@ LONG = (
 )
 
 
-def lines_of(typed: str, width: float, indent: float = 2) -> list[Line]:
+def lines_of(typed: str, width: float, indent: float = 2) -> list[Segment]:
     return break_lines(UnicodePen().write(formula(typed)), width, indent, UnicodePen.blank)
 
 
@@ -310,7 +310,7 @@ def test_lines_break_before_signs_in_the_outermost_bracket(width, lines):
 
 
 def test_a_line_inside_a_bracket_knows_how_deep_it_is():
-    assert [line.depth for line in lines_of(LONG, 30)] == [0, 1, 0, 0]
+    assert [line.level for line in lines_of(LONG, 30)] == [0, 1, 0, 0]
 
 
 def test_a_divisor_is_broken_where_nothing_else_can_be():
