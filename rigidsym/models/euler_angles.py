@@ -20,7 +20,7 @@ AXIS_SEQUENCES = tuple(
 EULER_SEQUENCES = tuple(s.upper() for s in AXIS_SEQUENCES) + AXIS_SEQUENCES
 DEFAULT_ANGLES = ("phi", "theta", "psi")
 
-_DIGITS = str.maketrans("123", "XYZ")
+DIGITS = str.maketrans("123", "XYZ")  # of a sequence, which are letters in upper case
 _ZXZ_SOURCE = lecture("17", "section 3.2")
 
 
@@ -65,14 +65,14 @@ def euler_sequence(text: str) -> str:
     """The sequence in letters: `313` becomes `ZXZ`. Raises ModelError for any other text."""
     if not isinstance(text, str):
         raise ModelError(f"expected a sequence such as 'ZXZ', got {text!r}")
-    letters = text.translate(_DIGITS)
+    letters = text.translate(DIGITS)
     if letters not in EULER_SEQUENCES:
         raise ModelError(f"{text!r} is not an Euler sequence: {_what_is_wrong(text)}")
     return letters
 
 
 def _what_is_wrong(text: str) -> str:
-    letters = text.translate(_DIGITS)
+    letters = text.translate(DIGITS)
     if letters not in (letters.upper(), letters.lower()):
         return "upper case is intrinsic and lower case extrinsic; do not mix them"
     if len(letters) != 3 or not set(letters.lower()) <= set(AXES):

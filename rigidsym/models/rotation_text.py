@@ -17,6 +17,7 @@ from rigidsym.errors import BodyError, ExpressionError, ModelError
 from rigidsym.models.chain import axis_turn, chain, direction
 from rigidsym.models.euler_angles import (
     DEFAULT_ANGLES,
+    DIGITS,
     EULER_SEQUENCES,
     EulerAngles,
     euler_sequence,
@@ -31,7 +32,6 @@ from rigidsym.text.names import check_name
 LONGEST = 900  # characters of a sequence or of turns
 _AT_REST = re.compile(r".*\D0")  # a name that ends in 0: alpha0, b_0; not a_10
 _SHOWN = 40  # characters of a wrong text that a message repeats
-_AXES_OF_DIGITS = str.maketrans("123", "XYZ")
 ALIASES = {"mrp": "modified_rodrigues", "quat": "quaternion", "rotvec": "rotation_vector"}
 _A_ROTATION = 'a sequence such as "ZXZ", turns such as "z(phi) x(theta)", or a name'
 
@@ -172,7 +172,7 @@ def request_of(model: RotationModel) -> Mapping[str, Any]:
 
 def _sequence(text: str) -> str:
     """The Euler sequence in a text; for any other text, what it may have meant."""
-    letters = text.translate(_AXES_OF_DIGITS)
+    letters = text.translate(DIGITS)
     if len(letters) == 3 and set(letters.lower()) <= {"x", "y", "z"}:
         return euler_sequence(text)
     shown = text if len(text) <= _SHOWN else text[:_SHOWN] + "…"

@@ -23,14 +23,12 @@ class Source:
     lines: Mapping[Path, int] = field(default_factory=dict)
 
     def fault(self, path: Path, message: str) -> Fault:
+        """A fault at a key, with its line or that of the table that lacks it; 0 without either."""
+        known = path
+        while known and known not in self.lines:
+            known = known[:-1]
         one_line = message.replace("\n", "; ")
-        return Fault(line=self._line(path), path=dotted(path), message=one_line)
-
-    def _line(self, path: Path) -> int:
-        """The line of a key, or of the table that lacks it; 0 if neither is in the file."""
-        while path and path not in self.lines:
-            path = path[:-1]
-        return self.lines.get(path, 0)
+        return Fault(line=self.lines.get(known, 0), path=dotted(path), message=one_line)
 
 
 class Faults:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
-from rigidsym.models.euler_angles import DEFAULT_ANGLES, EULER_SEQUENCES
+from rigidsym.models.euler_angles import DEFAULT_ANGLES, DIGITS, EULER_SEQUENCES
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import faults_in, rotation_from, rotation_given
 from rigidsym.spec.derivation_spec import repeated
@@ -20,7 +20,6 @@ KEYS = (*_OF_SEQUENCES, "matrix", *_OF_MATRICES, "passive")
 A_SEQUENCE = 'a sequence such as "ZXZ", or a list of sequences'
 _THREE_NAMES = 'a list of three names such as ["phi", "theta", "psi"]'
 _NAMES = 'a list of names such as ["phi", "theta"]'
-_DIGITS = str.maketrans("123", "XYZ")
 _ROWS = "three rows of three expressions"
 
 
@@ -39,7 +38,7 @@ def read_rotation(table: Table, name: str) -> list[RotationModel]:
     sequences = _read_sequences(table)
     angles = _read_angles(
         table,
-        is_euler=any(text.translate(_DIGITS) in EULER_SEQUENCES for text in sequences.values()),
+        is_euler=any(text.translate(DIGITS) in EULER_SEQUENCES for text in sequences.values()),
     )
     models: dict[Place, RotationModel] = {}
     for at, text in sequences.items():

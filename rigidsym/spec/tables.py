@@ -46,10 +46,7 @@ class Table:
 
     def noting(self, *at: str | int) -> _Noting:
         """Note an error from inside as a fault at a path, unless a fault inside has led to it."""
-        return _Noting(self, at, len(self._faults))
-
-    def has_more_faults(self, than: int) -> bool:
-        return len(self._faults) > than
+        return _Noting(self._faults, (*self.path, *at), len(self._faults))
 
     def refuse_others(self, known: Sequence[str], hints: Mapping[str, str] | None = None) -> None:
         """Note every key that is not known; a hint replaces the nearest name."""
@@ -134,9 +131,9 @@ class Table:
 class _Noting(NamedTuple):
     """A block whose errors become faults, and which is then left."""
 
-    table: Table
+    faults: Faults
     at: Path
-    faults_before: int
+    before: int  # faults that were noted
 
     def __enter__(self) -> None:
         pass
@@ -144,9 +141,9 @@ class _Noting(NamedTuple):
     def __exit__(self, _kind: object, error: BaseException | None, _trace: object) -> bool:
         if not isinstance(error, RigidsymError) or isinstance(error, MissingExtra):
             return False
-        if not self.table.has_more_faults(self.faults_before):
+        if len(self.faults) == self.before:
             column = error.column if isinstance(error, ExpressionError) else 1
-            self.table.fault(f"column {column}: {error}" if column > 1 else str(error), *self.at)
+            self.faults.add(self.at, f"column {column}: {error}" if column > 1 else str(error))
         return True
 
 

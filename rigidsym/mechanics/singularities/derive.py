@@ -108,8 +108,9 @@ class _Study:
         self, matrix: RingMatrix, zero: Zero, rank: int, minors: Sequence[PolyElement]
     ) -> tuple[list[Singularity], bool]:
         """The points at which the rank falls, and further on those at which it falls again."""
-        is_never_less = any(minor.is_ground for minor in minors) or self._is_never_zero(minors)
-        if not rank or is_never_less:
+        if not rank or any(minor.is_ground for minor in minors):
+            return [], True
+        if len(minors) > 1 and self.solver.is_never_zero(self._sum(minors)):
             return [], True
         zeros, is_solved = self.solver.common(minors)
         points: list[Singularity] = []
@@ -145,10 +146,6 @@ class _Study:
         except ModelError:
             return None
         return True
-
-    def _is_never_zero(self, minors: Sequence[PolyElement]) -> bool:
-        """Whether the sum of the squares of several minors tells that one is not zero."""
-        return len(minors) > 1 and self.solver.is_never_zero(self._sum(minors))
 
     def _point(self, zero: Zero, there: RingMatrix, full: int) -> Singularity:
         rank = full - self.bound_rank

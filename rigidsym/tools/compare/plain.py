@@ -195,8 +195,8 @@ class _TexWalk:
                 parts.append("*" if token == r"\cdot" else token)
             else:
                 parts += ["*"] * (bool(parts) and parts[-1] not in "+-*/") + [self._power()]
-        if end:
-            self._expect(end)
+        if end and (not self.tokens or self.tokens.pop() != end):
+            raise ExpressionError(f"expected {end} in LaTeX")
         return "".join(parts)
 
     def _power(self) -> str:
@@ -255,7 +255,3 @@ class _TexWalk:
         while argument.isdigit() and self.tokens and self.tokens[-1][0] == "\\":  # sin 2 theta
             argument += "*" + self._power()
         return f"{function}({argument}){power}"
-
-    def _expect(self, token: str) -> None:
-        if not self.tokens or self.tokens.pop() != token:
-            raise ExpressionError(f"expected {token} in LaTeX")

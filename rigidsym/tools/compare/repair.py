@@ -175,17 +175,14 @@ def _exchanged(reading: Meaning, one: tuple[int, int], two: tuple[int, int]) -> 
     changed[one], changed[two] = changed[two], changed[one]
     if not reading.agrees(changed, reading.goal):
         return None
-    words = f"entries {_place(one)} and {_place(two)} are exchanged"
+    words = f"entries {_from1(one)} and {_from1(two)} are exchanged"
     fixed = sp.ImmutableMatrix(changed)
     return Repair(kind="exchange", words=words, formula=fixed, goal=reading.goal, place=_from1(one))
 
 
 def _from1(place: tuple[int, int]) -> tuple[int, int]:
+    """A place counted from 1, as people do."""
     return place[0] + 1, place[1] + 1
-
-
-def _place(place: tuple[int, int]) -> str:
-    return f"({place[0] + 1}, {place[1] + 1})"
 
 
 def _entry(reading: Meaning, place: tuple[int, int]) -> Repair:
@@ -214,7 +211,7 @@ def _entry(reading: Meaning, place: tuple[int, int]) -> Repair:
     before = formula[place]
     changed = reading.formula.as_mutable()
     changed[place] = after
-    words = f"entry {_place(place)}: {before} should be {after}"
+    words = f"entry {_from1(place)}: {before} should be {after}"
     if kind != "entry":
         words += f" ({_KINDS[kind]})"
     return Repair(
