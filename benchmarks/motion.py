@@ -82,7 +82,8 @@ def run(settings: Settings) -> Report:
         )
         for name, row in derived.items()
     ]
-    return Report(title="Motion", tables=tuple(tables), figures=tuple(figures))
+    cost = tables[-2]
+    return Report(title="Motion", tables=tuple(tables), figures=tuple(figures), documented=cost)
 
 
 # derivation

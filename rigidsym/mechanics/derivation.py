@@ -119,6 +119,7 @@ class Consequence(NamedTuple):
     left: Formula | sp.Expr
     value: Formula | sp.Expr
     proofs: tuple[Proof, ...] = ()
+    where: tuple[tuple[Formula | sp.Expr, sp.Expr], ...] = ()  # symbols of it with their values
 
 
 class StepPrinter(Protocol):

@@ -144,15 +144,12 @@ class Cosine:
         return Consequence(
             title="Nutation in elliptic functions",
             text="Let {} be the roots of $f$. The motion goes to and fro between the first two. "
-            "Substitution shows, with {} = {}, {} = {} and the time beginning at {}, that",
-            spans=(
-                formula(r"u_1 \le u_2 \le u_3"),
-                *(_LAMBDA**2, rate_squared.xreplace({a: lead}), _MODULUS**2, modulus),
-                one,
-            ),
+            "Let the time begin at {}. Substitution shows that",
+            spans=(formula(r"u_1 \le u_2 \le u_3"), one),
             left=self._cosine,
             value=u.xreplace({sn: sp.Function("sn")(_LAMBDA * TIME, _MODULUS)}),
             proofs=(self._identity(residual, self.of_cosine),),
+            where=((_LAMBDA**2, rate_squared.xreplace({a: lead})), (_MODULUS**2, modulus)),
         )
 
     def _rising(self, f: sp.Poly) -> Iterator[Consequence]:

@@ -79,13 +79,19 @@ def _principal_axes(
         a, b = (sp.diff(slopes[n], OMEGA_BODY[o]).xreplace(steady) for n, o in ((i, j), (j, i)))
         own, one, other = inertia[k, k], inertia[i, i], inertia[j, j]
         squared = spin**2 * (own - one) * (other - own) / (one * other)
+        if one == other:
+            squared = -((spin * (own - one) / one) ** 2)
         if squared == 0:
             continue
+        grows = (
+            "does not grow, since {} is negative:"
+            if one == other
+            else "grows if {} is positive, as it is for the intermediate one of three moments only:"
+        )
         yield Consequence(
             title=title,
             text=f"A small deviation from the rotation about the {axis} axis at the rate {{}} is "
-            "proportional to {}. It grows if {} is positive, as it is for the intermediate one of "
-            "three moments only:"
+            f"proportional to {{}}. It {grows}"
             if title
             else f"About the {axis} axis,",
             spans=(spin, formula(r"\exp(\lambda t)"), claims.SQUARED_RATE) if title else (),
@@ -129,13 +135,12 @@ def _in_space(inertia: sp.ImmutableMatrix, name: str) -> Consequence:
     return Consequence(
         title="The symmetric body in space",
         text="The angular momentum is a sum of multiples of {} and of the axis of symmetry {}, so "
-        "that these three are in one plane. It turns about {} (regular precession). With the third "
-        "axis of space along {}, the orientation is that of two turns at constant rates, with {} = "
-        "{}, the rate of precession {} = {} and the spin {} = {}:",
+        "that these three are in one plane, which turns about {} (regular precession). With the "
+        "third axis of space along {}, the orientation is that of two turns at constant rates, the "
+        "precession {} and the spin {}:",
         spans=(
             *(SPACE.omega, formula(r"\mathbf{e}'_3"), claims.MOMENTUM, claims.MOMENTUM),
-            *(formula(r"\cos\beta"), cosine, claims.PRECESSION_RATE, precession),
-            *(formula(r"\dot{\gamma}"), spin),
+            *(claims.PRECESSION_RATE, formula(r"\dot{\gamma}")),
         ),
         left=formula(r"\mathbf{R}(t)"),
         value=formula(
@@ -144,6 +149,11 @@ def _in_space(inertia: sp.ImmutableMatrix, name: str) -> Consequence:
             )
         ),
         proofs=(identity(residual, claims.CONSTANT_MOMENTUM, name),),
+        where=(
+            (formula(r"\cos\beta"), cosine),
+            (claims.PRECESSION_RATE, precession),
+            (formula(r"\dot{\gamma}"), spin),
+        ),
     )
 
 
@@ -166,17 +176,13 @@ def _elliptic(inertia: sp.ImmutableMatrix, name: str) -> Consequence:
     values = [*squares, (formula(r"\tau^2"), rate), (formula("k^2"), modulus)]
     return Consequence(
         title="The asymmetric body in elliptic functions",
-        text="Let {} < {} < {} and {} < {}. Substitution shows that, with "
-        + ", ".join(["{} = {}"] * len(values))
-        + " and the time beginning where {} is 0, Euler's equations have the solution",
-        spans=(
-            *(A, B, C, 2 * energy * B, _LENGTH**2),
-            *(part for pair in values for part in pair),
-            formula(r"\Omega'_2"),
-        ),
+        text="Let {} < {} < {} and {} < {}, and let the time begin where {} is 0. Substitution "
+        "shows that Euler's equations have the solution",
+        spans=(*(A, B, C, 2 * energy * B, _LENGTH**2), formula(r"\Omega'_2")),
         left=BODY.omega,
         value=claims.IN_ELLIPTIC_FUNCTIONS,
         proofs=(identity(sp.ImmutableMatrix(residual), claims.EULER_FREE, name),),
+        where=tuple(values),
     )
 
 
@@ -192,14 +198,15 @@ def _orientation(inertia: sp.ImmutableMatrix, name: str) -> Consequence:
     residual = turning - rate.xreplace({energy: twice / 2})
     return Consequence(
         title="",
-        text="With the third axis of space along {}, the orientation follows from {}, with {} = {} "
-        "and {} = {}. It needs one quadrature, an elliptic integral of the third kind: {} = {}.",
-        spans=(
-            *(claims.MOMENTUM, claims.MOMENTUM_IN_BODY),
-            *(formula(r"\cos\beta"), C * three / length, formula(r"\tan\gamma")),
-            *(A * one / (B * two), claims.PRECESSION_RATE, rate),
-        ),
+        text="With the third axis of space along {}, the orientation follows from {}. One "
+        "quadrature is left, an elliptic integral of the third kind for {}:",
+        spans=(claims.MOMENTUM, claims.MOMENTUM_IN_BODY, formula(r"\alpha")),
         left=formula(r"\mathbf{R}(t)"),
         value=formula(claims.THREE_TURNS.format(r"\alpha(t)", r"\beta(t)", r"\gamma(t)")),
         proofs=(identity(sp.ImmutableMatrix([[residual]]), claims.PRECESSION_OF_AXIS, name),),
+        where=(
+            (formula(r"\cos\beta"), C * three / length),
+            (formula(r"\tan\gamma"), A * one / (B * two)),
+            (claims.PRECESSION_RATE, rate),
+        ),
     )

@@ -19,6 +19,7 @@ from rigidsym.models.forces import OMEGA_BODY, MovingPart
 from rigidsym.models.so3 import TIME
 from rigidsym.notes.document.document import (
     Equation,
+    EquationRow,
     Figure,
     NoteBlock,
     Paragraph,
@@ -97,6 +98,10 @@ def what_follows(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock
             proved=tuple(claims) if exact else (),
             unproved=() if exact else tuple(claims),
         )
+        if found.where:
+            yield said("Here")
+            sides = (tuple(map(printed, pair)) for pair in found.where)
+            yield EquationRow(tuple(Equation(sides=pair) for pair in sides))
         if found.title == "The effective potential":
             yield from _phase_portrait(derivation, letters)
     yield from _pictures(derivation, letters)
