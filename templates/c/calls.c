@@ -72,7 +72,7 @@ static int may_overlap(const Rows *one, const npy_intp width, const Rows *other,
    fresh pages cost as much time as filling them. Blocks of up to 32 MB malloc keeps itself; what is
    kept here, the system may take back. */
 #if defined(__linux__) && defined(MADV_FREE)
-enum { LEAST_KEPT = 1 << 25, MOST_KEPT = 1 << 28, PAGE = 1 << 21 }; /* bytes */
+enum { LEAST_KEPT = 1 << 25, MOST_KEPT = 1 << 30, PAGE = 1 << 21 }; /* bytes */
 
 static struct {
     void *data;
@@ -126,6 +126,20 @@ static PyObject *new_result(const int axes, const npy_intp *shape, const int typ
         return new_large(axes, shape, type, (size_t)bytes);
     }
     return PyArray_SimpleNew(axes, shape, type);
+}
+
+/* empty(shape, type): the same for threads, which share the work in Python. */
+static PyObject *empty(PyObject *self, PyObject *given)
+{
+    PyArray_Dims shape = { NULL, 0 };
+    int type;
+    (void)self;
+    if (!PyArg_ParseTuple(given, "O&i", PyArray_IntpConverter, &shape, &type)) {
+        return NULL;
+    }
+    PyObject *result = new_result(shape.len, shape.ptr, type);
+    PyDimMem_FREE(shape.ptr);
+    return result;
 }
 
 /* function(*arrays, out): the result, or None. */
@@ -198,6 +212,11 @@ static PyObject *call_at_once(PyObject *self, PyObject *const *given, const Py_s
     }
     return result;
 }
+
+static PyMethodDef methods[] = {
+    { "empty", empty, METH_VARARGS, NULL },
+    { NULL, NULL, 0, NULL },
+};
 
 static PyMethodDef at_once = {
     "call_at_once", (PyCFunction)(void (*)(void))call_at_once, METH_FASTCALL, NULL,

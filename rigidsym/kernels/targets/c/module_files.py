@@ -30,6 +30,7 @@ def module_files(program: Program, kernels: Sequence[Kernel]) -> dict[str, str]:
         "c/module.py.jinja",
         compute="_compute_compiled",
         at_once="_compiled.{}_at_once",
+        empty="_compiled.empty(whole, dtype.num)",
         name=name,
     )
     return {f"{name}_c.py": face, f"{name}_module.c": glue}

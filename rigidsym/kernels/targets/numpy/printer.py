@@ -78,13 +78,15 @@ def module_text(
     *,
     compute: str = "_compute",
     at_once: str = "",
+    empty: str = "np.empty(whole, dtype)",
     block: python.Statements = BLOCK,
     **more: object,
 ) -> str:
     """The text of a module, in a template that may extend this one and needs more.
 
     `compute` is the function there that computes all orientations, `at_once` that of each kernel
-    which is tried first, and `block` how the functions of arrays are written.
+    which is tried first, `empty` a new array for results, and `block` how functions of arrays are
+    written.
     """
     kernels = list(map(_fitted, program.kernels))
     unwrap = [unwrap_text(program.unwrapping, _block)] if program.unwrapping else []
@@ -103,6 +105,7 @@ def module_text(
             has_parts=any(kernel.parts for kernel in kernels),
             helpers="".join(f"\n\n{text}" for text in (*_helpers(kernels, block), *unwrap)),
             compute=compute,
+            empty=empty,
             **more,
         )
     )
