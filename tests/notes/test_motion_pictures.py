@@ -43,7 +43,9 @@ def test_every_shipped_system_has_an_example():
     assert [spec.name for spec in SYSTEMS if not spec.dynamics.get("examples")] == []
 
 
-@pytest.mark.parametrize("name", ["heavy_symmetric_top", "free_body", "rolling_disc"])
+@pytest.mark.parametrize(
+    "name", ["heavy_symmetric_top", "heavy_asymmetric_body", "free_body", "rolling_disc"]
+)
 def test_the_motion_drawn_is_the_motion_simulated(name):
     motion = shipped(name)
     example = motion.forces.examples[0]
