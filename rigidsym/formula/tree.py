@@ -169,6 +169,10 @@ EQUALS, PLUS, MINUS, COMMA = Sign("="), Sign("+"), Sign("−"), Sign(",")
 TRANSPOSE = Symbol("T", "sans")
 
 
+def transpose_of(matrix: Formula) -> Formula:
+    return Power(matrix, TRANSPOSE)
+
+
 def row(*parts: Formula) -> Formula:
     """The parts side by side; rows within are taken apart."""
     flat: list[Formula] = []

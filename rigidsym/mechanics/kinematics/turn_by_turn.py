@@ -12,7 +12,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.real_values import RealValues
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Bracket, Formula, Symbol
+from rigidsym.formula.tree import Bracket, Formula, Symbol, transpose_of
 from rigidsym.mechanics.derivation import Definition, Found, Proof, Singularities
 from rigidsym.mechanics.kinematics.derive import (
     FRAMES,
@@ -29,7 +29,6 @@ from rigidsym.mechanics.kinematics.recursion_proofs import (
     rows_residuals,
 )
 from rigidsym.mechanics.prove import Prover, consequence, identity
-from rigidsym.mechanics.quantities import claims
 from rigidsym.mechanics.quantities.arguments import arguments_of
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
@@ -141,7 +140,7 @@ class TurnByTurn(Kinematics):
         parts = {
             "rotation_rate": (SPACE.omega, ROTATION),
             "spin_matrix": (BODY.omega if self.model.passive else SPACE.omega,),
-            f"inverse_rate_matrix_{frame}": (symbols.matrix, claims.transpose_of(symbols.matrix)),
+            f"inverse_rate_matrix_{frame}": (symbols.matrix, transpose_of(symbols.matrix)),
             f"rates_from_angular_velocity_{frame}": (self.inverse_symbol(symbols), symbols.omega),
         }
         whole = formula(recursion.replace("LAST", str(self.recursion.count)), *parts.get(name, ()))
@@ -153,7 +152,7 @@ class TurnByTurn(Kinematics):
     def _shown(self, matrix: Formula) -> Formula:
         if not self.model.passive:
             return matrix
-        return claims.transpose_of(matrix if isinstance(matrix, Symbol) else Bracket(matrix))
+        return transpose_of(matrix if isinstance(matrix, Symbol) else Bracket(matrix))
 
     def _columns(self, name: str) -> Formula | None:
         """(n₁, P₁ n₂, P₂ n₃, ...); None if an angle is not one coordinate by itself."""

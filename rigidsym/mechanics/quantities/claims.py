@@ -3,19 +3,11 @@
 from __future__ import annotations
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import TRANSPOSE, Formula, Power, Rate, row
-
-
-def rate_of(matrix: Formula) -> Formula:
-    return Rate(matrix)
-
-
-def transpose_of(matrix: Formula) -> Formula:
-    return Power(matrix, TRANSPOSE)
+from rigidsym.formula.tree import Formula, Rate, row, transpose_of
 
 
 def spin_of(matrix: Formula) -> Formula:
-    return row(rate_of(matrix), transpose_of(matrix))
+    return row(Rate(matrix), transpose_of(matrix))
 
 
 def orthogonal(matrix: Formula) -> Formula:
@@ -30,10 +22,10 @@ def stays_orthogonal(matrix: Formula) -> Formula:
     """The derivative of the statement that the matrix is orthogonal."""
     return formula(
         r"#1#2 + #3#4 = \mathbf{0}",
-        rate_of(matrix),
+        Rate(matrix),
         transpose_of(matrix),
         matrix,
-        rate_of(transpose_of(matrix)),
+        Rate(transpose_of(matrix)),
     )
 
 

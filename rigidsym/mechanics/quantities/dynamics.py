@@ -5,8 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from rigidsym.formula.reader import formula, named
-from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.quantities.claims import transpose_of
+from rigidsym.formula.tree import Formula, transpose_of
 from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.mechanics.quantities.kinematics import ALPHA_BODY, BODY, RATES, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.quantities.claims import transpose_of
+from rigidsym.formula.tree import Formula, transpose_of
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_SPACE, MASS
 from rigidsym.mechanics.quantities.table import read_table

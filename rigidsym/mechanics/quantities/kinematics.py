@@ -12,9 +12,9 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula
+from rigidsym.formula.tree import Formula, Rate, transpose_of
 from rigidsym.mechanics.derivation import Quantity
-from rigidsym.mechanics.quantities.claims import rate_of, spin_of, transpose_of
+from rigidsym.mechanics.quantities.claims import spin_of
 from rigidsym.mechanics.quantities.table import read_table
 from rigidsym.models.rotation import DIEBEL
 
@@ -97,7 +97,7 @@ _ACTIVE = read_table(
     """,
     {
         "rotation_matrix": (ROTATION,),
-        "rotation_rate": (rate_of(ROTATION),),
+        "rotation_rate": (Rate(ROTATION),),
         "spin_matrix": (spin_of(ROTATION), _operator("", SPACE.omega)),
         "angular_velocity_space": (SPACE.omega, _vector_of(spin_of(ROTATION))),
         "angular_velocity_body": (BODY.omega, _product(transpose_of(ROTATION), SPACE.omega)),
@@ -113,10 +113,10 @@ _ACTIVE = read_table(
                 ),
             }.items()
         },
-        "angular_acceleration_space": (ALPHA, rate_of(SPACE.omega)),
+        "angular_acceleration_space": (ALPHA, Rate(SPACE.omega)),
         "angular_acceleration_body": (
             ALPHA_BODY,
-            _product(transpose_of(ROTATION), rate_of(SPACE.omega)),
+            _product(transpose_of(ROTATION), Rate(SPACE.omega)),
         ),
     },
     {"Diebel": DIEBEL},
@@ -136,11 +136,11 @@ _PASSIVE = read_table(
     """,
     {
         "rotation_matrix": (COSINES, transpose_of(ROTATION)),
-        "rotation_rate": (rate_of(COSINES),),
+        "rotation_rate": (Rate(COSINES),),
         "spin_matrix": (spin_of(COSINES), _operator("-", BODY.omega)),
         "angular_velocity_space": (
             SPACE.omega,
-            _vector_of(formula(r"#1\,#2", rate_of(transpose_of(COSINES)), COSINES)),
+            _vector_of(formula(r"#1\,#2", Rate(transpose_of(COSINES)), COSINES)),
         ),
         "angular_velocity_body": (
             BODY.omega,

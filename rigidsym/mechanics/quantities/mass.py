@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula, bracketed
-from rigidsym.mechanics.quantities.claims import transpose_of
+from rigidsym.formula.tree import Formula, bracketed, transpose_of
 from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.mechanics.quantities.table import read_table
 from rigidsym.models.rotation import Citation

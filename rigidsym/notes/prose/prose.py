@@ -9,8 +9,8 @@ import sympy as sp
 from rigidsym.formula.display import Done
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Symbol, equal, joined, row
-from rigidsym.mechanics.quantities.claims import orthogonal, rate_of, skew, spin_of
+from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Rate, Symbol, equal, joined, row
+from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.quantities.kinematics import COSINES, ROTATION
 from rigidsym.models.rotation import Turn, lecture
 from rigidsym.models.so3 import hat
@@ -71,7 +71,7 @@ def motion(*, passive: bool) -> Iterator[NoteBlock]:
         )
     else:
         yield said("A point at rest in the body, {}, has the velocity", ACTIVE)
-    yield Equation(sides=(velocity, row(rate_of(shown), other), row(spin_of(shown), place)))
+    yield Equation(sides=(velocity, row(Rate(shown), other), row(spin_of(shown), place)))
     if passive:
         yield said(
             r"As seen from the body, the point moves with the velocity "

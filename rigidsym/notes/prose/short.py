@@ -4,9 +4,17 @@ from __future__ import annotations
 
 from rigidsym.formula.letters import TIME, Letters
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import PLUS, Differential, Formula, Fraction, Rate, joined, row
+from rigidsym.formula.tree import (
+    PLUS,
+    Differential,
+    Formula,
+    Fraction,
+    Rate,
+    joined,
+    row,
+    transpose_of,
+)
 from rigidsym.mechanics.derivation import Derivation, Step
-from rigidsym.mechanics.quantities.claims import rate_of, transpose_of
 from rigidsym.mechanics.quantities.energy import MOMENTUM_BODY
 from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE, Frame
 from rigidsym.models.rotation import RotationModel
@@ -83,4 +91,4 @@ def _acceleration(derivation: Derivation, frame: Frame, letters: Letters) -> For
     if form is not None and letters.length is not None:
         rates = rates_of_form(in_notation(form, letters.length), letters.length.rate)
         return min((sum_of_vectors(rate, letters) for rate in rates), key=lambda f: len(f.text))
-    return formula(r"#1\,#2 + #4\,#3", frame.matrix, _ACCELERATIONS, RATES, rate_of(frame.matrix))
+    return formula(r"#1\,#2 + #4\,#3", frame.matrix, _ACCELERATIONS, RATES, Rate(frame.matrix))

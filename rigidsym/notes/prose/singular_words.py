@@ -11,7 +11,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import Formula, Numeral, Symbol, equal
+from rigidsym.formula.tree import Formula, Numeral, Symbol, equal, transpose_of
 from rigidsym.mechanics.derivation import (
     Derivation,
     Measure,
@@ -19,7 +19,6 @@ from rigidsym.mechanics.derivation import (
     Singularities,
     Singularity,
 )
-from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
 from rigidsym.notes.document.document import Text, listed, words
 from rigidsym.notes.formula.derivation_letters import letters_of

@@ -13,9 +13,8 @@ from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.sentence import by_text
-from rigidsym.formula.tree import Formula, Symbol, equal
+from rigidsym.formula.tree import Formula, Symbol, equal, transpose_of
 from rigidsym.mechanics.derivation import Argument, Derivation
-from rigidsym.mechanics.quantities.claims import transpose_of
 from rigidsym.mechanics.quantities.energy import ABOUT_FIXED_POINT, CENTRE
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, MASS, OF_BODY_ALONE, POINT
