@@ -70,7 +70,7 @@ def test_chains_compile_without_a_warning(axis):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("[3,1,-1](psi) [0,-2,3](roll_rate) [2,1,-2](theta)", "Written out, the components"),
+        ("[3,1,-1](psi) [0,-2,3](roll_rate) [2,1,-2](theta)", "The explicit components"),
         ("[3,-1,-3](phi + pi/6) [-3,3,-3](theta)", r"{\freely\begin{align*}"),
         ("davenport", r"from\_\allowbreak quaternion(\allowbreak quaternion, parameters)"),
     ],

@@ -254,8 +254,10 @@ def _angle_about(model: RotationModel) -> sp.Expr:
     if not angles and length is not None and units[model.vector[0]] == "rad":
         return length.symbol
     taken = {q.func.__name__ for q in model.coordinates}
-    letters = (letter for letter in ("alpha", "beta", "gamma") if letter not in taken)
-    return angles[0] if angles else sp.Symbol(next(letters))
+    taken |= {letter for letter in "αβ" if letter in model.convention[0]}
+    greek = {"alpha": "α", "beta": "β", "gamma": "γ"}
+    free = (letter for letter in greek if not taken & {letter, greek[letter]})
+    return angles[0] if angles else sp.Symbol(next(free))
 
 
 def _start(axes: Sequence[Vector], k: int) -> Vector:

@@ -157,6 +157,8 @@ def rates_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock
 
 
 def _blocks(text: str, model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
+    if "α" in model.convention[0]:  # a parameter of Cayley and Klein
+        text = text.replace(r"\alpha", r"\gamma")
     others = [q for q in model.coordinates if q not in model.vector]
     spans: dict[str, Formula] = {"v": VECTOR}
     spans |= {"w": formula_of(others[0], letters)} if others else {}
