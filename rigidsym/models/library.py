@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from rigidsym.models import parametrisations as by
+from rigidsym.models import parametrisations
 from rigidsym.models.rotation import Citation, RotationModel, lecture
 
 
@@ -30,24 +30,28 @@ class Preset(NamedTuple):
 
 PARAMETRISATIONS: Mapping[str, Entry] = {
     "quaternion": Entry(
-        by.Quaternion, "((w² − v·v) 1 + 2 v vᵀ + 2 w C(v))/(w² + v·v)", has_scalar=True
+        parametrisations.Quaternion,
+        "((w² − v·v) 1 + 2 v vᵀ + 2 w C(v))/(w² + v·v)",
+        has_scalar=True,
     ),
     "unit_quaternion": Entry(
-        by.UnitQuaternion, "(w² − v·v) 1 + 2 v vᵀ + 2 w C(v), w² + v·v = 1", has_scalar=True
+        parametrisations.UnitQuaternion,
+        "(w² − v·v) 1 + 2 v vᵀ + 2 w C(v), w² + v·v = 1",
+        has_scalar=True,
     ),
-    "axis_angle": Entry(by.AxisAngle, "1 + sin φ C(e) + (1 − cos φ) C(e)², e·e = 1"),
+    "axis_angle": Entry(parametrisations.AxisAngle, "1 + sin φ C(e) + (1 − cos φ) C(e)², e·e = 1"),
     "rotation_vector": Entry(
-        by.RotationVector, "exp C(v) = 1 + sin n/n C(v) + (1 − cos n)/n² C(v)²"
+        parametrisations.RotationVector, "exp C(v) = 1 + sin n/n C(v) + (1 − cos n)/n² C(v)²"
     ),
-    "gibbs_vector": Entry(by.GibbsVector, "1 + 2/(1 + g·g) (C(g) + C(g)²)"),
+    "gibbs_vector": Entry(parametrisations.GibbsVector, "1 + 2/(1 + g·g) (C(g) + C(g)²)"),
     "modified_rodrigues": Entry(
-        by.ModifiedRodrigues, "1 + (8 C(s)² + 4 (1 − s·s) C(s))/(1 + s·s)²"
+        parametrisations.ModifiedRodrigues, "1 + (8 C(s)² + 4 (1 − s·s) C(s))/(1 + s·s)²"
     ),
     "cayley_klein": Entry(
-        by.CayleyKlein, "the unit quaternion (a, d, c, b), α = a + i b, β = c + i d"
+        parametrisations.CayleyKlein, "the unit quaternion (a, d, c, b), α = a + i b, β = c + i d"
     ),
     "direction_cosines": Entry(
-        by.DirectionCosines, "its nine entries, with R Rᵀ = 1 and det R = 1"
+        parametrisations.DirectionCosines, "its nine entries, with R Rᵀ = 1 and det R = 1"
     ),
 }
 

@@ -70,7 +70,10 @@ def closed_form(model: RotationModel) -> ClosedForm | None:
     for build, count, form in _FORMS:
         for order in _orders(len(model.coordinates)):
             q = tuple(model.coordinates[place] for place in order)
-            if len(q) == count and _matches(model, build([part.func.__name__ for part in q])):
+            if len(q) != count:
+                continue
+            known = build([part.func.__name__ for part in q])
+            if known.matrix == model.matrix and known.constraints == model.constraints:
                 return form(partial(ClosedForm, model=model, order=order), q)
     return None
 
@@ -80,10 +83,6 @@ def _orders(count: int) -> Iterator[tuple[int, ...]]:
     yield tuple(range(count))
     if count == 4:
         yield (3, 0, 1, 2)
-
-
-def _matches(model: RotationModel, candidate: RotationModel) -> bool:
-    return candidate.matrix == model.matrix and candidate.constraints == model.constraints
 
 
 def _along(factor: sp.Expr, vector: Sequence[sp.Expr]) -> Vector:
