@@ -74,9 +74,11 @@ def _principal_axes(derivation: Derivation) -> Sequence[Vector]:
     body = derivation.body
     assert body is not None
     found = {step.quantity.name: step.expression for step in derivation.steps}
-    if "principal_axes" in found and body.distribution is not None:
+    if "principal_axes" in found:
         values = {p.symbol: p.value for p in body.parameters}
-        numbers = lengths_of(body.distribution, values) or {}
+        known = {symbol: sp.Float(x) for symbol, x in values.items() if x is not None}
+        chosen = lengths_of(body.distribution, values) if body.distribution else None
+        numbers = known if chosen is None else chosen
         others = {p.symbol: sp.Float(1) for p in body.parameters if p.symbol not in numbers}
         matrix = found["principal_axes"].xreplace({**numbers, **others})
         if not matrix.free_symbols:

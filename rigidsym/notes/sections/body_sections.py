@@ -262,11 +262,9 @@ def lines_of_body(derivation: Derivation, letters: Letters) -> Iterator[str]:
     found = in_numbers(body)
     if found is None:
         return
-    names = ("₁", "₂", "₃")
-    for name, moment, axis in zip(
-        names, found.principal.moments, found.principal.axes.T, strict=True
-    ):
+    principal = found.principal  # ascending, which the numbers of a formula's moments need not be
+    for moment, axis in zip(principal.moments, principal.axes.T, strict=True):
         along = ", ".join(number(float(part)) for part in axis)
-        yield f"I{name} = {number(float(moment))} kg m² about ({along})"
-    if found.principal.repeated:
-        yield found.principal.repeated
+        yield f"principal moment {number(float(moment))} kg m² about ({along})"
+    if principal.repeated:
+        yield principal.repeated
