@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
 from functools import cache
 from pathlib import Path
 
@@ -14,9 +16,10 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
-from helpers.target_modules import EVERY
+from helpers.target_modules import EVERY, STRICT
 from rigidsym.commands.cli import commands
 from rigidsym.errors import KernelError, SpecError
+from rigidsym.kernels.targets import TARGETS
 from rigidsym.pipeline import read_record, read_spec
 
 SOME = ("rotation_matrix", "angular_velocity_body", "rates_from_angular_velocity_body")
@@ -176,6 +179,18 @@ def test_unwrap_follows_whole_turns_of_360_degrees(name):
     path = np.cumsum(random.uniform(0.0, 0.4, (60, 3)), axis=0)
     wound = plain.from_quaternion(rs.kernels("XYZ", conversions=True).quaternion(path))
     assert_allclose(found.unwrap(wound * unit), plain.unwrap(wound) * unit, atol=1e-10)
+
+
+@pytest.mark.skipif(bool(TARGETS["c"].missing), reason=TARGETS["c"].missing)
+def test_lean_c_passes_the_test_that_is_generated_with_it(tmp_path: Path):
+    lean = {"precision": "double", "arrays": False, "libm": True}
+    kernels = motion().kernels("c", degrees=True, derivatives=ASKED[:1], **lean)
+    kernels.write(tmp_path)
+    sources = [name for name in kernels.files if name.endswith(".c")]
+    assert len(sources) == 2
+    compiler = next(filter(shutil.which, TARGETS["c"].programs))
+    subprocess.run([compiler, *STRICT, *sources, "-o", "t", "-lm"], cwd=tmp_path, check=True)
+    subprocess.run([tmp_path / "t"], check=True)
 
 
 FILE = """
