@@ -517,10 +517,33 @@ def test_the_memory_of_a_large_result_is_used_again_when_nobody_refers_to_it(bot
     np.testing.assert_allclose(second[-3:], plain.rotation_matrix(-q[-3:]), atol=1e-15)
     np.testing.assert_allclose(third[:3], plain.rotation_matrix(q[:-4:-1]), atol=1e-15)
     del some
-    again = compiled.rotation_matrix(q)
-    assert again.ctypes.data == place or not sys.platform.startswith("linux")
-    assert again.flags.writeable
-    np.testing.assert_array_equal(again[::-1][:50], third[:50])
+    for threads in (1, 2):
+        again = compiled.rotation_matrix(q, threads=threads)
+        assert again.ctypes.data == place or not sys.platform.startswith("linux")
+        assert again.flags.writeable
+        np.testing.assert_array_equal(again[::-1][:50], third[:50])
+        del again
+
+
+@pytest.mark.parametrize(("count", "is_shared"), [(10_000, False), (100_000, True)])
+def test_threads_share_only_what_takes_longer_than_handing_it_over(
+    both, monkeypatch, count, is_shared
+):
+    compiled, _ = both
+    shared, share = [], compiled._share
+
+    def counted(*arguments):
+        shared.append(arguments)
+        share(*arguments)
+
+    monkeypatch.setattr(compiled, "_share", counted)
+    q = np.random.default_rng(5).uniform(-3, 3, (count, 3))
+    for given in (q, q.T.copy().T, q.astype(np.float32), [*map(tuple, q[:9])]):
+        found = compiled.rotation_matrix(given, threads=2)
+        np.testing.assert_array_equal(found, compiled.rotation_matrix(given))
+    assert bool(shared) is is_shared
+    with pytest.raises(ValueError, match="threads"):
+        compiled.rotation_matrix(q, threads=0)
 
 
 def test_outs_are_refused_as_in_numpy(both):
