@@ -51,5 +51,6 @@ def load(name: str, files: Mapping[str, str]) -> ModuleType:
 def _compiled(kernel: Kernel) -> dict[str, str]:
     """The loop over the columns of its vectors."""
     widths = {argument.name: len(argument.components) for argument in kernel.arguments}
-    taken = (f"_take({name}, _i, {width})" for name, width in widths.items())
+    taken = [f"_take({name}, _i, {width})" for name, width in widths.items()]
+    taken += ["_eps"] if numpy.needs_eps(kernel) else []
     return {"name": kernel.name, "vectors": ", ".join(widths), "taken": ", ".join(taken)}

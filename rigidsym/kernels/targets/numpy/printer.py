@@ -146,6 +146,11 @@ def _is_shared(kernel: Kernel) -> bool:
     return len(values) > _LONG and called <= {*_SHARED.functions} and not has_choice
 
 
+def needs_eps(kernel: Kernel) -> bool:
+    """Whether its values depend on the eps of the result's type."""
+    return bool(kernel.guards) or "eps" in functions_of([kernel])
+
+
 def _fitted(kernel: Kernel) -> Kernel:
     """The kernel in lines that fit: a scalar twin's assignments and the rows of its outputs."""
     depth = 1 + max(map(len, kernel.parts)) if kernel.parts else len(kernel.shape)
@@ -260,7 +265,7 @@ def _block(kernel: Kernel, statements: python.Statements = BLOCK) -> str:
         f"+{output.text}" if isinstance(output, Name) and output.text in parts else infix(output)
         for output in kernel.outputs
     ]
-    head, more = "_", [f"{statements.eps}=None"] if statements.eps else []
+    head, more = "_", [f"{statements.eps}=None"] if statements.eps and needs_eps(kernel) else []
     if statements is BLOCK and _is_shared(kernel):
         head, statements, more = "_of.", _SHARED, ["_of=None"]
     lines = [bracketed(0, f"def _{kernel.name}(", [*vectors, *more], "):")]
