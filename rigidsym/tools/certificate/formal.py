@@ -40,7 +40,7 @@ def coq(certificate: Certificate) -> str:
             "  apply Rminus_diag_uniq.",
             f"  transitivity ({combination}).",
             f"  - {tactic}.",
-            f"  -{used} {tactic}.",
+            f"  -{used} now rewrite ?Rmult_0_r, ?Rplus_0_l.",
             "Qed.",
         ]
     return "\n".join([*lines, "End Claims.", ""])
@@ -79,9 +79,14 @@ class _Theorems:
         self.relations = list(map(self.terms, certificate.relations))
 
     def theorems(self) -> Iterator[tuple[str, ProvedEquation]]:
+        """Each equation once: R Rᵀ = 1 is symmetric, and a claim may repeat another."""
+        seen: set[tuple[str, str]] = set()
         for claim, entries in self.certificate.claims.items():
             for place, entry in enumerate(entries, start=1):
-                yield f"{claim.replace(' ', '_')}_{place}", _scaled(entry)
+                sides = str(entry.left), str(entry.right)
+                if sides not in seen:
+                    yield f"{claim.replace(' ', '_')}_{place}", _scaled(entry)
+                seen.add(sides)
 
     def poly(self, poly: Poly) -> str:
         return self._sum([(str(c), *names) for names, c in sorted(poly.terms.items())])
