@@ -53,6 +53,10 @@ TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the 
     "rigidsym.formula.scalars": FORMULAS,
     "rigidsym.formula.latex_pen": FORMULAS,
     "rigidsym.formula.mathml_pen": FORMULAS,
+    "rigidsym.formula.pen": FORMULAS,
+    "rigidsym.formula.unicode_pen": FORMULAS,
+    "rigidsym.formula.sheet_pen": FORMULAS,
+    "rigidsym.formula.letters": FORMULAS,
     "rigidsym.kernels.targets.text.infix": ("tests/kernels/test_infix.py",),
 }
 PRINTERS = ("rigidsym.formula.", "rigidsym.kernels.")

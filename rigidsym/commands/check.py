@@ -89,7 +89,9 @@ def _certified(path: Path, record: Path) -> Finding:
         proved = verify(content, content_of(path))
     except BROKEN as error:
         return Finding(path=path, problem=f"refused: {error}")
-    rest = [q["name"] for q in content["quantities"] if q["name"] not in proved]
+    names = [quantity["name"] for quantity in content["quantities"]]
+    names += [f"constant {integral['name']}" for integral in content["first_integrals"]]
+    rest = [name for name in names if name not in proved]
     note = f"\n  proved: {', '.join(proved)}\n  not covered: {', '.join(rest) or 'nothing'}"
     return Finding(path=path, note=note)
 

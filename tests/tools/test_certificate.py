@@ -370,6 +370,30 @@ def test_a_wrong_equation_of_motion_is_refused(top, quantity, before, after):
         checker.verify(found, certificate)
 
 
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        (("motion", "potential"), "0"),
+        (("motion", "forces"), ["0", "0", "0"]),
+        (("body", "inertia", 0), ["C", "0", "0"]),
+        (("body", "inertia", 0), ["1/(A - A)", "0", "0"]),
+        (("first_integrals", 0, "name"), "momentum_theta"),
+    ],
+)
+def test_another_cause_of_the_motion_is_refused(top, place, value):
+    found, certificate = copy.deepcopy(top)
+    *path, last = place
+    part = found
+    for key in path:
+        part = part[key]
+    part[last] = value
+    certificate["claims"]["constant momentum_theta"] = certificate["claims"][
+        "constant momentum_phi"
+    ]
+    with pytest.raises(checker.BROKEN):
+        checker.verify(found, certificate)
+
+
 @pytest.mark.parametrize("wrong", ["0", "1", "phi_dot", "2*({})", "({})**2"])
 def test_a_first_integral_is_constant_and_the_one_that_its_name_says(top, wrong):
     found, certificate = copy.deepcopy(top)
