@@ -204,7 +204,8 @@ def test_the_effective_potential_of_the_heavy_top_and_what_follows_from_it():
     steady = A * sp.cos(THETA) * PHI.diff(T) ** 2 - p_psi * PHI.diff(T) + m * g * l
     assert sp.expand(found["Steady motion"].value - steady) == 0
     u_1, u_3 = sp.symbols("u_1 u_3")
-    assert found["Nutation in elliptic functions"].spans[2] == m * g * l * (u_3 - u_1) / (2 * A)
+    (_, rate), _ = found["Nutation in elliptic functions"].where
+    assert rate == m * g * l * (u_3 - u_1) / (2 * A)
     rising = found["The motion that rises to the vertical"]
     assert sp.expand(rising.value - (p**2 / (2 * A * m * g * l) - 1)) == 0
 
@@ -283,7 +284,7 @@ def test_the_closed_form_of_a_free_symmetric_body_is_its_motion_in_both_frames()
     motion = shipped("free_symmetric_body")
     shown = next(c for c in motion.consequences if c.title == "The symmetric body in space")
     assert shown.proofs[0].is_exact
-    cosine, precession, spin = (span for span in shown.spans if isinstance(span, sp.Expr))
+    cosine, precession, spin = (value for _, value in shown.where)
     size, angle, values = 3.0, 0.8, {A: 1.4, C: 0.9}
     known = values | {LENGTH_SYMBOL: size, OMEGA_BODY[2]: size * np.cos(angle) / values[C]}
     assert float(cosine.subs(known)) == pytest.approx(np.cos(angle))
@@ -306,14 +307,14 @@ def test_the_elliptic_functions_of_a_free_body_are_its_motion():
     moments, start = np.array([1.0, 1.5, 2.1]), np.array([0.4, 0.0, 1.2])
     known = dict(zip((A, B, C), moments, strict=True))
     known |= {ENERGY_SYMBOL: moments @ start**2 / 2, LENGTH_SYMBOL: np.linalg.norm(moments * start)}
-    squares = [float(span.subs(known)) for span in solved.spans[6::2]]
+    squares = [float(value.subs(known)) for _, value in solved.where]
     a, b, c, rate = np.sqrt(squares[:4])
     begun = {"w": 1, "x": 0, "y": 0, "z": 0, "angular_velocity_body": start}
     found = motion.simulate(begun, dict(zip("ABC", moments, strict=True)), 20.0, samples=41)
     sn, cn, dn, _ = ellipj(rate * found.t, squares[4])
     exact = np.stack([a * cn, b * sn, c * dn], axis=1)
     assert np.abs(found.angular_velocity_body - exact).max() < 1e-9
-    precession = sp.lambdify(OMEGA_BODY[2], turned.spans[-1].subs(known))(exact[:, 2])
+    precession = sp.lambdify(OMEGA_BODY[2], turned.where[-1][1].subs(known))(exact[:, 2])
     momentum = moments * start
     axis = found.rotation_matrix[:, :, 2]
     across = axis - np.outer(axis @ momentum, momentum) / (momentum @ momentum)
