@@ -265,3 +265,20 @@ def test_greek_indices_are_all_written_alike_in_text():
 
 def test_a_prompt_shows_a_formula_as_one_reads_it():
     assert repr(formula(r"\mathbf{R}\,\mathbf{\Omega}'")) == "<R Ω′>"
+
+
+@pytest.mark.parametrize("pen", PENS.values(), ids=list(PENS))
+def test_widths_add_up(pen):
+    def width(markup: str) -> float:
+        return pen.write(formula(markup)).width
+
+    both, upper, lower = (
+        width(rf"\begin{{pmatrix}} {rows} \end{{pmatrix}}")
+        for rows in (r"a & b+c \\ a+b+c & d", "a & b+c", "a+b+c & d")
+    )
+    assert both == pytest.approx(upper + width("a+b+c") - width("a"))
+    assert both == pytest.approx(lower + width("b+c") - width("d"))
+    one, two = (width(rf"\begin{{pmatrix}} {row} \end{{pmatrix}}") for row in ("a", "a & a"))
+    assert two > one + width("a")  # with a gap
+    assert one > width("a")
+    assert width("a") < width("a^{b}") < width("a^{b+c}") < width("a b+c")
