@@ -185,7 +185,8 @@ def _read(given: sp.Expr | str | int, names: Mapping[str, sp.Expr]) -> sp.Expr:
 
 def _check_spelling(name: str, names: Mapping[str, sp.Expr]) -> None:
     """Raises ModelError for a constant whose name is all but that of a coordinate or rate."""
-    if len(name) >= _LONG and not any(letter.isdigit() for letter in name):
+    near = [known for known in names if known.replace("_", "") == name.replace("_", "")]
+    if not near and len(name) >= _LONG and not any(letter.isdigit() for letter in name):
         near = get_close_matches(name, names, n=1, cutoff=_ALIKE)
-        if near:
-            raise ModelError(f"unknown name {name}; did you mean {near[0]}?")
+    if near:
+        raise ModelError(f"unknown name {name}; did you mean {near[0]}?")

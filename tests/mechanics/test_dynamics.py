@@ -13,6 +13,7 @@ from sympy.physics.mechanics import LagrangesMethod
 
 import rigidsym as rs
 from helpers.witness import agree, evaluate, mp
+from rigidsym.errors import ModelError
 from rigidsym.mechanics.dynamics.derive import LagrangeEquations
 from rigidsym.mechanics.dynamics.lagrange import Lagrange
 from rigidsym.models.forces import Forces
@@ -330,3 +331,9 @@ def test_forces_need_a_body_and_free_coordinates():
             potential=0,
             method="lagrange",
         )
+
+
+@pytest.mark.parametrize("name", ["phidot", "the_ta", "thetta"])
+def test_a_name_that_is_all_but_a_coordinate_is_no_constant(name):
+    with pytest.raises(ModelError, match=f"unknown name {name}; did you mean"):
+        rs.derive("ZXZ", body=rs.principal_moments(A, A, C), potential=f"m*{name}")
