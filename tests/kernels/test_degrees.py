@@ -137,6 +137,19 @@ def test_identities_hold_for_coordinates_of_any_unit(name):
     assert_allclose(rates, expected, **TOLERANCE)
 
 
+def test_derivatives_by_an_angle_of_what_is_per_angle_are_per_degree_squared():
+    """The angle of axis and angle stands beside an axis without a unit, over Ω."""
+    whole, asked = rs.derive("axis_angle"), ["inverse_rate_matrix_body by q"]
+    plain = whole.kernels(derivatives=asked).load()
+    found = whole.kernels(derivatives=asked, degrees=True).load()
+    q = np.array([0.6, 0.0, 0.8, 0.5])
+    unit = np.array([180 / np.pi if u == "rad" else 1 for u in whole.argument("q").units])
+    _, expected = plain.inverse_rate_matrix_body_jacobian_q(q)
+    _, jacobian = found.inverse_rate_matrix_body_jacobian_q(q * unit)
+    expected = expected * unit[:, None, None] / np.degrees(1) / unit
+    assert_allclose(jacobian, expected, **TOLERANCE)
+
+
 def test_motion_keeps_energies_in_si_units_and_returns_angles_in_degrees():
     A, B, C = sp.symbols("A B C", positive=True)
     names = ("energy", "accelerations", "state_derivative", "state_jacobian")

@@ -59,5 +59,7 @@ def powers_of(step: Step, argument: Callable[[str], Argument]) -> list[int]:
 
 def in_degrees(entries: Iterable[sp.Expr], powers: Sequence[int]) -> list[sp.Expr]:
     """Results in degrees from results in radians."""
-    factors = {0: sp.S.One, 1: RADIAN, -1: DEGREE}
-    return [entry * factors[power] for entry, power in zip(entries, powers, strict=True)]
+    return [
+        entry * (RADIAN**power if power > 0 else DEGREE**-power)
+        for entry, power in zip(entries, powers, strict=True)
+    ]
