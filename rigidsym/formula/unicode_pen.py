@@ -86,7 +86,9 @@ class UnicodePen(Pen):
         return self.glued((_atom(head + gap), argument))
 
     def power(self, node: tree.Power) -> Piece:
-        written = self._at_least(Binding.NAME, self.node(node.base))
+        written = self.node(node.base)
+        if not isinstance(node.base, tree.Numeral):
+            written = self._at_least(Binding.NAME, written)
         text = self.node(node.exponent).text
         if all(ord(c) in _ABOVE for c in text):
             raised = text.translate(_ABOVE)

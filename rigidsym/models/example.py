@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import isfinite
+from numbers import Real
 from typing import Any, NamedTuple
 
 import sympy as sp
@@ -35,6 +36,8 @@ def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Ite
     for k, example in enumerate(given):
         for key in set(example) - set(_KEYS):
             raise ModelError(f"an example with {key}; expected {', '.join(_KEYS)}")
+        if not all(isinstance(example.get(key, {}), Mapping) for key in _KEYS[:2]):
+            raise ModelError("an example has parameters and initial values by name")
         found = Example(
             {**first.parameters, **example.get("parameters", {})},
             {**first.initial, **example.get("initial", {})},
@@ -44,7 +47,8 @@ def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Ite
             if name not in known:
                 raise ModelError(f"an example begins with {name}; {offer(name, known)}")
         numbers = (*found.parameters.values(), *found.initial.values(), found.time)
-        if not all(map(isfinite, numbers)) or found.time <= 0:
+        are_finite = all(isinstance(value, Real) and isfinite(value) for value in numbers)
+        if not are_finite or found.time <= 0:
             raise ModelError("an example needs finite numbers, and a time > 0 in seconds")
         first = first if k else found
         yield found

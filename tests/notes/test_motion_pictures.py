@@ -12,6 +12,7 @@ import sympy as sp
 import rigidsym as rs
 from rigidsym.errors import ModelError, SpecError
 from rigidsym.models.example import OMEGA, OMEGA_COMPONENTS, initial_values
+from rigidsym.notes.figure.chart import Range, number
 from rigidsym.notes.figure.motion_picture import ExampleMotion
 from rigidsym.pipeline import motion_of, read, read_spec
 from rigidsym.system import resources
@@ -75,6 +76,55 @@ def test_the_caption_tells_parameters_and_initial_values():
         assert value.replace("-", "−") in told.replace("-", "−")
 
 
+def caption_of(motion: rs.Motion) -> str:
+    return "".join(s if isinstance(s, str) else s.text for s in figure_of(motion).caption)
+
+
+def test_motions_that_share_no_initial_value_are_told_by_what_differs():
+    first = {"parameters": NUMBERS, "initial": {"theta": 0.5}, "time": 2}
+    told = caption_of(rs.derive(**A_PENDULUM, examples=[first, {"initial": {"theta": 3}}]))
+    assert "begin with" not in told
+    assert "l = 1, in SI units" in told
+    assert told.endswith("from left to right: θ = 0.5 and θ = 3.")
+
+
+def test_without_a_trace_each_motion_is_drawn_over_the_time():
+    first = {"parameters": NUMBERS, "initial": {"theta": 0.5}, "time": 2}
+    one = rs.derive(**A_PENDULUM, examples=[first])
+    two = rs.derive(**A_PENDULUM, examples=[first, {"initial": {"theta": 3}}])
+    curves = [
+        [stroke for stroke in figure_of(motion).drawing.strokes if stroke.kind == "body"]
+        for motion in (one, two)
+    ]
+    assert list(map(len, curves)) == [1, 2]
+
+
+def test_a_body_without_parameters_that_begins_at_rest_has_a_caption():
+    body = rs.principal_moments(*map(sp.Integer, (1, 1, 1)))
+    told = caption_of(rs.derive("ZYX", body=body, torque=["1", "0", "0"], examples=[{"time": 2}]))
+    assert told == "The motion in SI units and radians; all initial values are 0."
+
+
+def test_a_free_body_at_rest_has_no_polhode():
+    moments = dict(zip("ABC", (1, 2, 2.5), strict=True))
+    example = {"parameters": moments, "initial": {"theta": 1}, "time": 2}
+    still = rs.derive("ZXZ", body=A_PENDULUM["body"], potential="0", examples=[example])
+    assert "polhode" not in str(figure_of(still).description)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(-0.5, "−0.5"), (1e-5, "10⁻⁵"), (-2.5e7, "−2.5·10⁷"), (123456, "123456")],
+)
+def test_a_very_small_or_large_number_has_a_power_of_ten(value, text):
+    assert number(value).text == text
+
+
+def test_ticks_of_a_small_range_differ():
+    ticks = Range.of([0, 2e-9]).ticks
+    assert list(ticks) == pytest.approx([0, 5e-10, 1e-9, 1.5e-9, 2e-9], rel=1e-9)
+
+
 def test_an_example_takes_from_the_first_what_it_does_not_name():
     first = {"parameters": NUMBERS, "initial": {"theta": 0.5}, "time": 2}
     motion = rs.derive(**A_PENDULUM, examples=[first, {"initial": {"theta_dot": 1}}])
@@ -87,6 +137,10 @@ def test_an_example_takes_from_the_first_what_it_does_not_name():
         ({"initial": {"thta": 1}, "time": 1}, "thta; did you mean theta?"),
         ({"initial": {"theta": 1}}, "a time > 0"),
         ({"initial": {"theta": float("nan")}, "time": 1}, "finite numbers"),
+        ({"initial": {"theta": "1"}, "time": 1}, "finite numbers"),
+        ({"parameters": {"A": "1"}, "time": 1}, "finite numbers"),
+        ({"time": "1"}, "finite numbers"),
+        ({"initial": 1, "time": 1}, "initial values by name"),
         ({"start": {"theta": 1}, "time": 1}, "start; expected parameters, initial, time"),
     ],
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import groupby, pairwise
+from itertools import cycle, groupby, pairwise
 from math import cos, floor, hypot, log10, pi, sin
 from typing import NamedTuple
 
@@ -51,7 +51,7 @@ class Range(NamedTuple):
         power = 10.0 ** floor(log10((high - low) / most))
         step = next(f * power for f in (1, 2, 5, 10) if (high - low) <= most * f * power)
         first, last = -floor(-low / step + 1e-6), floor(high / step + 1e-6)
-        return cls(low, high, tuple(round(k * step, 9) for k in range(first, last + 1)))
+        return cls(low, high, tuple(float(f"{k * step:.9g}") for k in range(first, last + 1)))
 
 
 def chart(
@@ -83,20 +83,24 @@ def chart(
     if len(curves) == 1:
         ((name, _),) = curves
         labels.append(Label("body", name, (0.0, height + 0.8 * TYPE_SIZE)))
-    for kind, (_, points) in zip(_KINDS, curves, strict=False):
+    for kind, (_, points) in zip(cycle(_KINDS), curves, strict=False):
         strokes.append(Stroke(kind, tuple(_thinned(at(*point) for point in points))))
     if len(curves) > 1:
         ends = [at(*points[-1])[1] for _, points in curves]
-        for kind, (name, _), y in zip(_KINDS, curves, _apart(ends), strict=False):
+        for kind, (name, _), y in zip(cycle(_KINDS), curves, _apart(ends), strict=False):
             label = Label(kind, name, (0.0, y))
             labels.append(label._replace(place=(width + _TICK + label.box.half_width, y)))
     return Drawing(tuple(strokes), tuple(labels))
 
 
 def number(value: float) -> Formula:
-    """A number in the fewest digits that tell it to six."""
-    digits = Numeral(f"{abs(value):.6g}")
-    return formula("-#1", digits) if value < 0 else digits
+    """A number to six digits, times a power of ten if it is very large or small."""
+    digits, _, power = f"{abs(value):.6g}".partition("e")
+    found: Formula = Numeral(digits)
+    if power:
+        ten = rf"10^{{{int(power)}}}"
+        found = formula(ten) if digits == "1" else formula(rf"#1\cdot {ten}", found)
+    return formula("-#1", found) if value < 0 else found
 
 
 def _apart(heights: Sequence[float]) -> list[float]:

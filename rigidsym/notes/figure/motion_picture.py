@@ -62,8 +62,11 @@ def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | 
         motions = [ExampleMotion(derivation, forces, example) for example in forces.examples]
     traces = list(_traces(motions, letters))
     drawings = [drawing for _, drawing in traces]
-    if len(drawings) < 2:
-        drawings.insert(0, _over_time(motions[0], letters, _NARROW if drawings else _WIDE))
+    if not drawings:
+        width = _WIDE if len(motions) == 1 else _NARROW
+        drawings = [_over_time(motion, letters, width) for motion in motions]
+    elif len(drawings) == 1:
+        drawings.insert(0, _over_time(motions[0], letters, _NARROW))
     kinds = tuple(dict.fromkeys(kind for kind, _ in traces))
     return MotionPicture(in_a_row(drawings), 1 if motions[0].is_poinsot else len(motions), kinds)
 
@@ -102,7 +105,12 @@ class ExampleMotion:
     def is_poinsot(self) -> bool:
         """Whether the polhode on the ellipsoid of energy shows the motion."""
         is_free = self.forces.leave_free(self.derivation.model)
-        return is_free and bool(self.inertia.is_diagonal())
+        return is_free and bool(self.inertia.is_diagonal()) and self.is_turning
+
+    @property
+    def is_turning(self) -> bool:
+        """Whether the body does not begin at rest."""
+        return any(self.states[0][len(self.derivation.model.coordinates) :])
 
     def _start(self, coordinates: Sequence[str]) -> Numbers:
         """The initial state in the order of y."""
@@ -114,8 +122,8 @@ class ExampleMotion:
         missing = [name for name in wanted if name not in given and not at_rest]
         if missing:
             raise ModelError(
-                f"{self.derivation.name}: an example lacks {', '.join(missing)}, which the state "
-                "of these equations has"
+                f"{self.derivation.name}: an example begins without {', '.join(missing)}, which "
+                "are part of the state"
             )
         return [float(given.get(name, 0.0)) for name in (*coordinates, *wanted)]
 
@@ -248,6 +256,7 @@ def _polhodes(motions: Sequence[ExampleMotion], letters: Letters) -> Drawing:
     paths = [
         [unit((a * x, b * y, c * z)) for x, y, z in motion.over_time(motion.omega)]
         for motion in motions
+        if motion.is_turning
     ]
     circles = [circle(axis, 0.0) for axis in STANDARD]
     axes = [(letters.notation.applied(name), k) for k, name in enumerate(BODY)]

@@ -130,6 +130,22 @@ _TRACES = {
     "this motion and to others with the same parameters.",
     "path": "The curve in the plane is the path of the point of mass, seen from above.",
 }
+_CAPTIONS = {  # whether there are several motions; with neither, one or both of what they share
+    False: (
+        "The motion in SI units and radians; all initial values are 0.",
+        "The motion for {}, in SI units and radians; all other initial values are 0.",
+        "The motion for {}, which begins with {}, in SI units and radians; all other initial "
+        "values are 0.",
+    ),
+    True: (
+        "Motions in SI units and radians; all initial values are 0 but for these, from left to "
+        "right: {}.",
+        "Motions for {}, in SI units and radians; all other initial values are 0 but for these, "
+        "from left to right: {}.",
+        "Motions for {}, which begin with {}, in SI units and radians; all other initial values "
+        "are 0 but for these, from left to right: {}.",
+    ),
+}
 _ON_A_SURFACE = "Dashed lines are behind the surface."
 
 
@@ -143,16 +159,6 @@ def _pictures(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
         listed([(each,) for each in part if all(each in other[k] for other in given)])
         for k, part in enumerate(given[0])
     )
-    if len(given) == 1:
-        typed = (
-            "The motion for {}, which begins with {}, in SI units and radians; all other initial "
-            "values are 0."
-        )
-    else:
-        typed = (
-            "Motions for {}, which begin with {}, in SI units and radians; all other initial "
-            "values are 0 but for these, from left to right: {}."
-        )
     own = [
         [
             each
@@ -163,7 +169,8 @@ def _pictures(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
         for one in given
     ]
     differing = listed([(reduce(partial(formula, "#1, #2"), each),) for each in own if each])
-    caption = _filled(typed, parameters, initial, differing)
+    shared = [part for part in (parameters, initial) if part]
+    caption = _filled(_CAPTIONS[len(given) > 1][len(shared)], *shared, differing)
     traces = [_TRACES[kind] for kind in shown.traces]
     if {*shown.traces} - {"path"}:
         traces.append(_ON_A_SURFACE)
