@@ -96,13 +96,14 @@ class Ring:
         known = total.get
         for sign, group in ((1, pairs), (-1, minus)) if minus else ((1, pairs),):
             for first, second in group:
-                if first and second:
-                    terms = second.items()
-                    for monomial, coefficient in first.items():
-                        weight = sign * coefficient
-                        for other, factor in terms:
-                            product = times(monomial, other)
-                            total[product] = known(product, 0) + weight * factor
+                if not second:
+                    continue
+                terms = second.items()
+                for monomial, coefficient in first.items():
+                    weight = sign * coefficient
+                    for other, factor in terms:
+                        product = times(monomial, other)
+                        total[product] = known(product, 0) + weight * factor
         return self._settled(total) if total else self.zero
 
     def difference(self, first: PolyElement, second: PolyElement) -> PolyElement:

@@ -108,6 +108,7 @@ def arithmetic_is_right() -> bool:
         and first.equals(Quotient(here, here.dot([(a, c)]), here.reduce(x * c)))
         and not first.equals(Quotient(here, a, c))
         and here.dt(here.one) == here.zero
+        and here.dot([(s, s), (c, c), (x, s)]) == here.one + x * s  # a term that cancels is gone
     )
 
 
