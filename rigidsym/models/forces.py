@@ -73,12 +73,16 @@ class Forces:
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
 
-        Raises ModelError for a potential that depends on the rates, and for parts and a frame that
-        depend on the time.
+        Raises ModelError for a potential that depends on the rates or on no coordinate, and for
+        parts and a frame that depend on the time.
         """
         if self.potential.has(sp.Derivative):
             shown = as_typed(self.potential)
             raise ModelError(f"the potential {shown} depends on rates; expected V(q, t)")
+        if self.potential.free_symbols and not self.potential.has(*model.coordinates):
+            names = ", ".join(map(as_typed, model.coordinates))
+            shown = as_typed(self.potential)
+            raise ModelError(f"the potential {shown} depends on none of the coordinates {names}")
         moving = (e for part in self.parts for e in (*part.velocity, *part.inertia))
         for expression in (*self.frame_rate, *moving):
             if depends_on_time(expression):

@@ -68,8 +68,7 @@ class Attitude:
             q = self.kernels.unwrap(np.concatenate([before[:, : problem.count], q]))[len(before) :]
         if problem.is_euler:
             return np.concatenate([q, found[:, 4:]], axis=1)
-        rates = self.kernels.rates_from_angular_velocity_body(q, found[:, 4:], *problem.angles)
-        return np.concatenate([q, rates], axis=1)
+        return np.concatenate([q, problem.rates(q, found[:, 4:])], axis=1)
 
     def in_group(self, times: Array, progress: Callable[[float], None] | None) -> Array:
         """(quaternion, Ω′) at the times, by Runge-Kutta-Munthe-Kaas steps of order 8.

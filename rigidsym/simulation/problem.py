@@ -154,6 +154,20 @@ class Problem:
             return rest
         return np.asarray(self.kernels.angular_velocity_body(q, rest, *self.angles))
 
+    def rates(self, q: Array, omega: Array) -> Array:
+        """q̇ from Ω′, (n, k); at a pole the smallest rates with this Ω′, NaN if there are none."""
+        found = np.array(self.kernels.rates_from_angular_velocity_body(q, omega, *self.angles))
+        lost = np.isnan(found).any(axis=1) & np.isfinite(q).all(axis=1)
+        if lost.any():
+            each = np.eye(self.count)  # Ω′ for each rate by itself is a column of W′
+            rows = self.kernels.angular_velocity_body(q[lost][:, None], each, *self.angles)
+            wanted = omega[lost]
+            least = np.einsum("nj,njk->nk", wanted, np.linalg.pinv(rows))
+            left = np.linalg.norm(np.einsum("nk,nkj->nj", least, rows) - wanted, axis=1)
+            far = left > _UNIT * np.linalg.norm(wanted, axis=1)
+            found[lost] = np.where(far[:, None], np.nan, least)
+        return found
+
     @cached_property
     def inertia(self) -> Array:
         """I′ in numbers, (3, 3)."""
@@ -169,7 +183,7 @@ class Problem:
         q, omega = states[:, : self.count], self.omega(states)
         rates, forces = states[:, self.count :], self.derivation.forces
         if self.is_euler:
-            rates = self.kernels.rates_from_angular_velocity_body(q, omega, *self.angles)
+            rates = self.rates(q, omega)
         return Trajectory(
             name=self.derivation.name,
             coordinates=self.coordinates,

@@ -6,7 +6,9 @@ import json
 import re
 
 import pytest
+import sympy as sp
 
+import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.errors import RigidsymError, SpecError
 from rigidsym.notes.document.document import Paragraph, plain
@@ -51,6 +53,16 @@ def test_sentences_stand_before_and_after_an_equation():
 def test_sentences_stand_at_both_ends_of_a_section():
     document = with_text(before={"convention": "First."}, after={"Convention": "Last."})
     assert [plain(document.sections[0].blocks[k].text) for k in (0, -1)] == ["First.", "Last."]
+
+
+def test_a_quantity_keeps_its_name_in_every_language():
+    """`energy` is also a word that the German catalogue translates"""
+    free = {"body": rs.principal_moments(*sp.symbols("A A C")), "potential": "k*cos(theta)"}
+    own = OwnText(before={"energy": "Vorher.", "Convention": "Zuerst."})
+    document = rs.derive("ZXZ", ["energy"], **free).note(language="de", text=own).document
+    shown = spoken(document)
+    assert shown[0] == "Zuerst."
+    assert "Vorher." in shown[: shown.index("energy")]
 
 
 def test_what_is_left_out_leaves_no_gap_in_the_numbers_and_no_reference():

@@ -120,6 +120,16 @@ def test_a_motion_that_starts_at_a_pole_is_that_of_the_quaternion():
         assert found.drift["energy"] < 1e-9
 
 
+@pytest.mark.parametrize("method", ["DOP853", "lie"])
+def test_a_sleeping_top_keeps_its_angular_velocity_and_its_integrals(method):
+    """Where only φ + ψ is determined, the rates are the smallest with the angular velocity"""
+    found = top().simulate(REST | {"psi_dot": 20.0}, TOP, 1.0, samples=11, method=method)
+    assert found.angular_velocity_body == pytest.approx(np.tile([0, 0, 20.0], (11, 1)))
+    assert found.q_dot[1:, [0, 2]] == pytest.approx(np.full((10, 2), 10.0))
+    for values in found.first_integrals.values():
+        assert values == pytest.approx(np.full(11, values[0]))
+
+
 def test_a_trajectory_through_a_pole_agrees_with_one_in_quaternions():
     """From the pole back in time, and from there on through it: the motion is reversible"""
     values = {"A": 1.0, "B": 1.3, "C": 0.5, "m": 1.0, "g": 9.81, "a": 0.1, "b": 0.05, "l": 0.2}

@@ -104,6 +104,23 @@ void rate(float gx) { /* Madgwick */
     assert found.comparison.is_equal
 
 
+def test_a_declaration_in_c_may_hold_several_names(tmp_path):
+    source = tmp_path / "dcm.c"
+    source.write_text(
+        "void dcm(const double e[3], double R[9]) {\n"
+        "    double sr = sin(e[0]), cr = cos(e[0]), sp = sin(e[1]), cp = cos(e[1]);\n"
+        "    double sy = sin(e[2]), cy = cos(e[2]);\n"
+        "    R[0] = cp*cy, R[1] = sr*sp*cy - cr*sy, R[2] = cr*sp*cy + sr*sy;\n"
+        "    R[3] = cp*sy; R[4] = sr*sp*sy - cr*cy; R[5] = cr*sp*sy - sr*cy;\n"
+        "    R[6] = -sp; R[7] = sr*cp; R[8] = cr*cp;\n}\n",
+        encoding="utf-8",
+    )
+    (found,) = search(source)
+    assert "rotation_matrix of ZYX" in str(found)
+    assert "entry (2, 2)" in str(found)
+    assert "(a sign)" in str(found)
+
+
 def test_a_wrong_entry_of_a_matrix_filled_entry_by_entry_is_named(tmp_path):
     entries = {
         "0][0": "1 - 2*(y*y + z*z)", "0][1": "2*(x*y - w*z)", "0][2": "2*(x*z + w*y)",

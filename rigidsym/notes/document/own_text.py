@@ -55,9 +55,13 @@ class OwnText:
 
         Raises ModelError, with the nearest name, for one that the document does not have.
         """
-        words = document.language.words  # titles may be given in English, too
-        before, after = ({words(k): v for k, v in own.items()} for own in (self.before, self.after))
-        own = replace(self, omit=tuple(map(words, self.omit)), before=before, after=after)
+        labels = {equation.label for equation in document.equations}
+
+        def known(name: str) -> str:  # titles may be given in English, too
+            return name if name in labels else document.language.words(name)
+
+        before, after = ({known(k): v for k, v in own.items()} for own in (self.before, self.after))
+        own = replace(self, omit=tuple(map(known, self.omit)), before=before, after=after)
         return own._applied(document)
 
     def _applied(self, document: Document) -> Document:

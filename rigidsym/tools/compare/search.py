@@ -23,7 +23,7 @@ from rigidsym.tools.compare.targets import KnownQuantity, stem_of
 SUFFIXES = (".py", ".c", ".h", ".cc", ".cpp", ".cxx", ".hpp", ".ino", ".m")
 _MOST_BYTES = 300_000  # of a file
 _MOST_FILES = 5_000
-_MARKS = re.compile(r"[()\[\]{};\n]|(?<![=!<>])=(?!=)")
+_MARKS = re.compile(r"[()\[\]{},;\n]|(?<![=!<>])=(?!=)")
 _DEEPEST = 12  # nested brackets
 _LONGEST = 4_000  # characters of a statement
 _MOST_SYMBOLS = 12
@@ -136,16 +136,19 @@ def formulas(text: str, suffix: str) -> Iterator[tuple[int, str, sp.ImmutableMat
 def _end(text: str, start: int, *, is_c: bool) -> int:
     """The end of a statement, a semicolon or a line outside brackets; `start` if it is none.
 
-    A chain a = b = c is none: its last part is a statement.
+    A chain a = b = c is none: its last part is a statement. In C a declaration may hold several,
+    as in double s = sin(a), c = cos(a).
     """
-    depth = 0
+    depth, comma = 0, start
     for match in _MARKS.finditer(text, start, start + _LONGEST):
         at, mark = match.start(), match[0]
         depth += (mark in "([{") - (mark in ")]}")
         if depth < 0 or (depth == 0 and mark == ";"):
             return at
         if depth > _DEEPEST or (depth == 0 and mark == "="):
-            return start
+            return comma if is_c and depth == 0 else start
+        if depth == 0 and mark == ",":
+            comma = at
         is_line = mark == "\n" and not is_c
         if depth == 0 and is_line and not text.endswith(("...", "\\"), start, at):
             return at
