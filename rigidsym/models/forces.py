@@ -73,8 +73,8 @@ class Forces:
     def with_parameters(self, body: RigidBody, model: RotationModel) -> RigidBody:
         """The body with the constants of the forces among its parameters.
 
-        Raises ModelError for a potential that depends on the rates or on no coordinate, and for
-        parts and a frame that depend on the time.
+        Raises ModelError for a potential that depends on the rates or on no coordinate, for parts
+        and a frame that depend on the time, and for an example with a value of another constant.
         """
         if self.potential.has(sp.Derivative):
             shown = as_typed(self.potential)
@@ -92,6 +92,10 @@ class Forces:
                 )
         known = {p.symbol for p in body.parameters} | {*model.constants, *OMEGA_BODY, TIME}
         symbols = set().union(*(expression.free_symbols for expression in self._given())) - known
+        constants = {str(symbol) for symbol in (known | symbols) - {*OMEGA_BODY, TIME}}
+        given = {name for example in self.examples for name in example.parameters}
+        for name in sorted(given - constants):
+            raise ModelError(f"an example has a value of {name}; {offer(name, sorted(constants))}")
         own = {p.symbol: p for p in body.declared}
         moments = {moment for part in self.parts for moment in part.inertia}
 
