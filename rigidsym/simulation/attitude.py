@@ -21,7 +21,7 @@ from rigidsym.simulation.sampled_motion import Array
 
 _WANTED = ("rotation_matrix", "angular_velocity_body", "torque_body", "energy", "state_derivative")
 _ANGLE = 0.05  # radians, of a step in the group
-_MOST_STEPS = 100_000  # from one time to the next
+_MOST_STEPS = 100_000  # between two samples
 _SMALL = 1e-4  # rad: below it, series to second order are exact in double precision
 
 
@@ -73,7 +73,7 @@ class Attitude:
     def in_group(self, times: Array, progress: Callable[[float], None] | None) -> Array:
         """(quaternion, Ω′) at the times, by Runge-Kutta-Munthe-Kaas steps of order 8.
 
-        It ends before the time at which the body turns too fast for steps, or beyond all numbers.
+        It ends early if the body turns too fast for this many steps, or if its state overflows.
 
         H. Munthe-Kaas, High order Runge-Kutta methods on manifolds (1999), with the coefficients
         of DOP853.
@@ -94,7 +94,7 @@ class Attitude:
             try:
                 for k in range(count):
                     quaternion, momentum = step(start + k * h, h, quaternion, momentum)
-            except (ArithmeticError, ValueError):  # of the sine of infinity
+            except (ArithmeticError, ValueError):  # the sine of infinity
                 break
             found.append(np.concatenate([quaternion, step.omega(quaternion, momentum)]))
             if progress is not None:
@@ -103,11 +103,14 @@ class Attitude:
 
 
 def _in_euler_form(problem: Problem) -> Problem:
-    """The same motion with the state (q, Ω′). Raises ModelError if other parts move with it."""
+    """The same motion with the state (q, Ω′); raises ModelError for parts and a turning frame."""
     derivation = problem.derivation
     forces = derivation.forces or Forces()
-    if forces.parts:
-        raise ModelError(f"{derivation.name}: quaternions serve a body that moves by itself")
+    if not problem.is_alone:
+        raise ModelError(
+            f"{derivation.name}: quaternions can replace the coordinates of one body in an "
+            "inertial frame only"
+        )
     euler = replace(forces, method="euler", first_integrals={})
     made = derive(derivation.model, _WANTED, body=derivation.body, forces=euler)
     names = problem.names.get("parameters", ())

@@ -47,7 +47,7 @@ class Ensemble:
     def ended(self) -> str:
         """Why motions have no state at the end, if some have none."""
         lost = int(np.count_nonzero(~np.isfinite(self.states[-1]).all(axis=1)))
-        why = f"{lost} of them came to a pole of the coordinates or left the numbers"
+        why = f"{lost} of the motions reached a pole of the coordinates or overflowed"
         return why if lost else ""
 
     def report(self) -> str:

@@ -39,7 +39,8 @@ class Problem:
         self.count = len(self.coordinates)
         self.is_euler = self.names["y"][self.count :] == self.names["omega_body"]
         self.parameters = self._parameters(parameters)
-        alone = derivation.forces is None or not derivation.forces.parts
+        acting = derivation.forces
+        alone = acting is None or not (acting.parts or acting.frame_rate)
         self.is_alone = alone  # so that a quaternion can take the place of the coordinates
         self.kernels: ModuleType = generate(derivation, "numpy", conversions=alone).load()
         self.constants = self.given("state_derivative")

@@ -22,6 +22,7 @@ from sympy.physics.mechanics import (
 
 import rigidsym as rs
 from helpers.witness import agree, evaluate, mp
+from rigidsym.errors import ModelError
 from rigidsym.mechanics.quantities.dynamics import ENERGY_SYMBOL, LENGTH_SYMBOL
 from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.pipeline import motion_of, read
@@ -396,3 +397,49 @@ def test_rates_that_leave_the_condition_on_the_coordinates_are_refused():
     values = {"A": 1, "B": 1.4, "C": 2, "k": 0.7}
     with pytest.raises(rs.RigidsymError, match=r"rates do not keep w\*\*2 \+ x\*\*2"):
         bound("unit_quaternion", K * ALONG).simulate(start, values, 1.0)
+
+
+IN_A_TURNING_FRAME = {"body": rs.principal_moments(A, B, C), "frame_rate": ["0", "0", "n"]}
+
+
+@pytest.mark.parametrize("name", ["unit_quaternion", "quaternion"])
+def test_a_free_body_in_a_turning_frame_obeys_eulers_equations_in_an_inertial_one(name):
+    wanted = ["rotation_matrix", "angular_velocity_body", "angular_acceleration_body"]
+    wanted += ["accelerations"]
+    motion = rs.derive(name, wanted, potential="0", method="lagrange", **IN_A_TURNING_FRAME)
+    assert [(i.name, i.proof.status) for i in motion.first_integrals] == [("energy", "exact")]
+    module = motion.kernels().load()
+    (constants,) = (a.names for a in motion.arguments if a.name == "parameters")
+    known = {"M": 1.0, "A": 1.1, "B": 1.7, "C": 2.3, "n": 0.4}
+    q = np.array([0.5, -0.5, 0.7, 0.1])
+    q /= np.linalg.norm(q)
+    rate = np.array([0.3, 0.2, -0.1, 0.6])
+    rate -= q * (q @ rate)
+    found = module.accelerations(q, rate, [known[n] for n in constants])
+    inertia = np.diag([known[letter] for letter in "ABC"])
+    frame = module.rotation_matrix(q).T @ [0, 0, known["n"]]
+    own = module.angular_velocity_body(q, rate)
+    whole = own + frame
+    change = module.angular_acceleration_body(q, rate, found) - np.cross(own, frame)
+    assert inertia @ change == pytest.approx(-np.cross(whole, inertia @ whole), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"frame_rate": ["0", "0", "n"]}, {"parts": [{"velocity": ["w_dot", "0", "0"], "mass": "m"}]}],
+)
+def test_eulers_equations_leave_out_neither_parts_nor_a_turning_frame(given):
+    body = rs.principal_moments(A, B, C)
+    with pytest.raises(ModelError, match="one body in an inertial frame"):
+        rs.derive("unit_quaternion", ["energy"], body=body, potential="0", **given)
+
+
+def test_a_quaternion_does_not_replace_the_coordinates_in_a_turning_frame():
+    motion = rs.derive("ZYX", potential="0", **IN_A_TURNING_FRAME)
+    with pytest.raises(ModelError, match="inertial frame only"):
+        motion.simulate(
+            {"phi": 0, "theta": 0.1, "psi": 0, "phi_dot": 0, "theta_dot": 0.1, "psi_dot": 0},
+            {"A": 1, "B": 1.2, "C": 1.5, "n": 0.3},
+            1,
+            method="lie",
+        )

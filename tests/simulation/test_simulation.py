@@ -261,7 +261,7 @@ time = 3
     [
         ((), "the motion ended at t = 0.2"),
         (("--method=lie",), "the body turns too fast for steps"),
-        (("--ensemble=2",), "2 of them came to a pole of the coordinates or left the numbers"),
+        (("--ensemble=2",), "2 of the motions reached a pole of the coordinates or overflowed"),
     ],
 )
 def test_a_motion_without_end_is_written_as_far_as_it_goes(options, message, tmp_path):

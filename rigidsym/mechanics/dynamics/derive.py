@@ -364,7 +364,11 @@ class LagrangeEquations(Flow):
 
     def own_integrals(self) -> Iterator[FirstIntegral]:
         work = self.work
-        if not any(work.forces) and self.driving.is_zero() and not work.is_bound:
+        if work.is_bound and not work.acting.frame_rate:
+            euler = EulerEquations(self.model, self.body, self.forces).own_integrals()
+            yield from (self.constant(i.name, i.symbol, i.expression) for i in euler)
+            return
+        if not any(work.forces) and self.driving.is_zero():
             yield FirstIntegral(
                 name="energy",
                 symbol=claims.ENERGY,
@@ -372,8 +376,6 @@ class LagrangeEquations(Flow):
                 proof=self.prove.vanishes(self._energy_rate, claims.is_constant(claims.ENERGY)),
             )
         if work.is_bound:
-            euler = EulerEquations(self.model, self.body, self.forces).own_integrals()
-            yield from (self.constant(i.name, i.symbol, i.expression) for i in euler)
             return
         if not self.is_holonomic:
             return

@@ -36,7 +36,12 @@ class EulerEquations(Flow):
     second = "omega_body"
 
     def __init__(self, model: RotationModel, body: RigidBody, forces: Forces) -> None:
-        """Raises ModelError if the rates do not follow from the angular velocity."""
+        """Raises ModelError for parts, for a frame that turns, and if there is no q̇ = U Ω′."""
+        if forces.parts or forces.frame_rate:
+            raise ModelError(
+                f"{model.name}: Euler's equations are those of one body in an inertial frame; "
+                'expected method = "lagrange"'
+            )
         rotation = Values(model)
         if rotation.inverse_body is None:
             raise ModelError(
