@@ -46,7 +46,7 @@ def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Ite
         for name in found.initial:
             if name not in known:
                 raise ModelError(f"an example begins with {name}; {offer(name, known)}")
-        numbers = (*found.parameters.values(), *found.initial.values(), found.time)
+        numbers: tuple[Any, ...] = (*found.parameters.values(), *found.initial.values(), found.time)
         are_finite = all(isinstance(value, Real) and isfinite(value) for value in numbers)
         if not are_finite or found.time <= 0:
             raise ModelError("an example needs finite numbers, and a time > 0 in seconds")
