@@ -376,7 +376,9 @@ class Derivation:
             step = self.step(name)
             value = self.spelled(step.expression)
             return value[0] if step.quantity.shape == "scalar" else value
-        raise AttributeError(f"{type(self).__name__} {self.name!r} has no quantity {name!r}")
+        own = f"{type(self).__name__} {self.name!r} has no quantity {name!r}"
+        near = offer(name, [known for known in dir(self) if not known.startswith("_")])
+        raise AttributeError(f"{own}; {near}")
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *(step.quantity.name for step in self.steps)})

@@ -80,9 +80,13 @@ class Forces:
             shown = as_typed(self.potential)
             raise ModelError(f"the potential {shown} depends on rates; expected V(q, t)")
         if self.potential.free_symbols and not self.potential.has(*model.coordinates):
-            names = ", ".join(map(as_typed, model.coordinates))
-            shown = as_typed(self.potential)
-            raise ModelError(f"the potential {shown} depends on none of the coordinates {names}")
+            names = [as_typed(q) for q in model.coordinates]
+            same = sorted({s.name for s in self.potential.free_symbols} & {*names})
+            raise ModelError(
+                f"the potential {as_typed(self.potential)} depends on none of the coordinates "
+                + ", ".join(names)
+                + "".join(f"; {n} is a constant in it, expected a text or {n}(t)" for n in same[:1])
+            )
         moving = (e for part in self.parts for e in (*part.velocity, *part.inertia))
         for expression in (*self.frame_rate, *moving):
             if depends_on_time(expression):

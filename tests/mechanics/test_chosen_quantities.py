@@ -110,3 +110,8 @@ def test_a_note_has_no_section_on_rates_that_are_not_in_it():
     chosen = derive("ZXZ", only=["rotation_matrix", "angular_velocity_body"]).note().markdown()
     assert title not in chosen
     assert "rate matrices" not in chosen
+
+
+def test_a_misspelled_quantity_is_answered_with_the_nearest():
+    with pytest.raises(AttributeError, match="did you mean angular_velocity_body"):
+        derive("ZXZ").anglar_velocity_body  # noqa: B018

@@ -312,6 +312,7 @@ def test_a_wrong_bias_is_refuted():
     [
         ({"potential": "m*g*theta_dot"}, "depends on rates"),
         ({"potential": "m*g*l*cos(beta)"}, "depends on none of the coordinates phi, theta, psi"),
+        ({"potential": sp.cos(sp.Symbol("theta"))}, r"theta is a constant in it, .* theta\(t\)"),
         ({"potential": TOP, "forces": {"chi": "1"}}, "a force on chi, which is none of phi, theta"),
         ({"potential": "m*g*("}, "expected a number"),
         ({"frame_rate": ["0", "0", "n*t"]}, "n\\*t depends on t; expected a part, or a rate of"),
