@@ -58,6 +58,12 @@ def define(latex: str, known: Values) -> None:
             known[name] = value
 
 
+def _lines(row: list[Value]) -> list[list[Any]]:
+    """The lines of a row of a matrix; an entry may be a block of them."""
+    blocks = [e.tolist() if isinstance(e, mp.matrix) else [[e]] for e in row]
+    return [[entry for line in lines for entry in line] for lines in zip(*blocks, strict=True)]
+
+
 def _rows(latex: str) -> Iterator[str]:
     """The equations of a display, each on one line."""
     inside = re.sub(r"^\\boxed\{(.*)\}$", r"\1", _clean(latex))
@@ -229,7 +235,7 @@ class Formula:
                 rows.append([])
             elif not self._has("&"):
                 rows[-1].append(self._sum())
-        return mp.matrix(rows)
+        return mp.matrix([line for row in rows for line in _lines(row)])
 
     def _name(self) -> str:
         """A symbol: its face and dots, its letter, its prime, its index."""

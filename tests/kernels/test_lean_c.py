@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import re
+import shutil
 import subprocess
 from collections import Counter, defaultdict
 from itertools import product
@@ -51,6 +52,29 @@ def test_compilers_are_silent_and_the_generated_test_passes(module, folder, comp
     sources = (kernels.main, f"{kernels.name}_test.c")
     run(compiler, *STRICT, "-O1", *sources, "-o", made, "-lm", cwd=folder)
     assert run(f"./{made}", cwd=folder) == ""
+
+
+MISRA = ("10.4", "12.1", "12.3", "17.7", "18.4", "19.2")  # of MISRA C:2012, which pilots ask for
+_ARMS = re.compile(
+    r" \? \(.*\) : \(?[\w. +/]+\)?;$"
+)  # cppcheck takes off the parentheses of an arm
+
+
+def test_the_rules_of_flight_are_kept(module, folder):
+    _, kernels, _ = module
+    if shutil.which("cppcheck") is None:
+        pytest.skip("cppcheck is not installed")
+    sources = [kernels.main, f"{kernels.name}_test.c"]
+    done = subprocess.run(
+        ["cppcheck", "--addon=misra", "--std=c99", *sources],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    found = re.findall(r"\[misra-c2012-([\d.]+)\]\n(.*)", done.stderr)
+    assert {rule for rule, _ in found}  # such as 15.5: it did look
+    assert [line for rule, line in found if rule in MISRA and not _ARMS.search(line)] == []
 
 
 def test_the_generated_test_finds_a_wrong_function(module, folder):

@@ -26,11 +26,11 @@ from helpers.reading import (
 from helpers.witness import TOLERANCE, evaluate, mp
 from rigidsym.models.rotation_text import rotation_from
 
-VECTORS = {  # v, as the notes call it
-    "quaternion": "x y z",
-    "cayley_klein": "d c b",
-    "axis_angle": "e_1 e_2 e_3",
-    "rotation_vector": "v_1 v_2 v_3",
+VECTORS = {  # as the notes call it, its components, and those whose length is n
+    "quaternion": ("v", "x y z", "w x y z"),
+    "cayley_klein": ("v", "d c b", "d c b"),
+    "axis_angle": ("e", "e_1 e_2 e_3", "e_1 e_2 e_3"),
+    "rotation_vector": ("v", "v_1 v_2 v_3", "v_1 v_2 v_3"),
 }
 UNIT = {"cayley_klein": 4, "axis_angle": 3}  # coordinates of length one
 ROTATIONS = (  # one of each kind
@@ -77,7 +77,7 @@ class Printed:
             self._add_slopes(symbol, name)
         self._add_slopes("W'", "rate_matrix_body")
         if text in VECTORS:
-            self._add_vectors(VECTORS[text].split())
+            self._add_vectors(*VECTORS[text])
 
     def _point(self, text: str) -> dict[sp.Expr, Any]:
         size = len(self.motion.model.coordinates)
@@ -112,13 +112,14 @@ class Printed:
             for k in range(count):
                 vector[k] -= off * q[k]
 
-    def _add_vectors(self, names: list[str]) -> None:
-        v, moving, second = (
-            mp.matrix([self.known[dots + name] for name in names]) for dots in ("", "dot ", "ddot ")
-        )
-        self.known |= {"bold v": v, "dot bold v": moving, "ddot bold v": second}
-        self.known["n"] = mp.norm(v)
-        self.known["dot n"] = (v.T * moving)[0] / mp.norm(v)
+    def _add_vectors(self, letter: str, components: str, long: str) -> None:
+        def vector(names: str, dots: str = "") -> Any:
+            return mp.matrix([self.known[dots + name] for name in names.split()])
+
+        for dots in ("", "dot ", "ddot "):
+            self.known[f"{dots}bold {letter}"] = vector(components, dots)
+        self.known["n"] = mp.norm(vector(long))
+        self.known["dot n"] = mp.fdot(vector(long), vector(long, "dot ")) / self.known["n"]
 
     def _add_slopes(self, symbol: str, name: str) -> None:
         """∂M/∂q for each coordinate, and dM/dt."""

@@ -200,7 +200,12 @@ class Function:
 
     def _text(self, expression: Expression) -> str:
         nan = f"({self.precision.real})NAN"  # the macro is a float
-        return infix(expression, {**_FORMS, "nan": nan}, self.precision.literal)
+        return infix(
+            expression,
+            {**_FORMS, "nan": nan},
+            self.precision.literal,
+            explicit=not self.contents.is_module,
+        )
 
 
 def _entry(array: str, k: int) -> str:

@@ -31,27 +31,38 @@ def infix(
     expression: Expression,
     functions: Mapping[str, str] = MappingProxyType({}),
     number: Literal = repr,
+    *,
+    explicit: bool = False,
 ) -> str:
     """The expression in one line; `functions` are the target's names for functions.
 
     A function without a name there keeps its own, a guard is or_nan(value, scale), and `number`
     is how the target writes a number. "choice" there is a form with three places, the condition
-    first, "nan" a word, and "==" the sign of equality.
+    first, "nan" a word, and "==" the sign of equality. With `explicit`, no reader needs to know
+    which operator binds more tightly (MISRA C:2012, rule 12.1).
     """
-    return _whole(expression, tuple(functions.items()), number)
+    return _whole(expression, tuple(functions.items()), number, explicit)
 
 
 @lru_cache(maxsize=4096)  # lines are measured before they are printed, and kernels are shared
-def _whole(expression: Expression, functions: tuple[tuple[str, str], ...], number: Literal) -> str:
-    return _text(expression, dict(functions), number)[0]
+def _whole(
+    expression: Expression,
+    functions: tuple[tuple[str, str], ...],
+    number: Literal,
+    explicit: bool,
+) -> str:
+    return _text(expression, dict(functions), number, explicit)[0]
 
 
-def _text(expression: Expression, functions: Mapping[str, str], number: Literal) -> tuple[str, int]:
+def _text(
+    expression: Expression, functions: Mapping[str, str], number: Literal, explicit: bool
+) -> tuple[str, int]:
     """The text, and how tightly it holds together."""
 
     def within(part: Expression, tightness: int) -> str:
-        text, held = _text(part, functions, number)
-        return text if held >= tightness else f"({text})"
+        text, held = _text(part, functions, number, explicit)
+        is_clear = held in (tightness, _ATOM) if explicit else held >= tightness
+        return text if is_clear else f"({text})"
 
     match expression:
         case Name(text):
@@ -68,15 +79,17 @@ def _text(expression: Expression, functions: Mapping[str, str], number: Literal)
             return f"{functions.get(function, function)}({given})", _ATOM
         case Compare(relation, left, right):
             sign = functions.get(relation, relation)
-            return f"{within(left, _SUM)} {sign} {within(right, _SUM)}", _CHOICE
+            side = _ATOM if explicit else _SUM
+            return f"{within(left, side)} {sign} {within(right, side)}", _CHOICE
         case Choice():
             form = functions.get("choice", "{1} if {0} else {2}")
-            return form.format(*(within(part, _CHOICE) for part in parts(expression))), _CHOICE
+            held = _ATOM if explicit else _CHOICE
+            return form.format(*(within(part, held) for part in parts(expression))), _CHOICE
         case Guarded(value, scale):
             limit = "None" if scale is None else within(scale, _SUM)
             return f"or_nan({value.text}, {limit})", _ATOM
         case Negative(operand):
-            return f"-{within(operand, _PRODUCT)}", _SUM
+            return f"-{within(operand, _ATOM if explicit else _PRODUCT)}", _SUM
         case Sum(terms):
             first, *others = (within(term, _SUM) for term in terms)
             signed = (f"- {t[1:]}" if t.startswith("-") else f"+ {t}" for t in others)
