@@ -53,6 +53,7 @@ _FACES: dict[str, tree.Face] = {
 }
 _DOTS = {r"\dot": 1, r"\ddot": 2}
 _OPEN: dict[str, Literal["()", "[]", "||"]] = {"(": "()", "[": "[]", "|": "||"}
+_LONGEST = 6  # digits of a whole number that has no power of ten
 _IGNORED = (r"\,", "\\ ", r"\right", r"\textstyle")
 _NORMAL = {r"\left": r"\,", r"\bigl": r"\,", r"\bigr": r"\right"}  # such a bracket is a factor
 
@@ -68,6 +69,18 @@ def formula(text: str, *parts: tree.Formula) -> tree.Formula:
     if reader.tokens:
         raise reader.error()
     return found
+
+
+def decimal(value: float, most: int = 6) -> tree.Formula:
+    """A number with so many digits, times a power of ten if it is very large or small."""
+    digits, _, power = f"{abs(value):.{most}g}".partition("e")
+    if 0 < int(power or 0) < _LONGEST:
+        digits, power = f"{abs(float(f'{value:.{most}g}')):.0f}", ""
+    found: tree.Formula = tree.Numeral(digits)
+    if power:
+        ten = rf"10^{{{int(power)}}}"
+        found = formula(ten) if digits == "1" else formula(rf"#1\cdot {ten}", found)
+    return tree.row(tree.MINUS, found) if value < 0 else found
 
 
 @lru_cache(maxsize=256)

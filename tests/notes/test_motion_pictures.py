@@ -11,8 +11,9 @@ import sympy as sp
 
 import rigidsym as rs
 from rigidsym.errors import ModelError, SpecError
+from rigidsym.formula.reader import decimal
 from rigidsym.models.example import OMEGA, OMEGA_COMPONENTS, initial_values
-from rigidsym.notes.figure.chart import Range, number
+from rigidsym.notes.figure.chart import Range
 from rigidsym.notes.figure.motion_picture import ExampleMotion
 from rigidsym.pipeline import motion_of, read, read_spec
 from rigidsym.system import resources
@@ -117,7 +118,7 @@ def test_a_free_body_at_rest_has_no_polhode():
     [(-0.5, "−0.5"), (1e-5, "10⁻⁵"), (-2.5e7, "−2.5·10⁷"), (123456, "123456")],
 )
 def test_a_very_small_or_large_number_has_a_power_of_ten(value, text):
-    assert number(value).text == text
+    assert decimal(value).text == text
 
 
 def test_ticks_of_a_small_range_differ():

@@ -76,7 +76,7 @@ class Rounding(NamedTuple):
 
 
 def rounding(kernel: Kernel) -> Rounding | None:
-    """The bound of a kernel; None where there is none: it divides, takes roots, or degrees."""
+    """The bound of a kernel; None for one that divides, takes roots, or is given degrees."""
     if any(unit.startswith("deg") for a in kernel.arguments for unit in a.units):
         return None
     plain, exact = numbers_and_angles(kernel)

@@ -7,8 +7,8 @@ from itertools import cycle, groupby, pairwise
 from math import cos, floor, hypot, log10, pi, sin
 from typing import NamedTuple
 
-from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula, Numeral
+from rigidsym.formula.reader import decimal
+from rigidsym.formula.tree import Formula
 from rigidsym.notes.figure.camera import (
     STANDARD,
     Point,
@@ -73,11 +73,11 @@ def chart(
     for value in across.ticks:
         x, _ = at(value, up.low)
         strokes.append(Stroke("space", ((x, 0.0), (x, -_TICK)), is_thin=True))
-        labels.append(Label("space", number(value), (x, -_TICK - 0.6 * TYPE_SIZE)))
+        labels.append(Label("space", decimal(value), (x, -_TICK - 0.6 * TYPE_SIZE)))
     for value in up.ticks:
         _, y = at(across.low, value)
         strokes.append(Stroke("space", ((0.0, y), (-_TICK, y)), is_thin=True))
-        label = Label("space", number(value), (0.0, y))
+        label = Label("space", decimal(value), (0.0, y))
         labels.append(label._replace(place=(-1.5 * _TICK - label.box.half_width, y)))
     labels.append(Label("space", along, (width / 2, -_TICK - 1.9 * TYPE_SIZE)))
     if len(curves) == 1:
@@ -91,16 +91,6 @@ def chart(
             label = Label(kind, name, (0.0, y))
             labels.append(label._replace(place=(width + _TICK + label.box.half_width, y)))
     return Drawing(tuple(strokes), tuple(labels))
-
-
-def number(value: float) -> Formula:
-    """A number to six digits, times a power of ten if it is very large or small."""
-    digits, _, power = f"{abs(value):.6g}".partition("e")
-    found: Formula = Numeral(digits)
-    if power:
-        ten = rf"10^{{{int(power)}}}"
-        found = formula(ten) if digits == "1" else formula(rf"#1\cdot {ten}", found)
-    return formula("-#1", found) if value < 0 else found
 
 
 def _apart(heights: Sequence[float]) -> list[float]:

@@ -11,7 +11,8 @@ from random import Random
 from rigidsym.errors import ModelError
 from rigidsym.formula.display import display
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.tree import MINUS, Formula, Numeral, equal, row
+from rigidsym.formula.reader import decimal
+from rigidsym.formula.tree import Formula, equal
 from rigidsym.mechanics.derivation import Argument
 from rigidsym.notes.document.catalogue import language_of
 from rigidsym.notes.document.document import (
@@ -167,8 +168,7 @@ def _solution(problem: Exercise) -> Iterator[NoteBlock]:
 
 def numeral(value: float) -> Formula:
     """A number with four digits at most."""
-    digits = Numeral(f"{abs(float(f'{value:.4g}')):g}")
-    return row(MINUS, digits) if value < 0 else digits
+    return decimal(value, most=4)
 
 
 def _question(section: Section, problem: Exercise, letters: Letters) -> str:

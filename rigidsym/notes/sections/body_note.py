@@ -10,9 +10,9 @@ import sympy as sp
 
 from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import decimal, formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import COMMA, Bracket, Formula, Numeral, equal, joined
+from rigidsym.formula.tree import COMMA, Bracket, Formula, equal, joined
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.notes.document.document import (
@@ -120,7 +120,6 @@ def _chosen(derivation: Derivation, letters: Letters) -> Text:
     if not chosen:
         return ("All lengths are to scale.",)
     equations = [
-        (equal(formula_of(symbol, letters), Numeral(f"{float(numbers[symbol]):g}")),)
-        for symbol in chosen
+        (equal(formula_of(symbol, letters), decimal(float(numbers[symbol]))),) for symbol in chosen
     ]
     return ("It is drawn for ", *listed(equations), ".")

@@ -9,7 +9,7 @@ from functools import partial, reduce
 import sympy as sp
 
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import decimal, formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
@@ -30,7 +30,6 @@ from rigidsym.notes.document.document import (
     said,
     words,
 )
-from rigidsym.notes.figure.chart import number
 from rigidsym.notes.figure.motion_picture import motion_picture
 from rigidsym.notes.figure.phase_portrait import phase_portrait
 
@@ -200,11 +199,11 @@ def _numbers(
     named = {name for each in forces.examples for name, value in each.initial.items() if value}
     named |= {name for name, value in start.items() if value}
     parameters = [
-        formula("#1 = #2", formula_of(sp.Symbol(name), letters), number(value))
+        formula("#1 = #2", formula_of(sp.Symbol(name), letters), decimal(value))
         for name, value in example.parameters.items()
     ]
     initial = [
-        formula("#1 = #2", known[name], number(value))
+        formula("#1 = #2", known[name], decimal(value))
         for name, value in start.items()
         if name in named
     ]
