@@ -43,6 +43,9 @@ class Ensemble:
     states: Array  # (n, m, k)
     drift: Mapping[str, Array]  # (m,) of each first integral: the largest relative change
 
+    def __repr__(self) -> str:
+        return self.report()
+
     @property
     def ended(self) -> str:
         """Why motions have no state at the end, if some have none."""

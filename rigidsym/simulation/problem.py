@@ -73,6 +73,7 @@ class Problem:
         constants = self.names.get("parameters", ())
         needed = [name for name in constants if sp.Symbol(name) in self._symbols]
         check_names("parameters", given, needed, constants)
+        _check_finite("parameters", given)
         values = [float(given.get(name, 1.0)) for name in constants]
         body = self.derivation.body
         if body is not None:  # made with values for its parameters, it checks its moments
@@ -100,9 +101,7 @@ class Problem:
         wanted = (*self.coordinates, *rates)
         known = (*self.coordinates, *self.names["q_dot"], OMEGA)
         check_names("initial values", initial, wanted, wanted if OMEGA in initial else known)
-        for name, value in initial.items():
-            if not np.isfinite(value).all():
-                raise ModelError(f"initial values: {name} is {value}; expected a finite number")
+        _check_finite("initial values", initial)
         q = _stacked([initial[name] for name in self.coordinates])
         if OMEGA in initial:
             given = np.asarray(initial[OMEGA], float)
@@ -215,6 +214,16 @@ class Problem:
 def _stacked(values: Sequence[Any]) -> Array:
     """Numbers or arrays as the components of one array."""
     return np.stack(np.broadcast_arrays(*values), axis=-1).astype(float)
+
+
+def _check_finite(what: str, given: Mapping[str, Any]) -> None:
+    for name, value in given.items():
+        try:
+            numbers = np.asarray(value, float)
+        except (TypeError, ValueError):
+            numbers = np.array(np.nan)
+        if not np.isfinite(numbers).all():
+            raise ModelError(f"{what}: {name} is {value}; expected a finite number")
 
 
 def check_names(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from rigidsym.simulation.animation import save_animation
 from rigidsym.simulation.plot import save_plot
@@ -22,5 +21,5 @@ class Trajectory(Samples):
         """An animation: GIF with Matplotlib, or MP4 with ffmpeg too (the extra `video`)."""
         return save_animation(Path(path), self, progress)
 
-    def _repr_pretty_(self, printer: Any, _: bool) -> None:
-        printer.text(self.report())
+    def __repr__(self) -> str:
+        return self.report()

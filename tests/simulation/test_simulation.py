@@ -150,6 +150,7 @@ def test_a_trajectory_through_a_pole_agrees_with_one_in_quaternions():
     start["angular_velocity_body"] = first["angular_velocity_body"]
     found = motion.simulate(start, values, 3.0)
     assert "near a pole of the coordinates at t = 0.99" in found.report()
+    assert str(found) == found.report()
     assert np.abs(found.rotation_matrix - same.rotation_matrix).max() < 1e-7
     assert np.abs(np.diff(found.q[:, [0, 1, 2]].sum(axis=1))).max() < 0.5  # no jumps
     assert max(found.drift.values()) < 1e-7
@@ -167,6 +168,7 @@ def test_a_trajectory_through_a_pole_agrees_with_one_in_quaternions():
         (REST | {"theta": 1}, TOP | {"C": 9.0}, 1.0, "principal moments"),
         (REST | {"theta": 1}, TOP, -1.0, "expected a positive number of seconds"),
         (REST | {"theta": float("nan")}, TOP, 1.0, "theta is nan; expected a finite number"),
+        (REST | {"theta": 1}, TOP | {"A": "x"}, 1.0, "parameters: A is x; expected a finite numb"),
         (REST | {"theta": 1, "theta_dot": 1e200}, TOP, 1.0, "give no finite rates at t = 0 s"),
     ],
 )
