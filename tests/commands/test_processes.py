@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 from pathlib import Path
-from time import monotonic, sleep
 
 import pytest
 from click.testing import CliRunner
@@ -52,27 +52,36 @@ def test_results_come_in_order_and_errors_where_they_arise(cores: int, monkeypat
     assert list(in_processes(inverse, [])) == []
 
 
-def test_a_copy_that_is_ended_ends_what_it_started(tmp_path: Path, monkeypatch):
-    monkeypatch.setattr(processes, "cores", lambda: 2)
-    monkeypatch.delitem(sys.modules, "jax", raising=False)  # of other tests; a copy only sleeps
-    here, deadline = os.getpid(), monotonic() + 30
-    started, ended = tmp_path / "started", tmp_path / "ended"
+ENDED = """
+import os, sys
+from pathlib import Path
+from time import sleep
+from rigidsym.system import processes
 
-    def work(item: str) -> str:
-        if os.getpid() != here:
-            try:
-                started.touch()
-                sleep(60)
-            finally:
-                ended.touch()
-        return item
+processes.cores = lambda: 2
+here, started, ended = os.getpid(), Path("started"), Path("ended")
 
-    found = in_processes(work, "abc")
-    assert [next(found), next(found)] == ["a", "b"]
-    while not started.exists() and monotonic() < deadline:
-        sleep(0.01)
-    found.close()
-    assert ended.exists()
+def work(item):
+    if os.getpid() != here:
+        try:
+            started.touch()
+            sleep(60)
+        finally:
+            ended.touch()
+    return item
+
+found = processes.in_processes(work, "abc")
+assert [next(found), next(found)] == ["a", "b"]
+while not started.exists():
+    sleep(0.01)
+found.close()
+assert ended.exists()
+"""
+
+
+def test_a_copy_that_is_ended_ends_what_it_started(tmp_path: Path):
+    command = [sys.executable, "-c", ENDED]  # a process without JAX, which is not copied
+    subprocess.run(command, cwd=tmp_path, check=True, timeout=50)
 
 
 def test_a_run_that_stops_says_how_much_is_kept(tmp_path: Path, monkeypatch):
