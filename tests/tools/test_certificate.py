@@ -227,7 +227,9 @@ def test_a_quantity_that_is_printed_twice_is_refused():
     wrong = copy.deepcopy(printed(found, "angular_velocity_space"))
     wrong["expression"][0] = "phi_dot"
     found["quantities"].insert(0, wrong)
-    with pytest.raises(ValueError, match="a quantity is printed twice"):
+    with pytest.raises(
+        ValueError, match="angular_velocity_space: its cofactors do not prove entry 1"
+    ):
         checker.verify(found, certificate)
 
 
@@ -326,7 +328,7 @@ def top() -> tuple[dict[str, Any], dict[str, Any]]:
     A, C = sp.symbols("A C", positive=True)
     motion = rs.derive(
         "ZXZ",
-        ["rotation_matrix", *OF_MOTION],
+        ["rotation_matrix", *OF_MOTION, *NOT_COVERED],
         body=rs.principal_moments(A, A, C),
         potential="m*g*l*cos(theta)",
         forces={"psi": "-k*psi_dot"},
@@ -336,15 +338,23 @@ def top() -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 OF_MOTION = ("potential_energy", "lagrangian", "energy", "generalised_momenta", "mass_matrix")
-OF_MOTION += ("bias_vector", "accelerations", "hamiltonian", "principal_moments", "principal_axes")
+OF_MOTION += ("bias_vector", "accelerations")
+NOT_COVERED = ("hamiltonian", "principal_moments", "principal_axes")
 
 
 def test_lagrange_s_equations_are_proved(top):
     found, certificate = top
-    assert {*checker.verify(found, certificate)} == {
-        *("R is a rotation", "rotation_matrix", *OF_MOTION, "constant momentum_phi")
-    }
-    assert certificate["uncovered"] == []
+    proved = {"R is a rotation", "rotation_matrix", *OF_MOTION}
+    assert {*checker.verify(found, certificate)} == proved
+    assert {*certificate["uncovered"]} == {*NOT_COVERED, "constant momentum_phi"}
+
+
+@pytest.mark.parametrize("name", NOT_COVERED)
+def test_a_claim_that_the_checker_does_not_know_is_refused(top, name):
+    found, certificate = copy.deepcopy(top)
+    certificate["claims"][name] = [{}]
+    with pytest.raises(KeyError, match=name):
+        checker.verify(found, certificate)
 
 
 @pytest.mark.parametrize(
@@ -356,9 +366,6 @@ def test_lagrange_s_equations_are_proved(top):
         ("mass_matrix", "C", "A"),
         ("bias_vector", "g*l*m", "2*g*l*m"),
         ("accelerations", "k*", "2*k*"),
-        ("hamiltonian", "p_theta**2", "p_psi**2"),
-        ("principal_moments", '"A", "A", "C"', '"A", "C", "A"'),
-        ("principal_axes", '"1", "0", "0"', '"-1", "0", "0"'),
     ],
 )
 def test_a_wrong_equation_of_motion_is_refused(top, quantity, before, after):
@@ -377,7 +384,6 @@ def test_a_wrong_equation_of_motion_is_refused(top, quantity, before, after):
         (("motion", "forces"), ["0", "0", "0"]),
         (("body", "inertia", 0), ["C", "0", "0"]),
         (("body", "inertia", 0), ["1/(A - A)", "0", "0"]),
-        (("first_integrals", 0, "name"), "momentum_theta"),
     ],
 )
 def test_another_cause_of_the_motion_is_refused(top, place, value):
@@ -387,64 +393,13 @@ def test_another_cause_of_the_motion_is_refused(top, place, value):
     for key in path:
         part = part[key]
     part[last] = value
-    certificate["claims"]["constant momentum_theta"] = certificate["claims"][
-        "constant momentum_phi"
-    ]
     with pytest.raises(checker.BROKEN):
-        checker.verify(found, certificate)
-
-
-@pytest.mark.parametrize("wrong", ["0", "1", "phi_dot", "2*({})", "({})**2"])
-def test_a_first_integral_is_constant_and_the_one_that_its_name_says(top, wrong):
-    found, certificate = copy.deepcopy(top)
-    (integral,) = found["first_integrals"]
-    integral["expression"] = wrong.format(integral["expression"])
-    with pytest.raises(ValueError, match="constant momentum_phi: its cofactors do not prove"):
-        checker.verify(found, certificate)
-
-
-@pytest.fixture(scope="module")
-def composite() -> tuple[dict[str, Any], dict[str, Any]]:
-    """A box, two particles turned about an oblique axis, and a hole."""
-    k, u, v = sp.symbols("k u v", positive=True)
-    at = [[u, 0, 0], [0, v, v]]
-    pair = [rs.Particle(mass=k, position=sp.ImmutableMatrix(place)) for place in at]
-    axis = tuple(sp.Rational(n, 3) for n in (1, 2, 2))
-    turn = rs.Turn(axis="u", angle=sp.pi / 3, components=axis)
-    parts = (
-        rs.Part(what=rs.solid("box").distribution),
-        rs.Part(
-            what=rs.Particles(particles=tuple(pair)),
-            at=sp.ImmutableMatrix([0, u, 2 * v]),
-            turned=turn.matrix,
-        ),
-        rs.Part(what=rs.solid("sphere").distribution, hole=True),
-    )
-    motion = rs.derive("ZXZ", OF_PARTS, body=rs.body_of(rs.Composite(parts=parts)))
-    found = json.loads(json.dumps(record(motion, {})))
-    return found, json.loads(certificate_of(found).json)
-
-
-OF_PARTS = ("rotation_matrix", "mass", "centre_of_mass", "inertia_tensor")
-
-
-def test_a_body_is_proved_to_be_the_sum_of_its_parts(composite):
-    found, certificate = composite
-    assert {*checker.verify(found, certificate)} == {"R is a rotation", "sum of parts", *OF_PARTS}
-
-
-@pytest.mark.parametrize("group", ["mass", "centre", "inertia", "turn"])
-def test_a_wrong_part_is_refused(composite, group):
-    found, certificate = copy.deepcopy(composite)
-    part = found["body"]["parts"][1]
-    part[group] = json.loads(json.dumps(part[group]).replace("k", "2*k").replace("/3", "/6"))
-    with pytest.raises(ValueError, match="sum of parts: its cofactors do not prove"):
         checker.verify(found, certificate)
 
 
 def test_the_checker_is_short_and_needs_only_the_standard_library():
     text = CHECKER.read_text(encoding="utf-8")
-    assert text.count("\n") <= 380
+    assert text.count("\n") <= 300
     tree = ast.parse(text)
     assert not any(
         isinstance(n, ast.Constant) and isinstance(n.value, float) for n in ast.walk(tree)
@@ -527,9 +482,9 @@ def test_coq_accepts_each_rotation_of_the_catalogue(tmp_path):
 def test_lean_gets_each_entry_with_its_cofactors():
     text = lean(certificate_of(record_of("ZXZ", BASIC)))
     proved = json.loads(certified("ZXZ", BASIC))["claims"].values()
-    assert sum(map(len, proved)) == 10 + 9 + 9 + 3
+    assert sum(map(len, proved)) == 10 + 9 + 3 + 3
     # each equation once: R Rᵀ = 1 is symmetric, and zeros repeat
-    assert text.count("theorem ") == text.count("linear_combination") == 25
+    assert text.count("theorem ") == text.count("linear_combination") == 19
     assert "Not compiled" in text
 
 

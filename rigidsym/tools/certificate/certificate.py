@@ -105,16 +105,17 @@ def _claims(record: Mapping[str, Any]) -> tuple[Language, dict[str, list[Equatio
     for name, denominator in re.findall(r"(\w+)/(\d+)", json.dumps(record["rotation"])):
         parts[name] = math.lcm(parts.get(name, 1), int(denominator))
     names = [quantity["name"] for quantity in record["quantities"]]
-    names += [f"constant {integral['name']}" for integral in record["first_integrals"]]
-    names += ["sum of parts"] * ("parts" in record.get("body", ()))
-    covered = [name for name in names if _is_stated(record, parts, name)]
+    if not _are_stated(record, parts, names):
+        names = [name for name in names if _are_stated(record, parts, [name])]
     known = Language(record, parts)
-    found = stated(record, known, covered)
-    return known, found, [name for name in names if name not in covered]
+    found = stated(record, known, names)
+    rest = [q["name"] for q in record["quantities"] if q["name"] not in names]
+    return known, found, rest + [f"constant {each['name']}" for each in record["first_integrals"]]
 
 
-def _is_stated(record: Mapping[str, Any], parts: Mapping[str, int], name: str) -> bool:
+def _are_stated(record: Mapping[str, Any], parts: Mapping[str, int], names: Sequence[str]) -> bool:
     try:
-        return name in stated(record, Language(record, parts), [name])
+        stated(record, Language(record, parts), names)
     except BROKEN:
         return False
+    return True

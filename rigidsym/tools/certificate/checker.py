@@ -1,10 +1,9 @@
 """Checks certificates without the program that wrote them: `python checker.py FOLDER...`
 
 A record NAME.json holds printed expressions, NAME.cert.json cofactors. Claims are built here from
-definitions: R from its turns, d/dt by the chain rule, C(Ω) = dR/dt Rᵀ, C(Ω′) = Rᵀ dR/dt, energies
-and momenta from Ω′ and the body. Each must be a sum of cofactors times relations: cos² + sin² = 1,
-the square of a root, a divisor times its inverse, stated conditions. A point modulo PRIME where all
-of them hold shows that they do not contradict one another and that no divisor is zero.
+definitions: R from its turns, d/dt by the chain rule, Ω from C(Ω) = dR/dt Rᵀ, and so on. Each must
+be a sum of cofactors times relations: cos² + sin² = 1, the square of a root, a divisor times its
+inverse, conditions. At a point modulo PRIME all hold: none contradict, and no divisor is zero.
 """
 
 from __future__ import annotations
@@ -13,9 +12,8 @@ import ast
 import json
 import math
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +31,7 @@ SQUARE = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"  # N
 PRIME, MOST = 29682952539239999999, 99  # roots to 37 exist modulo PRIME; powers are below MOST
 ERRORS = (LookupError, ArithmeticError, AttributeError, TypeError, ValueError, SyntaxError)
 BROKEN = (*ERRORS, RecursionError, MemoryError)  # raised for what is refused
+RATES = "rate_matrix", "inverse_rate_matrix", "rates_from_angular_velocity"  # hold no rates
 
 
 class Poly:
@@ -77,10 +76,9 @@ class Array:
         rows = zip(self.rows, other.rows, strict=True)
         return Array([a + b for a, b in zip(*pair, strict=True)] for pair in rows)
 
-    def __mul__(self, factor: Poly | Fraction | int) -> Array:
-        return Array([entry * factor for entry in row] for row in self.rows)
-
-    def __matmul__(self, other: Array) -> Array:
+    def __mul__(self, other: Array | Poly | Fraction | int) -> Array:
+        if not isinstance(other, Array):
+            return Array([entry * other for entry in row] for row in self.rows)
         pairs = [[zip(row, column, strict=True) for column in other.T.rows] for row in self.rows]
         return Array([sum((a * b for a, b in pair), ZERO) for pair in row] for row in pairs)
 
@@ -94,17 +92,6 @@ def hat(vector: Array) -> Array:  # C(v), the operator v ×
     return Array([[ZERO, z * -1, y], [z, ZERO, x * -1], [y * -1, x, ZERO]])
 
 
-def moved(tensor: Array, mass: Array, by: Array) -> Array:  # the parallel-axis theorem
-    return tensor + hat(by) @ hat(by) * mass.entries[0] * -1
-
-
-def rotates(x: Array) -> Arrays:  # the products of columns, and the determinant
-    first, second, third = (Array([row]) for row in x.T.rows)
-    return x.T @ x, UNITS, first @ hat(second) @ third.T, Array([[ONE]])
-
-
-Arrays = tuple[Array, ...]  # each of odd number equals the next
-Claims = dict[str, Callable[[Array, str], Arrays]]
 ZERO, ONE = Poly({}), Poly({(): 1})
 UNITS = Array([ONE if j == k else ZERO for k in range(3)] for j in range(3))
 
@@ -118,8 +105,8 @@ class Language:
         self.relations: dict[str, Poly] = {}
         self.flow = dict.fromkeys(("pi", *self.groups.get("parameters", ())), ZERO)  # d/dt
         self.rates, self.second = ([q + d for q in self.groups["q"]] for d in ("_dot", "_ddot"))
-        moving = zip(self.groups["q"] + self.rates, self.rates + self.second, strict=True)
-        self.flow |= {name: letter(rate) for name, rate in moving}
+        for q in self.groups["q"]:
+            self.flow |= {q: letter(f"{q}_dot"), f"{q}_dot": letter(f"{q}_ddot")}
 
     def matrix(self, given: Any) -> Array:
         rows = given if isinstance(given, list) else [given]
@@ -130,15 +117,12 @@ class Language:
         match given:
             case str():
                 return self.read(ast.parse(" ".join(given.split()), mode="eval").body)
-            case ast.BinOp(left=left, op=ast.Mult() | ast.Div() as op, right=right):
-                return self.read(left, power) * self.read(
-                    right, power * (-1) ** isinstance(op, ast.Div)
-                )
-            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
+            case ast.BinOp(left, ast.Mult() | ast.Div() as op, right):
+                sign = -1 if isinstance(op, ast.Div) else 1
+                return self.read(left, power) * self.read(right, sign * power)
+            case ast.BinOp(left, ast.Add() | ast.Sub() as op, right):
                 found = self.read(left) + self.read(right) * (-1) ** isinstance(op, ast.Sub)
-            case ast.BinOp(left=left, op=ast.Pow(), right=ast.Constant(value=int(times))):
-                if abs(times * power) > MOST:
-                    raise ValueError(f"cannot raise to the power {times}")
+            case ast.BinOp(left, ast.Pow(), ast.Constant(int(times))) if abs(times * power) <= MOST:
                 return self.read(left, times * power)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 found = self.read(operand) * -1
@@ -197,10 +181,15 @@ class Language:
                 c, s = c * one + s * other * -sign, c * other * sign + s * one
         return c, s
 
-    def rate(self, value: Poly, flow: Mapping[str, Poly] | None = None) -> Poly:
+    def rate(self, value: Poly) -> Poly:
         """d/dt by the chain rule; raises KeyError for a letter whose rate is not known."""
-        rates = self.flow if flow is None else flow
-        return sum((value.derivative(n) * rates[n] for n in sorted(value.names)), ZERO)
+        return sum((value.derivative(n) * self.flow[n] for n in sorted(value.names)), ZERO)
+
+    def d(self, x: Array) -> Array:
+        return Array(map(self.rate, row) for row in x.rows)
+
+    def slope(self, x: Array) -> Array:  # ∂x/∂q̇
+        return Array(map(entry.derivative, self.rates) for entry in x.entries)
 
     def rotation(self, given: Mapping[str, Any]) -> Array:
         """R, active, as the product of its turns or by its entries, under stated conditions."""
@@ -213,126 +202,61 @@ class Language:
             form = FORMS[name].replace("N", SQUARE).format(*(f"({p})" for p in inside.split(",")))
             *v, c, s = map(self.read, form.split(";"))
             axis = hat(Array([v]))
-            found = found @ (UNITS + axis * s + axis @ axis * (ONE + c * -1))
+            found = found * (UNITS + axis * s + axis * axis * (ONE + c * -1))
         return found
 
 
 def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> dict[str, Any]:
-    """What each of the printed quantities x must satisfy, entry by entry."""
-    R = known.rotation(record["rotation"])
-    R_dot = Array(map(known.rate, row) for row in R.rows)
-    shown, shown_dot = (R.T, R_dot.T) if record["presentation"] == "passive" else (R, R_dot)
-    spin = {"space": R_dot @ R.T, "body": R.T @ R_dot}
-    omega = {f: Array([[s.rows[2][1]], [s.rows[0][2]], [s.rows[1][0]]]) for f, s in spin.items()}
+    """What each of the printed quantities x must satisfy: x = B, A x = B or x q̇ = B, by entries."""
+    R, d, slope = known.rotation(record["rotation"]), known.d, known.slope
+    shown = R.T if record["presentation"] == "passive" else R
+    B = {"rotation_matrix": shown, "rotation_rate": d(shown), "spin_matrix": d(shown) * shown.T}
+    A: dict[str, Array] = {}
+    for frame, spin in ("space", d(R) * R.T), ("body", R.T * d(R)):  # C(Ω), C(Ω′)
+        w = Array([[spin.rows[2][1]], [spin.rows[0][2]], [spin.rows[1][0]]])
+        B[f"angular_velocity_{frame}"], B[f"angular_acceleration_{frame}"] = w, d(w)
+        B[f"rate_matrix_{frame}"], B[f"inverse_rate_matrix_{frame}"] = w, UNITS
+        given = known.matrix([f"omega_{frame}_{k}" for k in (1, 2, 3)])
+        B[f"rates_from_angular_velocity_{frame}"] = given
+        A |= {f"{kind}_{frame}": slope(w) for kind in RATES[1:]}
+    if "body" in record:  # w and given are those of the body
+        m, at, tensor = (known.matrix(record["body"][g]) for g in ("mass", "centre", "inertia"))
+        texts = "X Y Z", "X_dot Y_dot Z_dot", "n_x n_y n_z", "p_x p_y p_z"
+        r, v, n, p = (known.matrix(text.split()) for text in texts)
+        arm, torque = hat(p + at * -1), known.matrix([f"torque_{k}" for k in (1, 2, 3)])
+        B["mass"], B["centre_of_mass"], B["inertia_tensor"] = m, at, tensor
+        B["inertia_tensor_point"] = about = tensor + arm.T * arm * m.entries[0]
+        B["inertia_tensor_space"], B["moment_of_inertia"] = R * tensor * R.T, n.T * about * n
+        B["translational_energy"] = moving = v.T * v * m * Fraction(1, 2)
+        B["rotational_energy"] = turning = w.T * tensor * w * Fraction(1, 2)
+        B["kinetic_energy"] = moving + turning
+        B["angular_momentum_centre"] = orbital = hat(r) * v * m
+        spun = B["angular_momentum_rotation_body"] = tensor * w
+        B["angular_momentum_rotation"], B["angular_momentum"] = R * spun, orbital + R * spun
+        A["angular_acceleration_from_torque"] = tensor
+        B["angular_acceleration_from_torque"] = torque + hat(given) * tensor * given * -1
+    if "motion" in record:  # Lagrange's equations are 2 dp/dt − ∂(dL/dt)/∂q̇ = M q̈ + h = Q
+        potential, forces = (known.matrix(record["motion"][g]) for g in ("potential", "forces"))
+        B["potential_energy"], B["energy"] = potential, turning + potential
+        B["lagrangian"] = free = turning + potential * -1
+        B["generalised_momenta"] = p = slope(turning).T
+        B["mass_matrix"] = A["accelerations"] = mass = slope(p)
+        B["bias_vector"] = d(p) * 2 + (slope(d(free)).T + mass * known.matrix(known.second)) * -1
+        B["accelerations"] = forces + B["bias_vector"] * -1
+    volume = Array([R.rows[0]]) * hat(Array([R.rows[1]])) * Array([R.rows[2]]).T
+    lengths = zip((R * R.T).entries, UNITS.entries, strict=True)
+    found = {"R is a rotation": [*lengths, (volume.entries[0], ONE)]}
     steady = {"sqrt", "cos", "sin", "tan", "cot", *known.flow} - {*known.rates}
-    given = {f: known.matrix([f"omega_{f}_{k}" for k in (1, 2, 3)]) for f in spin}
-    W = {f: Array(map(w.derivative, known.rates) for w in v.entries) for f, v in omega.items()}
-    claims: Claims = {
-        "rotation_matrix": lambda x, _: (x, shown),
-        "rotation_rate": lambda x, _: (x, shown_dot),
-        "spin_matrix": lambda x, _: (x, shown_dot @ shown.T),
-        "angular_velocity": lambda x, f: (hat(x), spin[f]),
-        "angular_acceleration": lambda x, f: (x, Array(map(known.rate, r) for r in omega[f].rows)),
-        "rate_matrix": lambda x, f: (x @ known.matrix(known.rates), omega[f]),
-        "inverse_rate_matrix": lambda x, f: (W[f] @ x, UNITS),
-        "rates_from_angular_velocity": lambda x, f: (W[f] @ x, given[f]),
-        "R is a rotation": lambda _, __: rotates(R.T),
-    }
-    texts = {"R is a rotation": [], **{q["name"]: q["expression"] for q in record["quantities"]}}
-    if len(texts) <= len(record["quantities"]):
-        raise ValueError("a quantity is printed twice")
-    if "body" in record:
-        claims |= of_body(known, R, omega["body"], record["body"], texts)
-        texts |= {"sum of parts": []} if "parts" in record["body"] else {}
-    if "motion" in record:
-        claims |= of_motion(known, omega["body"], record, texts)
-        texts |= {f"constant {e['name']}": e["expression"] for e in record["first_integrals"]}
-    found = {}
-    for name in ("R is a rotation", *(name for name in texts if name in names)):
-        kind, _, frame = name.rpartition("_")
-        text = str(texts[name]).replace("'", "")
-        used = {getattr(n, "id", "pi") for n in ast.walk(ast.parse(text))}
-        if "rate" in kind and (left := used - steady - {f"omega_{frame}_{k}" for k in "123"}):
-            raise ValueError(f"{name} holds {min(left)}")
-        sides = (claims.get(name) or claims[kind])(known.matrix(texts[name]), frame)
-        pairs = zip(sides[::2], sides[1::2], strict=True)
-        found[name] = [e for a, b in pairs for e in zip(a.entries, b.entries, strict=True)]
+    for name, text in ((q["name"], q["expression"]) for q in record["quantities"]):
+        if name in names:
+            x, (kind, _, frame) = known.matrix(text), name.rpartition("_")
+            used = {getattr(n, "id", "pi") for n in ast.walk(ast.parse(str(text).replace("'", "")))}
+            if kind in RATES and (left := used - steady - {f"omega_{frame}_{k}" for k in "123"}):
+                raise ValueError(f"{name} holds {min(left)}")
+            x = x * known.matrix(known.rates) if kind == RATES[0] else x
+            x = A[name] * x if name in A else x
+            found[name] = [*found.get(name, ()), *zip(x.entries, B[name].entries, strict=True)]
     return found
-
-
-def of_body(known: Language, R: Array, w: Array, body: Any, texts: Mapping[str, Any]) -> Claims:
-    """With the mass, the centre of mass, and the tensor about it or about a fixed point."""
-    m, at, tensor = (known.matrix(body[g]) for g in ("mass", "centre", "inertia"))
-    lines = "X Y Z", "X_dot Y_dot Z_dot", "n_x n_y n_z", "p_x p_y p_z"
-    r, v, n, p = (known.matrix(line.split()) for line in lines)
-    o, t = (known.matrix([f"{g}_{k}" for k in (1, 2, 3)]) for g in ("omega_body", "torque"))
-    spun, about = tensor @ w, moved(tensor, m, p + at * -1)
-    sums = [m * 0, at * 0, tensor * 0]
-    for part in body.get("parts", ()):
-        mass, c, own, turn = (known.matrix(part[g]) for g in ("mass", "centre", "inertia", "turn"))
-        parts = mass, c @ mass, moved(turn @ own @ turn.T, mass, c + at * -1)
-        sums = [total + part for total, part in zip(sums, parts, strict=True)]
-
-    def principal(_: Array, __: str) -> Arrays:
-        axes, moments = (known.matrix(texts[f"principal_{g}"]) for g in ("axes", "moments"))
-        columns = zip(axes.T.rows, moments.entries, strict=True)
-        return *rotates(axes), tensor @ axes, Array([e * k for e in row] for row, k in columns).T
-
-    return {
-        "sum of parts": lambda _, __: (sums[0], m, sums[1], at @ m, sums[2], tensor),
-        "mass": lambda x, _: (x, m),
-        "centre_of_mass": lambda x, _: (x, at),
-        "inertia_tensor": lambda x, _: (x, tensor),
-        "inertia_tensor_point": lambda x, _: (x, about),
-        "moment_of_inertia": lambda x, _: (x, n.T @ about @ n),
-        "inertia_tensor_space": lambda x, _: (x, R @ tensor @ R.T),
-        **dict.fromkeys(("principal_moments", "principal_axes"), principal),
-        "translational_energy": lambda x, _: (x * 2, v.T @ v @ m),
-        "rotational_energy": lambda x, _: (x * 2, w.T @ spun),
-        "kinetic_energy": lambda x, _: (x * 2, v.T @ v @ m + w.T @ spun),
-        "angular_momentum_centre": lambda x, _: (x, hat(r) @ v @ m),
-        "angular_momentum_rotation_body": lambda x, _: (x, spun),
-        "angular_momentum_rotation": lambda x, _: (x, R @ spun),
-        "angular_momentum": lambda x, _: (x, hat(r) @ v @ m + R @ spun),
-        "angular_acceleration_from_torque": lambda x, _: (tensor @ x + hat(o) @ tensor @ o, t),
-    }
-
-
-def of_motion(known: Language, w: Array, record: Any, texts: Mapping[str, Any]) -> Claims:
-    """With p = ∂T/∂q̇ and M = ∂p/∂q̇, Lagrange's equations d/dt p − ∂(T − V)/∂q = Q."""
-    potential, forces = (known.matrix(record["motion"][g]) for g in ("potential", "forces"))
-    kinetic = w.T @ known.matrix(record["body"]["inertia"]) @ w * Fraction(1, 2)
-    p = Array(map(e.derivative, known.rates) for e in kinetic.entries).T
-    mass = Array(map(e.derivative, known.rates) for e in p.entries)
-    momenta, whole, free = known.groups["momenta"], kinetic + potential, kinetic + potential * -1
-    own = {"energy": whole} | dict(zip(momenta, (Array([[e]]) for e in p.entries), strict=True))
-
-    def bias() -> Array:
-        flows = ({n: rate.derivative(d) for n, rate in known.flow.items()} for d in known.rates)
-        slopes = Array([known.rate(e, flow) * -1 for e in free.entries] for flow in flows)
-        change = Array([known.rate(e)] for e in p.entries)
-        return change + mass @ known.matrix(known.second) * -1 + slopes
-
-    def constant(name: str, x: Array, _: str) -> Arrays:
-        solved = known.matrix(texts["accelerations"]).entries
-        flow = known.flow | dict(zip(known.rates, solved, strict=True))
-        return Array([[known.rate(x.entries[0], flow)]]), x * 0, x, own[name]
-
-    def hamiltonian(x: Array, _: str) -> Arrays:
-        slope, given = Array([x.entries[0].derivative(n)] for n in momenta), known.matrix(momenta)
-        return mass @ slope, given, (x + potential * -1) * 2, given.T @ slope
-
-    constants = {f"constant {n.replace('p_', 'momentum_', 1)}": partial(constant, n) for n in own}
-    return constants | {
-        "potential_energy": lambda x, _: (x, potential),
-        "lagrangian": lambda x, _: (x, free),
-        "energy": lambda x, _: (x, whole),
-        "generalised_momenta": lambda x, _: (x, p),
-        "mass_matrix": lambda x, _: (x, mass),
-        "bias_vector": lambda x, _: (x, bias()),
-        "accelerations": lambda x, _: (mass @ x + bias(), forces),
-        "hamiltonian": hamiltonian,
-    }
 
 
 def verify(record: Mapping[str, Any], certificate: Mapping[str, Any]) -> list[str]:

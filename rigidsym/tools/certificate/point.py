@@ -53,13 +53,13 @@ def _orthogonal(known: Language) -> dict[str, int]:
     v, omega, alpha = (
         hat(Array([ONE * k] for k in entries)) for entries in ((1, 2, 3), (2, 3, 5), (7, 1, 4))
     )
-    R = UNITS + (v + v @ v) * Fraction(2, 15)  # of the quaternion 1 + (1, 2, 3)
+    R = UNITS + (v + v * v) * Fraction(2, 15)  # of the quaternion 1 + (1, 2, 3)
     return {
         name: residue(entry, {})
         for group, matrix in (
             ("q", R),
-            ("q_dot", R @ omega),
-            ("q_ddot", R @ (omega @ omega + alpha)),
+            ("q_dot", R * omega),
+            ("q_ddot", R * (omega * omega + alpha)),
         )
         for name, entry in zip(known.groups[group], matrix.entries, strict=True)
     }
