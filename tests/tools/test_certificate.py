@@ -457,7 +457,7 @@ def test_coq_accepts_the_theorems_and_refuses_a_wrong_one(tmp_path):
     assert run_coq(tmp_path, text.replace(" = cos_theta.\n", " = sin_theta.\n", 1)) != 0
 
 
-RATES = ("rotation_matrix", "rate_matrix_space", "rate_matrix_body")
+RATES = ("rotation_matrix", "rate_matrix_body")
 
 
 def test_coq_accepts_the_lagrangian_and_the_mass_matrix(tmp_path):
