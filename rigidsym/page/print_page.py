@@ -18,6 +18,7 @@ from rigidsym.formula.tree import NOTHING, Numeral, Symbol
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
+from rigidsym.models.example import OMEGA_COMPONENTS, initial_values
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document.document import Document, Equation, Paragraph, Text, words
 from rigidsym.notes.figure.body_mesh import own_shape
@@ -55,13 +56,25 @@ _SAID = re.compile(r'\bsaid\("([^"]+)"\)')  # in a module, words that the page s
 _EXPORT = re.compile(r"^export (?=\w)", re.MULTILINE)
 
 
+def _first_example(derivation: Derivation) -> Mapping[str, float]:
+    """Its values by name; only the constants if the example gives Ω′ in place of rates."""
+    if derivation.forces is None or not derivation.forces.examples:
+        return {}
+    example = derivation.forces.examples[0]
+    values = initial_values(derivation.model, example.initial)
+    has_rates = set(OMEGA_COMPONENTS).isdisjoint(values)
+    return {**example.parameters, **(values if has_rates else {})}
+
+
 def print_page(
     derivation: Derivation, document: Document, start: Mapping[str, float] = MappingProxyType({})
 ) -> str:
     """The page of a derivation and its note; the same input gives the same bytes.
 
-    `start` holds initial values by name, of coordinates, rates and constants, in SI units.
+    `start` holds initial values by name, of coordinates, rates and constants, in SI units; without
+    them the page begins with the first example of the derivation.
     """
+    start = start or _first_example(derivation)
     functions = functions_of(derivation)
     starts = starts_of(derivation.body)
     starts |= {symbol: start[symbol.name] for symbol in starts if symbol.name in start}

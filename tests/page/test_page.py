@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import shutil
@@ -23,7 +24,7 @@ from rigidsym.commands.cli import commands
 from rigidsym.motion import derive
 from rigidsym.page.functions import SHOWN
 from rigidsym.page.print_page import MODULES, MOST_BYTES
-from rigidsym.pipeline import output_of, read_spec
+from rigidsym.pipeline import motion_of, output_of, read_spec
 from rigidsym.system import resources
 
 SOME_EULER = ("euler_zxz_intrinsic", "euler_zyx_intrinsic", "euler_xyz_extrinsic")
@@ -208,3 +209,10 @@ def test_every_page_is_valid(tmp_path: Path):
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_page_of_a_motion_begins_with_its_first_example():
+    page = motion_of(shipped()["heavy_symmetric_top"]).page()
+    starts = dict(re.findall(r'id="([\w-]+)-number" step="any" value="([^"]+)"', page))
+    assert starts["parameters-2"] == "0.5"  # C
+    assert float(starts["q_dot-2"]) == pytest.approx(12 * 180 / math.pi, abs=1e-3)  # ψ̇
