@@ -620,7 +620,7 @@ def test_a_motion_is_integrated_in_the_page_as_by_simulate(tab, tmp_path):
     names = ("phi", "theta", "psi")
     initial = {name: before[f"q-{k}"] for k, name in enumerate(names)}
     initial |= {f"{name}_dot": before[f"q_dot-{k}"] for k, name in enumerate(names)}
-    constants = dict(zip(("A", "C", "g", "l", "m"), (1.0, 0.6, 9.81, 0.5, 1.0), strict=True))
+    constants = motion.forces.examples[0].parameters
     expected = motion.simulate(initial, constants, 4.0, samples=3)
     found = [after[f"q_dot-{k}"] for k in range(3)]
     np.testing.assert_allclose(found, expected.q_dot[-1], rtol=1e-5)
