@@ -10,6 +10,7 @@ from typing import Any
 
 from rigidsym.commands.command import message
 from rigidsym.errors import EditedFiles, SpecError
+from rigidsym.kernels.lowering.degrees import SUFFIX
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.pipeline import PAGE, PDF, Output, digest, note_formats, page_name, read_record
 from rigidsym.spec.derivation_spec import DerivationSpec
@@ -116,6 +117,6 @@ def _file(output: str, spec: DerivationSpec, folder: Path) -> Path:
     """The main file of a target or a format."""
     name = folder.name
     if output in TARGETS:
-        return folder / f"{name}{'_deg' * spec.degrees}{TARGETS[output].ending}"
+        return folder / f"{name}{SUFFIX * spec.degrees}{TARGETS[output].ending}"
     assert output in note_formats()
     return folder / (page_name(name) if output == PAGE else f"{name}.{output}")

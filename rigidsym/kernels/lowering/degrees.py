@@ -1,8 +1,8 @@
 """Angles in degrees: what is scaled, and by which power of 180/π.
 
 Angles, angular velocities and rates, and angular accelerations are in degrees as arguments and as
-results; all else stays in SI units. So Ω = W q̇ holds for the functions as they stand, and a
-derivative by an angle is one by degrees.
+results; everything else stays in SI units. So Ω = W q̇ still holds, and a derivative with respect
+to an angle is per degree.
 """
 
 from __future__ import annotations
@@ -17,11 +17,13 @@ from rigidsym.mechanics.derivation import Argument, Step
 DEGREE, RADIAN = sp.Dummy("degree"), sp.Dummy("radian")
 FACTORS = {DEGREE: pi / 180, RADIAN: 180 / pi}  # in radians, in degrees
 
+SUFFIX = "_deg"  # of the names of modules and of components
+
 ABOUT = (
     "Angles are in degrees, angular velocities and rates of angles in deg/s, angular "
-    "accelerations in deg/s^2, both as arguments and as results, and derivatives are those of the "
-    "functions as they stand. All else is in SI units, with angles in radians: constants in "
-    "`parameters`, energies, momenta, and formulas and ranges in this text."
+    "accelerations in deg/s^2, both as arguments and as results, and derivatives with respect to "
+    "an angle are per degree. Constants in `parameters`, energies, momenta, and the formulas and "
+    "ranges in this text are in SI units, with angles in radians."
 )
 
 # Quantities whose entries differ in their units: the arguments that have the units of rows and

@@ -19,7 +19,14 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.present import halved
 from rigidsym.algebra.stumpff import Stumpff, at_zero, rewriter_of
 from rigidsym.kernels import ir
-from rigidsym.kernels.lowering.degrees import ABOUT, in_degrees, is_angle, powers_in, powers_of
+from rigidsym.kernels.lowering.degrees import (
+    ABOUT,
+    SUFFIX,
+    in_degrees,
+    is_angle,
+    powers_in,
+    powers_of,
+)
 from rigidsym.kernels.lowering.derivatives import Derivative
 from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names
@@ -70,7 +77,7 @@ def lower(
     used = {argument.name for kernel in found for argument in kernel.arguments}
     model = derivation.model
     return ir.Program(
-        name=derivation.name + ("_deg" if degrees else ""),
+        name=derivation.name + SUFFIX * degrees,
         units="degrees" if degrees else "radians",
         title=derivation.title,
         convention=(
@@ -137,7 +144,7 @@ class _Lowering:
         if vector.name not in self.arguments:
             for symbol, name, unit in zip(vector.symbols, vector.names, vector.units, strict=True):
                 if symbol not in self._known and is_scaled and is_angle(unit):
-                    self._known[symbol] = self._names.fresh(f"{name}_deg")
+                    self._known[symbol] = self._names.fresh(f"{name}{SUFFIX}")
                     self._in_degrees.add(self._known[symbol])
                 elif symbol not in self._known:
                     self._known[symbol] = self._names.fresh(name)
