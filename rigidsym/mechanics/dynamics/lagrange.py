@@ -185,6 +185,11 @@ class Lagrange:
         return self.gyroscopic + self.column(self.gradient)
 
     @cached_property
+    def driving(self) -> RingMatrix:
+        """Q − ∂V/∂q."""
+        return self.column(self.forces) - self.column(self.gradient)
+
+    @cached_property
     def solved(self) -> Inverse:
         """(n, d) with q̈ = n/d, from M q̈ = Q − h.
 
@@ -210,10 +215,9 @@ class Lagrange:
         back, below, size = jacobian.adjugate(), jacobian.det(), tensor.det()
         slopes = jacobian.dt() @ self.q_dot + shift.dt()
         inner = tensor.adjugate() @ turned(tensor, self.omega) + slopes.scale(size)
-        acting = self.column(self.forces) - self.column(self.gradient)
-        if acting.is_zero():
+        if self.driving.is_zero():
             return back @ inner.scale(-self.ring.one), self.ring.reduce(size * below)
-        torque = tensor.adjugate() @ (back.T @ acting)
+        torque = tensor.adjugate() @ (back.T @ self.driving)
         return back @ (torque - inner.scale(below)), self.ring.reduce(size * below * below)
 
     @cached_property
@@ -224,9 +228,8 @@ class Lagrange:
         """
         assert self.back is not None
         back, below = encoded(self.codec, self.back[0]), self.codec.encode(self.back[1])
-        acting = self.column(self.forces) - self.column(self.gradient)
-        seen = self.terms[0][0].T @ (back.T @ acting)
-        if not self.model.constraints and not (seen - acting.scale(below)).is_zero():
+        seen = self.terms[0][0].T @ (back.T @ self.driving)
+        if not self.model.constraints and not (seen - self.driving.scale(below)).is_zero():
             raise ModelError(
                 f"{self.model.name}: the potential or a force depends on coordinates that R does "
                 "not determine, such as the length of a quaternion; expected one that does not, "
@@ -235,15 +238,14 @@ class Lagrange:
         return back, below
 
     def _solved_in_bounds(self) -> Inverse:
-        """W′ q̈ = dΩ′/dt − dj/dt − dW′/dt q̇, and the rest of q̈ is that of d/dt(U W′ q̇).
+        """q̈ from W′ q̈ = dΩ′/dt − dj/dt − dW′/dt q̇ and q̇ = U W′ q̇, differentiated.
 
         dΩ′/dt follows from Euler's equations with the torque Uᵀ (Q − ∂V/∂q).
         """
         back, below = self.possible
         ((jacobian, shift, tensor, _),) = self.terms
         size, turning = tensor.det(), jacobian @ self.q_dot
-        acting = self.column(self.forces) - self.column(self.gradient)
-        torque = back.T @ acting - turned(tensor, self.omega).scale(below)
+        torque = back.T @ self.driving - turned(tensor, self.omega).scale(below)
         slopes = (shift.dt() + jacobian.dt() @ self.q_dot).scale(size * below)
         within = back @ (tensor.adjugate() @ torque - slopes)  # over det I d²
         moving = (back.dt().scale(below) - back.scale(self.ring.dt(below))) @ turning  # over d²
