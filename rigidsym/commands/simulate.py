@@ -125,14 +125,12 @@ def command(source: str, options: SimulationOptions) -> None:
     for name in ("spread", "scheduler"):
         if getattr(options, name):
             raise click.UsageError(f"--{name} is for ensembles; add --ensemble or --grid")
-    example = _example(motion)
-    constants = {**example.parameters, **dict(options.constants)}
-    start = _start(motion, dict(options.initial) or example.initial)
+    initial, constants, t_end = _given(motion, options)
     with bar(motion.name) as progress:
         found = motion.simulate(
-            start,
+            _start(motion, initial),
             constants,
-            example.time if options.t_end is None else options.t_end,
+            t_end,
             samples=options.samples or 1001,
             method=options.method,
             progress=progress,
@@ -169,9 +167,7 @@ def _ensemble(motion: Motion, options: SimulationOptions) -> None:
     if options.grid and options.ensemble is not None:
         raise click.UsageError("--grid and --ensemble: expected one of them")
     generator = np.random.default_rng(options.seed)
-    example = _example(motion)
-    initial: dict[str, Any] = dict(options.initial or example.initial)
-    constants: dict[str, Any] = {**example.parameters, **dict(options.constants)}
+    initial, constants, t_end = _given(motion, options)
     names = {name for each in motion.arguments if each.name == "parameters" for name in each.names}
     for name, values in options.grid.items():
         (constants if name in names else initial)[name] = values
@@ -188,7 +184,7 @@ def _ensemble(motion: Motion, options: SimulationOptions) -> None:
         found = motion.simulate_many(
             start,
             constants,
-            example.time if options.t_end is None else options.t_end,
+            t_end,
             samples=options.samples or 101,
             scheduler=options.scheduler,
             progress=progress,
@@ -227,7 +223,14 @@ def _start(motion: Motion, given: Mapping[str, Any]) -> dict[str, Any]:
     return start | ({OMEGA: np.stack(np.broadcast_arrays(*turning), axis=-1)} if turning else {})
 
 
-def _example(motion: Motion) -> Example:
-    """The first of the file, or no rotation at rest for 10 s."""
+def _given(
+    motion: Motion, options: SimulationOptions
+) -> tuple[dict[str, Any], dict[str, Any], float]:
+    """Initial values, constants and time; without them those of the first example of the file."""
     examples = motion.forces.examples if motion.forces else ()
-    return examples[0] if examples else Example({}, {}, 10.0)
+    example = examples[0] if examples else Example({}, {}, 10.0)
+    return (
+        dict(options.initial or example.initial),
+        {**example.parameters, **dict(options.constants)},
+        example.time if options.t_end is None else options.t_end,
+    )
