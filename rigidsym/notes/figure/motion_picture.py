@@ -17,7 +17,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.models.example import Example, initial_values
+from rigidsym.models.example import OMEGA_COMPONENTS, Example, initial_values
 from rigidsym.models.forces import OMEGA_BODY, Forces
 from rigidsym.models.so3 import TIME
 from rigidsym.notes.figure.body_mesh import evaluator
@@ -55,11 +55,10 @@ def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | 
     derived = {*(step.quantity.name for step in derivation.steps), *derivation.functions}
     if forces is None or not forces.examples or not derived >= _NEEDED:
         return None
-    motions = [
-        ExampleMotion(derivation, forces, example) for example in forces.examples[:_IN_A_ROW]
-    ]
-    if motions[0].is_poinsot:
-        motions = [ExampleMotion(derivation, forces, example) for example in forces.examples]
+    first = ExampleMotion(derivation, forces, forces.examples[0])
+    most = None if first.is_poinsot else _IN_A_ROW  # all polhodes are on one ellipsoid
+    others = (ExampleMotion(derivation, forces, e) for e in forces.examples[1:most])
+    motions = [first, *others]
     traces = list(_traces(motions, letters))
     drawings = [drawing for _, drawing in traces]
     if not drawings:
@@ -68,7 +67,7 @@ def motion_picture(derivation: Derivation, letters: Letters) -> MotionPicture | 
     elif len(drawings) == 1:
         drawings.insert(0, _over_time(motions[0], letters, _NARROW))
     kinds = tuple(dict.fromkeys(kind for kind, _ in traces))
-    return MotionPicture(in_a_row(drawings), 1 if motions[0].is_poinsot else len(motions), kinds)
+    return MotionPicture(in_a_row(drawings), 1 if first.is_poinsot else len(motions), kinds)
 
 
 class ExampleMotion:
@@ -117,7 +116,7 @@ class ExampleMotion:
         given = initial_values(self.derivation.model, self.example.initial)
         wanted = [f"{name}_dot" for name in coordinates]
         if self.y[len(coordinates) :] == OMEGA_BODY:
-            wanted = [f"angular_velocity_body_{k}" for k in (1, 2, 3)]
+            wanted = [*OMEGA_COMPONENTS]
         at_rest = not any(v for name, v in given.items() if name not in coordinates)
         missing = [name for name in wanted if name not in given and not at_rest]
         if missing:
