@@ -304,6 +304,13 @@ def test_euler_s_equations_are_proved_and_a_lost_gyroscopic_term_is_refused():
         checker.verify(found, certificate)
 
 
+def spoil(found: dict[str, Any], quantity: str, before: str, after: str) -> None:
+    """Change what is printed of a quantity, once."""
+    text = json.dumps(printed(found, quantity)["expression"])
+    assert before in text
+    printed(found, quantity)["expression"] = json.loads(text.replace(before, after, 1))
+
+
 @pytest.mark.parametrize(
     ("quantity", "before", "after"),
     [
@@ -315,9 +322,7 @@ def test_euler_s_equations_are_proved_and_a_lost_gyroscopic_term_is_refused():
 )
 def test_a_wrong_energy_momentum_or_tensor_is_refused(box, quantity, before, after):
     found, certificate = copy.deepcopy(box)
-    text = json.dumps(printed(found, quantity)["expression"])
-    assert before in text
-    printed(found, quantity)["expression"] = json.loads(text.replace(before, after, 1))
+    spoil(found, quantity, before, after)
     with pytest.raises(ValueError, match=f"{quantity}: its cofactors do not prove"):
         checker.verify(found, certificate)
 
@@ -370,9 +375,7 @@ def test_a_claim_that_the_checker_does_not_know_is_refused(top, name):
 )
 def test_a_wrong_equation_of_motion_is_refused(top, quantity, before, after):
     found, certificate = copy.deepcopy(top)
-    text = json.dumps(printed(found, quantity)["expression"])
-    assert before in text
-    printed(found, quantity)["expression"] = json.loads(text.replace(before, after, 1))
+    spoil(found, quantity, before, after)
     with pytest.raises(ValueError, match="its cofactors do not prove"):
         checker.verify(found, certificate)
 
