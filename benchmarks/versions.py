@@ -32,7 +32,7 @@ COMMAND = "from rigidsym.commands.cli import main; main()"
 
 
 def interpreters() -> list[str]:
-    """The interpreters that start: a name on the path may stand for one that is not installed."""
+    """The interpreters that run; a name on the path may belong to one that is not installed."""
     named = (shutil.which(f"python3.{minor}") for minor in range(11, 20))
     started = [path for path in named if path and _starts(path)]
     return started or [sys.executable]

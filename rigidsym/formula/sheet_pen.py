@@ -37,9 +37,8 @@ class SheetPen(Pen):
     spelt_index: Callable[[str, str], str]
     spelt_number: Callable[[str], str]
     spelt_sign: Callable[[str, bool], str]  # whether it is binary
-    spelt_gap: Callable[
-        [tree.Formula, tree.Formula, bool], str
-    ]  # between two factors, whether it is thin
+    # Between two factors, and whether it is thin.
+    spelt_gap: Callable[[tree.Formula, tree.Formula, bool], str]
     spelt_function: Callable[[str, int, Piece], str]  # with its exponent, before the argument
     spelt_power: Callable[[tree.Formula, str, str], str]  # base, its text, exponent
     spelt_fraction: Callable[[str, str], str]

@@ -390,7 +390,7 @@ def test_what_is_transposed_is_said_to_be():
     ("rotation", "choice"),
     [
         ("unit_quaternion", "satisfy the conditions on the coordinates"),
-        ("quaternion", "gives those that keep it constant"),
+        ("quaternion", "gives the rates for which it stays constant"),
     ],
 )
 def test_which_of_all_rates_are_taken_depends_on_the_conditions(rotation, choice):

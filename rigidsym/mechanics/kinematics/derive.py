@@ -250,11 +250,10 @@ class Expanded(Kinematics):
         return "The angular velocity depends linearly on the rates, with the coefficients W."
 
     def _inverse_in_words(self, frame: str) -> str:
-        is_square = len(self.model.coordinates) == 3
         if frame == "body":
-            kind = "inverse" if is_square else "right inverse"
+            kind = "inverse" if self.is_square else "right inverse"
             return f"The {kind} of W′ is found in the same way."
-        if is_square:
+        if self.is_square:
             return (
                 "The inverse of W, its adjugate over its determinant, gives the rates for a known "
                 "angular velocity."
@@ -267,7 +266,7 @@ class Expanded(Kinematics):
         if self.model.vector:
             return (
                 "The rates are not unique, since the length of the quaternion is irrelevant; the "
-                "right inverse of W gives those that keep it constant."
+                "right inverse of W gives the rates for which it stays constant."
             )
         return (
             "The rates are not unique, since there are more coordinates than components of the "

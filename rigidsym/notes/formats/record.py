@@ -139,9 +139,9 @@ def _part(part: Sequence[Any], names: Names) -> dict[str, Any]:
 def _motion(derivation: Derivation, names: Names) -> dict[str, Any]:
     """V and the generalised forces, if nothing else enters Lagrange's equations of the body."""
     acting, groups = derivation.forces, {argument.name for argument in derivation.arguments}
-    if acting is None or "momenta" not in groups or acting.depend_on_time or any(acting.torque):
+    if acting is None or "momenta" not in groups:
         return {}
-    if acting.parts or acting.frame_rate:
+    if acting.depend_on_time or any(acting.torque) or acting.parts or acting.frame_rate:
         return {}
     coordinates = derivation.model.coordinates
     forces = [_plain(sp.sympify(acting.generalised.get(q, 0)), names) for q in coordinates]
