@@ -48,11 +48,11 @@ from rigidsym.tools.identify.identification import identify_file
 
 SECONDS, GIGABYTES = 10.0, 1.0
 SLACK = 5.0  # seconds beyond the limit: one step of SymPy is not interrupted
-DERIVED = 200  # one derivation file in so many is run
+DERIVED = 1000  # one derivation file in so many is run
 SLICE = 500  # inputs between two writings of the file of a campaign
 WHOLE = {
     "expressions": 100_000,
-    "derivation files": 100_000,
+    "derivation files": 1_000_000,
     "data files": 10_000,
     "meshes": 10_000,
     "records": 10_000,
