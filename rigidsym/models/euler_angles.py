@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.errors import ModelError
-from rigidsym.models.rotation import DIEBEL, RotationModel, Turn, lecture, product_of
+from rigidsym.models.rotation import DIEBEL, RotationModel, Turn, book, product_of
 from rigidsym.models.so3 import AXES, time_functions
 
 AXIS_SEQUENCES = tuple(
@@ -21,7 +21,7 @@ EULER_SEQUENCES = tuple(s.upper() for s in AXIS_SEQUENCES) + AXIS_SEQUENCES
 DEFAULT_ANGLES = ("phi", "theta", "psi")
 
 DIGITS = str.maketrans("123", "XYZ")  # of a sequence, which are letters in upper case
-_ZXZ_SOURCE = lecture("17", "section 3.2")
+_ZXZ_SOURCE = book("Landau 35")
 
 
 def EulerAngles(
@@ -30,7 +30,7 @@ def EulerAngles(
     """Three turns about coordinate axes, in radians.
 
     `sequence` is intrinsic in upper case or digits (`ZXZ`, `313`: about the turning axes, with
-    R = R_z(q1) R_x(q2) R_z(q3), lecture eq. 17) and extrinsic in lower case (`zxz`: about the
+    R = R_z(q1) R_x(q2) R_z(q3)) and extrinsic in lower case (`zxz`: about the
     fixed axes, with R = R_z(q3) R_x(q2) R_z(q1)). `angles` are taken in the order of the turns.
 
     Raises ModelError for a sequence that is not one of the 24, and for angles that are not three

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from rigidsym.models import parametrisations
-from rigidsym.models.rotation import Citation, RotationModel, lecture
+from rigidsym.models.rotation import Citation, RotationModel, book, lecture
 
 
 class Entry(NamedTuple):
@@ -62,17 +62,13 @@ PRESETS: Mapping[str, Preset] = {
     "goldstein": Preset(
         "ZXZ",
         "Goldstein's Euler angles, his matrix A from space to body axes",
-        Citation(
-            "H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)",
-            section="section 4.4",
-            equation="4.46",
-        ),
+        book("Goldstein 4.4 (4.46)"),
         passive=True,
     ),
     "landau_lifshitz": Preset(
         "ZXZ",
         "the Euler angles of Landau and Lifshitz",
-        Citation("L. Landau, E. Lifshitz, Mechanics (1976)", section="section 35"),
+        book("Landau 35"),
     ),
     "aerospace": Preset(
         "ZYX",

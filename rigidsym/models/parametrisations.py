@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.models.rotation import Citation, Pullback, RotationModel, lecture
+from rigidsym.models.rotation import Citation, Pullback, RotationModel, book
 from rigidsym.models.so3 import hat, rodrigues, time_functions
 
 _SHUSTER = Citation(
@@ -219,7 +219,7 @@ def DirectionCosines(names: Sequence[str] = _COSINES, *, passive: bool = False) 
         "The coordinates are the nine entries of R, row by row.",
         entries,
         sp.Matrix(3, 3, entries),
-        lecture("15", "section 3.2"),
+        book("Goldstein 4.2"),
         passive=passive,
         pullback=Pullback(coordinates=tuple(quaternion.matrix), constraints=quaternion.constraints),
     )

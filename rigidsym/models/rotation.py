@@ -34,18 +34,30 @@ class Citation(NamedTuple):
         return ", ".join(filter(None, (self.text, self.section, equation)))
 
 
-LECTURE = "Lecture notes on rigid body motion"
+LECTURE = "Lecture notes on rigid body motion, unpublished, n.d."
 
-DIEBEL = Citation(
-    text="J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation "
+_BOOKS = {
+    "Diebel": "J. Diebel, Representing Attitude: Euler Angles, Unit Quaternions, and Rotation "
     "Vectors (2006)",
-    section="section 5",
-)
+    "Goldstein": "H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)",
+    "Landau": "L. Landau, E. Lifshitz, Mechanics (1976)",
+    "Murray": "R. Murray, Z. Li, S. Sastry, A Mathematical Introduction to Robotic Manipulation "
+    "(1994)",
+}
 
 
 def lecture(equation: str = "", section: str = "") -> Citation:
     """A place in the lecture notes."""
     return Citation(text=LECTURE, equation=equation, section=section)
+
+
+def book(place: str) -> Citation:
+    """A place in a book: "Landau 35", or with an equation "Landau 32 (32.12)"."""
+    name, section, *equation = place.split()
+    return Citation(_BOOKS[name], "".join(equation).strip("()"), f"section {section}")
+
+
+DIEBEL = book("Diebel 5")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -13,6 +13,8 @@ from sympy.physics.vector import dynamicsymbols
 from helpers.witness import agree, evaluate, paths, values_along
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.models.library import PRESETS
+from rigidsym.models.rotation import book, lecture
 from rigidsym.models.so3 import elementary, hat
 
 phi, theta, psi = dynamicsymbols("phi theta psi")
@@ -151,14 +153,13 @@ def test_only_the_sum_of_the_outer_angles_matters_where_theta_vanishes():
     ) == turn_z(alpha)
 
 
-def test_sources_are_the_equations_of_the_lecture():
-    def equation(name):
-        return MOTION.step(name).quantity.source.equation
+def test_sources_are_published_books_and_the_lecture_for_its_own_angles():
+    def source(name):
+        return MOTION.step(name).quantity.source
 
-    assert equation("rotation_matrix") == "17"
-    assert equation("spin_matrix") == "15"
-    assert equation("angular_velocity_body") == "16"
-    assert MODEL.source.equation == "17"
+    assert source("rotation_matrix") == MODEL.source == book("Landau 35")
+    assert source("spin_matrix") == source("angular_velocity_body") == book("Murray 2.4")
+    assert PRESETS["lecture_angles"].source == lecture("17", "section 3.2")
 
 
 def test_digits_and_default_angles_are_the_lecture():

@@ -11,6 +11,7 @@ import sympy as sp
 import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.errors import RigidsymError, SpecError
+from rigidsym.models.rotation import LECTURE
 from rigidsym.notes.document.document import Paragraph, plain
 from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats.latex import render as print_latex
@@ -79,10 +80,12 @@ def test_what_is_left_out_leaves_no_gap_in_the_numbers_and_no_reference():
 
 def test_own_sources_are_cited_and_the_lecture_can_be_named():
     sources = {"lecture": "E. Noether, Notes", "arnold": "V. Arnold, Methods"}
-    document = with_text(sources=sources, after={"rotation_matrix": "See [arnold]."})
+    own = OwnText(sources=sources, after={"rotation_matrix": "See [arnold]."})
+    document = rs.derive("lecture_angles").note(text=own).document
     assert document.sources[0] == "E. Noether, Notes"
     assert "V. Arnold, Methods" in document.sources
-    assert "Lecture notes on rigid body motion" not in document.sources
+    assert LECTURE not in document.sources
+    assert set(sources.values()) < set(MOTION.note(text=own).document.sources)
 
 
 def test_the_byline_stands_below_the_title_in_every_format():

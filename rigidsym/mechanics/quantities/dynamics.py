@@ -10,7 +10,6 @@ from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.mechanics.quantities.kinematics import ALPHA_BODY, BODY, RATES, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA
 from rigidsym.mechanics.quantities.table import read_table
-from rigidsym.models.rotation import Citation
 
 POTENTIAL = formula("V")
 EFFECTIVE = formula(r"V_{\mathrm{eff}}")
@@ -28,26 +27,6 @@ TORQUE = formula(r"\mathbf{N}'")
 _RATE_MATRIX = BODY.matrix
 _POSSIBLE = formula(r"\left(#1\right)^T", BODY.right_inverse)  # along possible displacements
 _PLUS, _MINUS = "#1 + #2", "#1 - #2"
-
-_SOURCES = {
-    "Goldstein 1.4": Citation(
-        text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)", section="section 1.4"
-    ),
-    "Goldstein 5.5": Citation(
-        text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)", section="section 5.5"
-    ),
-    "Goldstein 5.7": Citation(
-        text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)", section="section 5.7"
-    ),
-    "Murray 4.3": Citation(
-        text="R. Murray, Z. Li, S. Sastry, A Mathematical Introduction to Robotic Manipulation "
-        "(1994)",
-        section="section 4.3",
-    ),
-    "Goldstein 8.1": Citation(
-        text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)", section="section 8.1"
-    ),
-}
 
 DYNAMICS_QUANTITIES = read_table(
     """
@@ -105,7 +84,6 @@ DYNAMICS_QUANTITIES = read_table(
             formula(r"#1^{-1}\left(#2 - #3\times#1\,#3\right)", *(INERTIA, TORQUE, BODY.omega)),
         ),
     },
-    _SOURCES,
 )
 
 EULER_QUANTITIES = read_table(
@@ -128,7 +106,6 @@ EULER_QUANTITIES = read_table(
             formula(r"#1^{-1}\left(#2 - #3\times#1\,#3\right)", *(INERTIA, TORQUE, BODY.omega)),
         ),
     },
-    _SOURCES,
 )
 
 FLOW_QUANTITIES = read_table(

@@ -16,7 +16,6 @@ from rigidsym.formula.tree import Formula, Rate, transpose_of
 from rigidsym.mechanics.derivation import Quantity
 from rigidsym.mechanics.quantities.claims import spin_of
 from rigidsym.mechanics.quantities.table import read_table
-from rigidsym.models.rotation import DIEBEL
 
 ROTATION = formula(r"\mathbf{R}")
 COSINES = formula(r"\mathbf{A}")
@@ -68,31 +67,31 @@ BODY = Frame(
 
 _ACTIVE = read_table(
     """
-    rotation_matrix                    matrix  -        q                3.2 (17)
+    rotation_matrix                    matrix  -        q                -
         rotation matrix, body to space components
-    rotation_rate                      matrix  1/s      q q_dot          3.2 (15)
+    rotation_rate                      matrix  1/s      q q_dot          -
         time derivative of the rotation matrix
-    spin_matrix                        matrix  rad/s    q q_dot          3.2 (15)
+    spin_matrix                        matrix  rad/s    q q_dot          Murray 2.4
         spin matrix, the operator Ω × in space components
-    angular_velocity_space             vector  rad/s    q q_dot          3.2 (16)
+    angular_velocity_space             vector  rad/s    q q_dot          Murray 2.4
         angular velocity, space components
-    angular_velocity_body              vector  rad/s    q q_dot          3.2 (16)
+    angular_velocity_body              vector  rad/s    q q_dot          Murray 2.4
         angular velocity, body components
-    rate_matrix_space                  matrix  -        q                Diebel
+    rate_matrix_space                  matrix  -        q                Diebel 5
         rate matrix to space components of the angular velocity
-    inverse_rate_matrix_space          matrix  -        q                Diebel
+    inverse_rate_matrix_space          matrix  -        q                Diebel 5
         inverse rate matrix from space components
-    rates_from_angular_velocity_space  vector  rad/s    q omega_space    Diebel
+    rates_from_angular_velocity_space  vector  rad/s    q omega_space    Diebel 5
         rates of the coordinates from space components of the angular velocity
-    rate_matrix_body                   matrix  -        q                Diebel
+    rate_matrix_body                   matrix  -        q                Diebel 5
         rate matrix to body components of the angular velocity
-    inverse_rate_matrix_body           matrix  -        q                Diebel
+    inverse_rate_matrix_body           matrix  -        q                Diebel 5
         inverse rate matrix from body components
-    rates_from_angular_velocity_body   vector  rad/s    q omega_body     Diebel
+    rates_from_angular_velocity_body   vector  rad/s    q omega_body     Diebel 5
         rates of the coordinates from body components of the angular velocity
-    angular_acceleration_space         vector  rad/s^2  q q_dot q_ddot   Diebel
+    angular_acceleration_space         vector  rad/s^2  q q_dot q_ddot   Diebel 5
         angular acceleration, space components
-    angular_acceleration_body          vector  rad/s^2  q q_dot q_ddot   Diebel
+    angular_acceleration_body          vector  rad/s^2  q q_dot q_ddot   Diebel 5
         angular acceleration, body components
     """,
     {
@@ -119,19 +118,18 @@ _ACTIVE = read_table(
             _product(transpose_of(ROTATION), Rate(SPACE.omega)),
         ),
     },
-    {"Diebel": DIEBEL},
 )
 _PASSIVE = read_table(
     """
-    rotation_matrix         matrix  -      q        2.1 (7)
+    rotation_matrix         matrix  -      q        -
         direction cosine matrix, space to body components
-    rotation_rate           matrix  1/s    q q_dot  3.2 (15)
+    rotation_rate           matrix  1/s    q q_dot  -
         time derivative of the direction cosine matrix
-    spin_matrix             matrix  rad/s  q q_dot  3.2 (15)
+    spin_matrix             matrix  rad/s  q q_dot  Murray 2.4
         spin matrix of the direction cosines, the operator −Ω′ × in body components
-    angular_velocity_space  vector  rad/s  q q_dot  3.2 (16)
+    angular_velocity_space  vector  rad/s  q q_dot  Murray 2.4
         angular velocity, space components
-    angular_velocity_body   vector  rad/s  q q_dot  3.2 (16)
+    angular_velocity_body   vector  rad/s  q q_dot  Murray 2.4
         angular velocity, body components
     """,
     {

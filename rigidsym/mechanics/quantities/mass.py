@@ -6,12 +6,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula, bracketed, transpose_of
 from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.mechanics.quantities.table import read_table
-from rigidsym.models.rotation import Citation
 
-STEINER = Citation(
-    text="L. D. Landau and E. M. Lifshitz, Mechanics, 3rd edition (1976), section 32",
-    equation="32.12",
-)
 MASS = formula("M")
 INERTIA = formula(r"\mathbf{I}'")
 INERTIA_SPACE = formula(r"\mathbf{I}")
@@ -57,25 +52,25 @@ _TURNED = formula(r"#1\,#2\,#3", ROTATION, INERTIA, transpose_of(ROTATION))
 
 INERTIA_QUANTITIES = read_table(
     """
-    mass                  scalar  kg               -                1.1
+    mass                  scalar  kg               -                -
         mass
-    centre_of_mass        vector  m                -                1.1 (1)
+    centre_of_mass        vector  m                -                Landau 8
         centre of mass, in the axes of the description
-    inertia_tensor        matrix  kg m^2           -                2.2 (4)
+    inertia_tensor        matrix  kg m^2           -                Landau 32
         inertia tensor about the centre of mass, body components
-    inertia_tensor_point  matrix  kg m^2           point            Steiner
+    inertia_tensor_point  matrix  kg m^2           point            Landau 32 (32.12)
         inertia tensor about a point p, body components
-    moment_of_inertia     scalar  kg m^2           point direction  2.2
+    moment_of_inertia     scalar  kg m^2           point direction  Goldstein 5.3
         moment of inertia about the line through p along n, a unit vector
     radii_of_gyration     vector  m                -                -
         radii of gyration about the axes through the centre of mass
-    principal_moments     vector  kg m^2           -                2.3 (10)
+    principal_moments     vector  kg m^2           -                Landau 32
         principal moments of inertia
-    principal_axes        matrix  -                -                2.3
+    principal_axes        matrix  -                -                Landau 32
         principal axes, one a column, right-handed, body components
     inertia_ellipsoid     vector  (kg m^2)^(-1/2)  -                -
         semi-axes of the inertia ellipsoid, along the principal axes
-    inertia_tensor_space  matrix  kg m^2           q                2.1 (9)
+    inertia_tensor_space  matrix  kg m^2           q                Goldstein 5.2
         inertia tensor about the centre of mass, space components
     """,
     {
@@ -90,7 +85,6 @@ INERTIA_QUANTITIES = read_table(
         "inertia_ellipsoid": (SEMI_AXES,),
         "inertia_tensor_space": (INERTIA_SPACE, _TURNED),
     },
-    {"Steiner": STEINER},
 )
 BODY_ALONE = "body"  # asks for all that a body has without a rotation
 OF_BODY_ALONE = tuple(name for name, q in INERTIA_QUANTITIES.items() if "q" not in q.inputs)

@@ -9,32 +9,30 @@ from typing import cast
 
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.mechanics.derivation import Quantity, Shape
-from rigidsym.models.rotation import LECTURE, Citation
+from rigidsym.models.rotation import book
 
 Formulas = Mapping[str, tuple[Formula, ...]]  # name: symbol and, if there is one, definition
 _COLUMNS = re.compile(r" {2,}")
 
 
-def read_table(
-    text: str, formulas: Formulas, sources: Mapping[str, Citation] = MappingProxyType({})
-) -> Mapping[str, Quantity]:
+def read_table(text: str, formulas: Formulas) -> Mapping[str, Quantity]:
     """The quantities of a table, by name, in its order.
 
     Two or more spaces separate the columns: name, shape, SI unit, inputs, source; a dash leaves
-    one empty. The words of the quantity fill the next line. A source is one of `sources`, or a
-    section and an equation of the lecture: "1.1 (2)".
+    one empty. The words of the quantity fill the next line. A source is a place in a book:
+    "Landau 32 (32.12)".
     """
     lines = [line.strip() for line in text.strip().splitlines()]
     return MappingProxyType(
         {
             quantity.name: quantity
             for head, about in zip(lines[::2], lines[1::2], strict=True)
-            for quantity in (_read(head, about, formulas, sources),)
+            for quantity in (_read(head, about, formulas),)
         }
     )
 
 
-def _read(head: str, about: str, formulas: Formulas, sources: Mapping[str, Citation]) -> Quantity:
+def _read(head: str, about: str, formulas: Formulas) -> Quantity:
     name, shape, unit, inputs, source = (
         "" if column == "-" else column for column in _COLUMNS.split(head)
     )
@@ -47,10 +45,5 @@ def _read(head: str, about: str, formulas: Formulas, sources: Mapping[str, Citat
         inputs=tuple(inputs.split()),
         shape=cast(Shape, shape),
         definition=definition[0] if definition else NOTHING,
-        source=(sources.get(source) or _of_lecture(source)) if source else None,
+        source=book(source) if source else None,
     )
-
-
-def _of_lecture(source: str) -> Citation:
-    section, _, equation = source.partition(" ")
-    return Citation(LECTURE, equation.strip("()"), f"section {section}")

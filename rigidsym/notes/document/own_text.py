@@ -76,7 +76,7 @@ class OwnText:
             sections=_numbered(tuple(s for s in sections if s.blocks), document),
             author=self.author,
             byline=tuple(filter(None, (self.author, self.course, self.date))),
-            more_sources=tuple(t for key, t in self.sources.items() if key != _OF_LECTURE),
+            more_sources=tuple(self.sources.values()),
         )
         labels = {equation.label for equation in changed.equations}
         shorter = _without_rows(changed, labels)

@@ -12,7 +12,7 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Rate, Symbol, equal, joined, row
 from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
 from rigidsym.mechanics.quantities.kinematics import COSINES, ROTATION
-from rigidsym.models.rotation import Turn, lecture
+from rigidsym.models.rotation import Turn, book
 from rigidsym.models.so3 import hat
 from rigidsym.notes.document.document import (
     Cited,
@@ -33,8 +33,7 @@ from rigidsym.notes.prose.words import (
     POSITION_RATE,
 )
 
-_TURNING = Cited(lecture("3", "section 1.2"))
-_MOTION = Cited(lecture("15", "section 3.2"))
+_TURNING = Cited(book("Landau 31"))
 _SHORTHAND = words(
     r"With the abbreviations $s_\alpha$ for $\sin\alpha$ and $c_\alpha$ for $\cos\alpha$,"
 )
@@ -74,16 +73,16 @@ def motion(*, passive: bool) -> Iterator[NoteBlock]:
     yield Equation(sides=(velocity, row(Rate(shown), other), row(spin_of(shown), place)))
     if passive:
         yield said(
-            r"As seen from the body, the point moves with the velocity "
-            r"$-\boldsymbol{\Omega}'\times\mathbf{x}'$, so that {} is the matrix of the operator "
-            "$-\\boldsymbol{\\Omega}'\\times$\u00a0{}.",
-            *(spin_of(shown), _MOTION),
+            "As seen from the body, the point moves with the velocity "
+            "$-\\boldsymbol{\\Omega}'\\times\\mathbf{x}'$\u00a0{}, so that {} is the matrix of "
+            "the operator $-\\boldsymbol{\\Omega}'\\times$.",
+            *(_TURNING, spin_of(shown)),
         )
     else:
         yield said(
             "This velocity is also $\\boldsymbol{\\Omega}\\times\\mathbf{x}$\u00a0{}, so that {} "
-            "is the matrix of the operator $\\boldsymbol{\\Omega}\\times$\u00a0{}.",
-            *(_TURNING, spin_of(shown), _MOTION),
+            "is the matrix of the operator $\\boldsymbol{\\Omega}\\times$.",
+            *(_TURNING, spin_of(shown)),
         )
     yield said(
         r"The matrix of $\mathbf{u}\times$ is skew for any $\mathbf{u}$, and so is {}, by "

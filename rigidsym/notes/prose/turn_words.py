@@ -21,7 +21,7 @@ from rigidsym.formula.tree import (
     row,
 )
 from rigidsym.mechanics.quantities.kinematics import SPACE
-from rigidsym.models.rotation import Citation, RotationModel
+from rigidsym.models.rotation import RotationModel, book
 from rigidsym.notes.document.document import (
     Cited,
     Equation,
@@ -36,9 +36,7 @@ from rigidsym.notes.figure.scene import scene_of
 
 PROPER = ("precession", "nutation", "spin")
 TAIT_BRYAN = ("yaw", "pitch", "roll")
-GOLDSTEIN = Citation(
-    text="H. Goldstein, C. Poole, J. Safko, Classical Mechanics (2002)", section="section 4.9"
-)
+GOLDSTEIN = book("Goldstein 4.9")
 _MOST_WRITTEN = 3  # axes that are written out
 
 
