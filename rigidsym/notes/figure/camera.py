@@ -67,6 +67,10 @@ class Camera(NamedTuple):
     def project(self, a: Vector) -> Point:
         return (dot(self.right, a), dot(self.up, a))
 
+    def nearer(self, times: float) -> Camera:
+        """The camera that shows everything so many times as large."""
+        return self._replace(right=scaled(times, self.right), up=scaled(times, self.up))
+
     def depth(self, a: Vector) -> float:
         """Distance from the picture plane toward the viewer; negative behind the origin."""
         return dot(self.toward, a)

@@ -168,9 +168,10 @@ class Drawing(NamedTuple):
 
 def drawn(scene: Posed, seen: Camera) -> Drawing:
     """The drawing of a scene, with labels that touch no line and no other label if they can."""
-    axes = [_axis(ray, seen) for ray in scene.rays]
+    axes = [_axis(ray, seen, is_line=ray is scene.line_of_nodes) for ray in scene.rays]
     arcs = [_arc(arc, seen) for arc in scene.arcs]
-    strokes = (*_circles(scene, seen), *_guides(scene, seen), *axes, *arcs)
+    circles = () if scene.is_crowded else _circles(scene, seen)
+    strokes = (*circles, *_guides(scene, seen), *axes, *arcs)
     labels: list[Label] = []
     for arc, stroke in zip(scene.arcs, arcs, strict=True):
         labels.append(placed("turn", arc.turn.name, beside(stroke.points), strokes, labels))
@@ -179,8 +180,7 @@ def drawn(scene: Posed, seen: Camera) -> Drawing:
     return Drawing(strokes=strokes, labels=tuple(labels))
 
 
-def _axis(ray: Ray, seen: Camera) -> Stroke:
-    is_line = ray.kind == "node"
+def _axis(ray: Ray, seen: Camera, *, is_line: bool) -> Stroke:
     reach = AXIS if ray.kind in ("space", "body") else NODE
     end = seen.project(scaled(reach, ray.direction))
     start = (-end[0], -end[1]) if is_line else (0.0, 0.0)

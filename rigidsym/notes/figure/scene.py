@@ -42,6 +42,7 @@ from rigidsym.notes.formula.derivation_letters import VECTOR, length_of
 Kind = Literal["space", "body", "node", "vector", "turn", "guide"]
 
 MOST_TURNS = 5  # more would be a tangle
+_MANY, _MANY_NEARER = 3, 1.2  # turns; the scale of the figure of more than these
 BODY = tuple(Symbol(axis, prime="′") for axis in AXES)
 NODE = formula("N")
 RADII = (0.6, 0.78, 0.46, 0.7, 0.38)  # of the arcs; those of consecutive turns differ
@@ -112,7 +113,8 @@ class View(NamedTuple):
 
     @property
     def camera(self) -> Camera:
-        return camera(self.azimuth, self.elevation, z_down=self.z_down)
+        seen = camera(self.azimuth, self.elevation, z_down=self.z_down)
+        return seen.nearer(_MANY_NEARER) if len(self.angles) > _MANY else seen
 
 
 class Posed(NamedTuple):
@@ -120,6 +122,16 @@ class Posed(NamedTuple):
 
     rays: tuple[Ray, ...]
     arcs: tuple[Arc, ...]
+
+    @property
+    def line_of_nodes(self) -> Ray | None:
+        """The only axis of turns that is drawn in both directions; several would be a tangle."""
+        nodes = [ray for ray in self.rays if ray.kind == "node"]
+        return nodes[0] if len(nodes) == 1 else None
+
+    @property
+    def is_crowded(self) -> bool:
+        return len(self.arcs) > _MANY
 
     def named(self, direction: Vector) -> Ray | None:
         return next((ray for ray in self.rays if is_same(ray.direction, direction)), None)
@@ -169,7 +181,9 @@ class Scene:
         """How far apart the ends of all axes appear, and how open the arcs: the worst case."""
         posed, seen = self.posed(view.angles), view.camera
         ends = [seen.project(ray.direction) for ray in posed.rays]
-        ends += [(-x, -y) for (x, y), r in zip(ends, posed.rays, strict=True) if r.kind == "node"]
+        if posed.line_of_nodes:
+            x, y = seen.project(posed.line_of_nodes.direction)
+            ends.append((-x, -y))
         pairs = list(combinations(ends, 2))
         return min(
             min(hypot(a[0] - b[0], a[1] - b[1]) for a, b in pairs),
