@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +20,7 @@ from rigidsym.motion import Motion
 from rigidsym.pipeline import motion_of, read
 from rigidsym.simulation.animation import WRITERS
 from rigidsym.simulation.plot import PICTURES, check_picture
-from rigidsym.simulation.solver import METHODS
+from rigidsym.simulation.solver import METHODS, needed
 from rigidsym.system.files import whole_file
 from rigidsym.system.progress import bar
 
@@ -118,7 +118,7 @@ def command(source: str, options: SimulationOptions) -> None:
     for path, endings in ((options.plot, PICTURES), (options.animate, (*WRITERS, ".html"))):
         if path is not None:
             check_picture(path, endings)
-    motion = motion_of(read(source))
+    motion = _motion(source, options)
     if options.ensemble is not None or options.grid:
         _ensemble(motion, options)
         return
@@ -141,6 +141,15 @@ def command(source: str, options: SimulationOptions) -> None:
     if options.animate is not None:
         click.echo(_animated(motion, found, constants, options.animate))
     _check_end(found)
+
+
+def _motion(source: str, options: SimulationOptions) -> Motion:
+    """With the quantities that a simulation needs; a page shows all."""
+    spec = read(source)
+    is_page = options.animate is not None and options.animate.suffix == ".html"
+    if spec.dynamics is not None and len(spec.models) == 1 and not is_page:
+        spec = replace(spec, quantities=needed(*spec.models))
+    return motion_of(spec)
 
 
 def _animated(

@@ -10,8 +10,8 @@ import numpy as np
 from rigidsym.errors import DerivationError, MissingExtra, ModelError, offer
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
-from rigidsym.mechanics.quantities.dynamics import FLOW_QUANTITIES
 from rigidsym.models.forces import Forces
+from rigidsym.models.rotation import RotationModel
 from rigidsym.simulation.attitude import Attitude, quaternions_of
 from rigidsym.simulation.free_body import free_motion
 from rigidsym.simulation.problem import OMEGA as OMEGA, POLE, Problem
@@ -80,11 +80,15 @@ def with_motion(derivation: Derivation) -> Derivation:
     names = {step.quantity.name for step in derivation.steps} | {*derivation.functions}
     if derivation.forces is None or not names.issuperset((*_NEEDED, "state_derivative")):
         forces = derivation.forces or Forces()
-        only = [*_NEEDED, *FLOW_QUANTITIES, "torque_body"]
-        if len(derivation.model.coordinates) >= 3:  # else the rates do not follow
-            only.append("rates_from_angular_velocity_body")
-        return derive(derivation.model, only, body=body, forces=forces)
+        return derive(derivation.model, needed(derivation.model), body=body, forces=forces)
     return derivation.select([n for n in (*_NEEDED, *_PREFERRED) if n in names])
+
+
+def needed(model: RotationModel) -> tuple[str, ...]:
+    """The quantities from which a motion is computed."""
+    has_rates = len(model.coordinates) >= 3  # else they do not follow from Ω′
+    rates = ("rates_from_angular_velocity_body",) if has_rates else ()
+    return (*_NEEDED, "state_derivative", "first_integrals", "torque_body", *rates)
 
 
 def _integrated(
