@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from itertools import chain
 from pathlib import Path
 
@@ -223,3 +224,19 @@ def test_without_tex_the_debian_packages_are_named(monkeypatch: pytest.MonkeyPat
         "texlive-latex-recommended texlive-pictures latexmk lmodern"
     )
     assert caught.value.exit_code == 4
+
+
+@pytest.mark.usefixtures("tex")
+@pytest.mark.parametrize(
+    ("style", "debian", "tex_live"),
+    [("tikz", "texlive-pictures", "pgf"), ("booktabs", "texlive-latex-recommended", "booktabs")],
+)
+def test_without_a_package_of_tex_its_packages_are_named(monkeypatch, style, debian, tex_live):
+    found = subprocess.run(["kpsewhich", "article.cls"], capture_output=True, text=True, check=True)
+    monkeypatch.setenv("TEXINPUTS", f".:{Path(found.stdout).parent}")  # nothing but LaTeX itself
+    with pytest.raises(MissingTool) as caught:
+        typeset(rf"\documentclass{{article}}\usepackage{{{style}}}{BEGIN}x{END}")
+    assert str(caught.value) == (
+        f"a PDF needs {style}.sty, which TeX does not find; on Debian: apt install {debian}, with "
+        f"TeX Live: tlmgr install {tex_live}"
+    )

@@ -36,6 +36,11 @@ _WARNING = re.compile(r"^(?:Over|Under)full .*|^.*\bWarning: .*|^No file .*", re
 _LOG_LINES = 25
 # latexmk overlooks this where two runs of TeX end within a second and their files have one size
 _UNFINISHED = "Rerun LaTeX"
+_NOT_FOUND = re.compile(r"File [`'](\S+?)' not found")
+_PACKAGES = {  # of Debian and of TeX Live; most others are named like their file
+    "tikz.sty": ("texlive-pictures", "pgf"),
+    "lmodern.sty": ("lmodern", "lm"),
+}
 _MOST_RERUNS = 4
 
 
@@ -49,8 +54,8 @@ class Typeset(NamedTuple):
 def typeset(tex: str, *, timeout: float = TIMEOUT) -> Typeset:
     """The PDF of a LaTeX document; the same text gives the same bytes.
 
-    Raises MissingTool where TeX is not installed, and ToolFailed, with the end of the log, where
-    TeX stops at an error or runs longer than `timeout` seconds.
+    Raises MissingTool where TeX or one of its packages is not installed, and ToolFailed, with the
+    end of the log, where TeX stops at an error or runs longer than `timeout` seconds.
     """
     _require_programs()
     with tempfile.TemporaryDirectory(prefix="rigidsym-") as folder:
@@ -64,6 +69,7 @@ def typeset(tex: str, *, timeout: float = TIMEOUT) -> Typeset:
             output = _run(folder, timeout, "-g")
         pdf = source.with_suffix(".pdf")
         if not pdf.is_file():
+            _require_packages(log)
             raise ToolFailed(f"TeX made no PDF; the end of its log:\n{_last_lines(log)}")
         return Typeset(pdf=pdf.read_bytes(), warnings=tuple(_WARNING.findall(log)))
 
@@ -79,6 +85,17 @@ def _require_programs() -> None:
         raise MissingTool(
             f"a PDF needs {' and '.join(missing)}, not found here; on Debian: "
             f"apt install {' '.join(DEBIAN_PACKAGES)}"
+        )
+
+
+def _require_packages(log: str) -> None:
+    missing = _NOT_FOUND.search(log)
+    if missing:
+        name = missing[1]
+        debian, tex_live = _PACKAGES.get(name, ("texlive-latex-recommended", Path(name).stem))
+        raise MissingTool(
+            f"a PDF needs {name}, which TeX does not find; on Debian: apt install {debian}, with "
+            f"TeX Live: tlmgr install {tex_live}"
         )
 
 
