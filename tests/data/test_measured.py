@@ -154,6 +154,29 @@ def test_what_is_no_file_of_numbers_is_a_body_error(tmp_path):
             inertia_of(tmp_path / file)
 
 
+def test_a_column_of_texts_holds_no_coordinates(tmp_path):
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    parquet.write_table(
+        pyarrow.table({"x": ["one"], "y": [0.0], "z": [0.0]}), tmp_path / "cloud.parquet"
+    )
+    with pytest.raises(BodyError, match="no numbers in the columns x"):
+        inertia_of(tmp_path / "cloud.parquet")
+
+
+def test_a_cluster_reads_only_npy_files(tmp_path):
+    with pytest.raises(BodyError, match="the workers of a cluster read only NPY files"):
+        inertia_of(tmp_path / "cloud.csv", scheduler="localhost:1")
+
+
+def test_progress_ends_at_one():
+    seen = []
+    inertia_of(rows(BLOCK + 1), progress=seen.append)
+    assert seen == sorted(seen)
+    assert seen[-1] == 1
+
+
 def test_without_masses_each_particle_has_a_kilogram():
     assert inertia_of(rows(10)[:, 1:]).mass == 10
 
@@ -180,6 +203,10 @@ def with_entry(row: int, column: int, value: float) -> np.ndarray:
         (rows(20)[:, :2], r"expected 3 columns \(x, y, z\) or 4 \(m, x, y, z\), got 2"),
         (rows(20) * (1, 1e200, 1, 1), r"too large for double precision"),
         (
+            np.array([("lead",)], dtype=[("material", "U4")]),
+            r"no field of the structured array holds numbers",
+        ),
+        (
             rows(20).ravel(),
             r"expected numbers of shape \(rows, columns\), got float64 of",
         ),
@@ -203,6 +230,7 @@ def test_an_engineer_may_insist_on_a_negative_mass():
         ("m,x,y,z\n1,0,0,0\n\n# -\n-2,0,0,0\n", r"csv, line 5: the mass is -2 kg; expected none"),
         ("m,x,y,z\n1,0,0,0\n\n1,0,nan,0\n", r"csv, line 4: expected finite numbers, got mass 1"),
         ("m,x,y,z,z\n1,0,0,0,0\n", "two columns are named z"),
+        ("x,y,z,masse\n0,0,0,1\n", r"column m or mass among x, y, z, masse; is masse the mass"),
     ],
 )
 def test_a_wrong_line_of_text_is_named(tmp_path, text, fault):
@@ -241,6 +269,9 @@ def test_dask_gives_the_same_numbers():
         found = inertia_of(da.from_array(table, chunks=(7_000, 2)))
     assert (found.inertia == plain.inertia).all()
     assert (found.centre == plain.centre).all()
+    unknown = da.from_array(table)
+    with pytest.raises(BodyError, match="of known length"):
+        inertia_of(unknown[unknown[:, 0] > 1])
 
 
 @pytest.mark.filterwarnings("ignore::Warning:distributed.*", "ignore:.*:ResourceWarning")
@@ -361,6 +392,8 @@ def test_open_torn_and_inverted_meshes_are_refused():
         mesh_inertia(flat, mass=1.0)
     with pytest.raises(BodyError, match="expected either the mass or the density"):
         mesh_inertia(box)
+    with pytest.raises(BodyError, match="the density is -1 kg/m³; expected a positive number"):
+        mesh_inertia(box, density=-1.0)
     assert mesh_inertia(Mesh(vertices=box.vertices, faces=box.faces[1:]), mass=1.0, allow=True)
 
 
@@ -368,6 +401,12 @@ def test_files_that_hold_no_mesh_are_refused(tmp_path):
     (tmp_path / "empty.stl").write_text("solid nothing\nendsolid nothing\n")
     with pytest.raises(BodyError, match=r"empty\.stl"):
         read_mesh_file(tmp_path / "empty.stl")
+    MESHES["box"].export(tmp_path / "box.stl")
+    with pytest.raises(BodyError, match=r"vertex \d is not finite"):
+        read_mesh_file(tmp_path / "box.stl", scale=np.inf)
+    (tmp_path / "box.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n")
+    with pytest.raises(BodyError, match=r"box\.off"):
+        read_mesh_file(tmp_path / "box.off")
     with pytest.raises(BodyError, match="no such mesh"):
         read_mesh_file(tmp_path / "none.stl")
 
@@ -380,6 +419,8 @@ def test_the_command_shows_and_prints_as_json(tmp_path):
     shown = CliRunner().invoke(commands, ["inertia", str(tmp_path / "cloud.npy")])
     assert shown.exit_code == 0
     assert "500 particles" in shown.output
+    in_jupyter = inertia_of(tmp_path / "cloud.npy")._repr_mimebundle_()
+    assert in_jupyter["text/plain"] in shown.output
     assert "principal axes, one a column, right-handed" in shown.output
     MESHES["sphere"].export(tmp_path / "ball.stl")
     ball = [str(tmp_path / "ball.stl"), "--density", "1000", "--json"]

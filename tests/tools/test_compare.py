@@ -207,3 +207,46 @@ def test_a_forgotten_operator_is_named_with_its_neighbours():
     assert caught.value.column == 8
     with pytest.raises(ExpressionError, match="unexpected"):
         read_formula("phi + * psi")
+
+
+@pytest.mark.parametrize(
+    ("text", "entries"),
+    [
+        ("+[[a, b], [c, d]].T", "[[a, c], [b, d]]"),
+        ("[[a, b], [c, d]]**2", "[[a**2 + b*c, a*b + b*d], [a*c + c*d, b*c + d**2]]"),
+        ("[[a, b], [c, d]][1, 2]", "[[b]]"),
+        ("pow(a, 3) - sq(b)", "[[a**3 - b**2]]"),
+    ],
+)
+def test_a_formula_may_use_operations_of_matrices(text, entries):
+    names = {name: sp.Symbol(name, real=True) for name in "abcd"}
+    difference = read_formula(text) - sp.Matrix(sp.sympify(entries, names))
+    assert difference.expand().is_zero_matrix
+
+
+def test_the_finding_is_said_in_one_sentence():
+    matrix, unknown = right("ZYX", "rotation_matrix"), "[[cos(phi), 2, psi], [3, 0, 1], [0, 0, 7]]"
+    end = "and no single change makes it one"
+    for found, sentence in (
+        (rs.compare(matrix), "equal to rotation_matrix of ZYX (proved)"),
+        (rs.compare(matrix.T), "transposed (passive, the direction cosine matrix)"),
+        (rs.compare(unknown), f"not a known quantity, {end}"),
+        (rs.compare(unknown, "ZYX", "rotation_matrix"), f"not rotation_matrix of ZYX, {end}"),
+        (rs.compare(matrix, "xyx", "rotation_matrix"), "this is rotation_matrix of ZYX"),
+    ):
+        assert sentence in found.text()
+
+
+def test_a_rotation_is_compared_with_a_quantity():
+    with pytest.raises(ExpressionError, match="expected a rotation and a quantity"):
+        rs.compare(lambda q: q, "ZYX")
+
+
+@pytest.mark.parametrize("order", [("", [0, 1, 2, 3]), ("scalar last", [1, 2, 3, 0])])
+@pytest.mark.parametrize("factor", [1, 2])
+def test_rates_of_a_quaternion_are_known_with_the_scalar_last_and_twice(order, factor):
+    words, places = order
+    rates = right("unit_quaternion", "rates_from_angular_velocity_body")
+    found = rs.compare(factor * rates.extract(places, [0]))
+    assert found.is_proved
+    assert found.arrangement == ", ".join(filter(None, (words, "twice" if factor == 2 else "")))

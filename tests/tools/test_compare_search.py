@@ -34,6 +34,7 @@ W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(
         ("np.array([self.phi, x[3]*2.0f], dtype=float)", "array([phi,x_3*2.0])"),
         ("pow(q.w(), 2) + state->roll", "pow(q_w,2)+roll"),
         (r"\dot\phi \sin^2\theta + \tfrac12 x_1", "phi_dot*sin(theta)**(2)+((1)/(2))*x_1"),
+        (r"\sqrt{x^2}\,(a + b)", "sqrt(x**(2))*(a+b)"),
         (r"R = \begin{pmatrix} a & b \\[2pt] w\,x & \sin 2\theta \end{pmatrix}", None),
     ],
 )
@@ -55,7 +56,9 @@ def test_printed_latex_of_notes_is_read_back(name):
     [
         *("__import__('os')", "(lambda: 1)()", "[x for x in y]", "9**9**9", "1e999"),
         *("(" * 5000, "[" * 300 + "]" * 300, "x" * 30_000, "\0", "[1, [2, [3]]", "one(10**9)"),
-        *("[[a, b], [c]]", r"\frac{", r"\begin{pmatrix} & \end{pmatrix}", r"\input{a}"),
+        *("[[a, b], [c]]", r"x_{a+b}", "sin(a, b)", "[[a, b], [c, d]] / [[1, 2], [3, 4]]"),
+        *("one(20) + [a" + ", a" * 20 + "]", "a < b", "([[a+b, 1], [a, c]]**8)**8"),
+        *(r"\frac{", r"\begin{pmatrix} & \end{pmatrix}", r"\input{a}"),
     ],
 )
 def test_hostile_text_is_refused(text):
@@ -281,9 +284,10 @@ def test_the_command_says_what_is_wrong_and_returns_one():
     assert run("--formula", W_BODY).exit_code == 0
 
 
-def test_the_command_needs_a_formula_or_paths():
+def test_the_command_needs_a_formula_or_paths(tmp_path):
     assert run().exit_code == 2
     assert run("--formula", "[a, b]", "--rotation", "ZYX").exit_code == 2
+    assert run(str(tmp_path), "--rotation", "ZYX", "--quantity", "rotation_matrix").exit_code == 2
 
 
 def test_a_file_that_is_not_read_is_named_with_the_kinds_that_are(tmp_path):
