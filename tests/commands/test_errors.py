@@ -6,7 +6,9 @@ import inspect
 import sys
 from pathlib import Path
 from time import sleep
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 import sympy as sp
 from click.testing import CliRunner
@@ -141,6 +143,43 @@ def test_each_error_is_provoked(kind, tmp_path, monkeypatch):
         PROVOKED[kind](monkeypatch)
     assert caught.type is kind
     assert str(caught.value)
+
+
+def turning() -> rs.Motion:
+    return rs.derive("z(phi)", body=rs.principal_moments(1, 1, 1), potential=0)
+
+
+PACKAGES = {  # a package that is missing: the extra that brings it, and what needs it
+    "pyarrow": ("parquet", lambda: rs.inertia_of("a.parquet")),
+    "pyarrow.parquet": (
+        "parquet",
+        lambda: said("eval", "ZXZ", "a.csv", "--only", "rotation_matrix", "--out", "r.parquet"),
+    ),
+    "dask": ("dask", lambda: rs.inertia_of(SimpleNamespace(dask=None))),
+    "distributed": ("dask", lambda: rs.inertia_of("a.npy", scheduler="localhost:1")),
+    "matplotlib.figure": (
+        "plot",
+        lambda: turning().simulate({"phi": 0, "phi_dot": 1}, {}, 1.0, samples=3).plot("a.svg"),
+    ),
+    "scipy.integrate": ("simulate", lambda: turning().simulate({}, {}, 1.0)),
+    "scipy": (
+        "simulate",
+        lambda: turning().simulate_many({"phi": 0, "phi_dot": [1, 2]}, {}, 1.0, samples=2),
+    ),
+}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_missing_package_is_named_by_its_extra(package, tmp_path, monkeypatch):
+    extra, needs_it = PACKAGES[package]
+    monkeypatch.chdir(tmp_path)
+    Path("a.parquet").write_bytes(b"PAR1")
+    Path("a.csv").write_text("phi,theta,psi\n1,2,3\n")
+    np.save("a.npy", np.ones((2, 3)))
+    for name in [package, *(name for name in sys.modules if name.startswith(f"{package}."))]:
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(errors.MissingExtra, match=rf"pip install '\.\[{extra}\]'"):
+        needs_it()
 
 
 def test_no_error_is_left_out():

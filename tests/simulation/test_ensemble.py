@@ -104,6 +104,7 @@ def test_the_command_simulates_a_grid_and_writes_every_kind_of_file(tmp_path):
         (["--grid=theta=0:1:2", "--ensemble=3"], "--grid and --ensemble: expected one of them"),
         (["--spread=theta=1"], "--spread is for ensembles; add --ensemble or --grid"),
         (["--ensemble=3", "--spread=phi=1"], "--spread phi: no value of it is given"),
+        (["--ensemble=3", "--plot=top.svg"], "--plot and --animate show one motion"),
         (["--ensemble=3", "--method=lie"], "an ensemble takes steps of fixed length"),
         (["--ensemble=3", "--out=x.foo"], "a result ends in .npy, .csv, .txt, .parquet, .pq, .npz"),
     ],
@@ -111,6 +112,15 @@ def test_the_command_simulates_a_grid_and_writes_every_kind_of_file(tmp_path):
 def test_what_an_ensemble_cannot_be_is_said(options, message, tmp_path):
     wrong = call("simulate", "heavy_symmetric_top", *options, cwd=tmp_path, status=2)
     assert message in wrong.stderr
+
+
+def test_long_work_goes_without_a_compiler(top, monkeypatch, tmp_path):
+    start = START | {"theta": TILTS}
+    found = top.simulate_many(start, TOP, 0.1, samples=2)
+    assert str(found) == found.report()
+    monkeypatch.setattr("rigidsym.simulation.ensemble._WORTH_COMPILING", 0)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert np.array_equal(top.simulate_many(start, TOP, 0.1, samples=2).states, found.states)
 
 
 def test_arrays_of_different_lengths_are_refused(top):

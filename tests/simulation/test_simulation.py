@@ -185,6 +185,52 @@ def test_a_state_in_which_the_equations_of_motion_fail_is_refused_at_once():
         disc.simulate(REST | {"psi_dot": 3.0}, values, 1.0)
 
 
+def test_a_free_body_goes_through_a_pole_of_its_coordinates():
+    values, seen = {"A": 1, "C": 0.5}, []
+    start = REST | {"theta": 1e-3, "theta_dot": -1.0}
+    found = free().simulate(start, values, 1.0, samples=5, progress=seen.append)
+    assert "near a pole of the coordinates" in found.report()
+    theta = 1e-3 - found.t
+    third = np.stack([0 * theta, -np.sin(theta), np.cos(theta)], axis=1)
+    assert np.abs(found.rotation_matrix[:, :, 2] - third).max() < 1e-9
+    assert 0.9 < seen[-1] <= 1
+
+
+def test_a_body_at_rest_stays_where_it_is():
+    found = free().simulate(REST | {"theta": 1}, {"A": 1, "C": 2}, 1.0, samples=3, method="exact")
+    assert np.ptp(found.rotation_matrix, axis=0).max() == 0
+
+
+def test_steps_in_the_group_end_where_the_body_turns_too_fast():
+    start = REST | {"theta": 1, "psi_dot": 1e7}
+    found = free().simulate(start, {"A": 1, "C": 2}, 1.0, samples=3, method="lie")
+    assert found.ended == "the motion ended at t = 0 s: the body turns too fast for steps"
+
+
+@pytest.mark.parametrize(
+    ("simulated", "message"),
+    [
+        (
+            lambda: top().simulate(REST, TOP, 1.0, method="euler"),
+            "no method 'euler'; known: DOP853",
+        ),
+        (lambda: top().simulate_many(REST, TOP, 0.0), "expected a positive number of seconds"),
+        (
+            lambda: motion_of(read("rolling_disc")).simulate(
+                REST | {"theta": 1},
+                {"A": 1, "C": 1.5, "m": 1, "g": 9.81, "a": 0.5},
+                1.0,
+                method="lie",
+            ),
+            "quaternions can replace the coordinates of one body in an inertial frame only",
+        ),
+    ],
+)
+def test_what_cannot_be_simulated_is_said(simulated, message):
+    with pytest.raises(rs.RigidsymError, match=message):
+        simulated()
+
+
 def test_a_derivation_without_forces_cannot_be_simulated():
     with pytest.raises(rs.RigidsymError, match="has no equations of motion"):
         rs.derive("ZXZ", ("angular_velocity_body",)).simulate({}, {}, 1.0)

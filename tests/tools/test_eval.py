@@ -231,6 +231,42 @@ def test_unknown_numbers_are_refused(motion, table, tmp_path):
         )
 
 
+@pytest.mark.parametrize(
+    ("quantity", "options", "message"),
+    [
+        (VELOCITY, {"given": {"phi": 1.0}}, "give all of phi, theta, psi as numbers, or none"),
+        (VELOCITY, {"keep": ("time",)}, "the columns have no names for --keep; --columns gives"),
+    ],
+)
+def test_a_request_that_no_file_satisfies_is_refused(
+    motion, table, tmp_path, quantity, options, message
+):
+    np.save(tmp_path / "given.npy", table)
+    with pytest.raises(rs.RigidsymError, match=message):
+        evaluation(motion, quantity, tmp_path / "given.npy", tmp_path / "r.npy", **options)
+
+
+def test_columns_that_an_npy_file_cannot_hold_are_refused(motion, tmp_path):
+    result = tmp_path / "r.npy"
+    for name, message in (("12", ""), ("one", "does not hold texts"), ("9" * 17, "beyond 2\\^53")):
+        (tmp_path / "log.csv").write_text(f"phi,theta,psi,run\n1,2,3,{name}\n", encoding="utf-8")
+        work = evaluation(motion, ("rotation_matrix",), tmp_path / "log.csv", result, keep=("run",))
+        if message:
+            with pytest.raises(DataError, match=message):
+                work.run()
+        else:
+            work.run()
+            assert np.load(result)[0, 0] == 12
+
+
+def test_a_table_without_rows_is_a_result_without_rows(motion, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    (tmp_path / "log.csv").write_text("phi,theta,psi\n", encoding="utf-8")
+    done = evaluation(motion, ("rotation_matrix",), tmp_path / "log.csv", tmp_path / "r.parquet")
+    assert done.run().rows == 0
+    assert parquet.read_table(tmp_path / "r.parquet").num_columns == 9
+
+
 def test_a_cluster_gives_the_same(motion, table, kernel, tmp_path):
     from distributed import LocalCluster
 
