@@ -36,11 +36,13 @@ class LatexPen(SheetPen):
     thin: ClassVar[str] = r"\,"
     row_end: ClassVar[str] = r" \\[{}pt]" + "\n"
     script: ClassVar[str] = ""  # what stands before an index
-    spelt_number = "{}".format
     spelt_fraction = r"\frac{{{}}}{{{}}}".format
     spelt_root = r"\sqrt{{{}}}".format
     spelt_words = r"\text{{{}}}".format
     boxed = r"\boxed{{{}}}".format
+
+    def spelt_number(self, digits: str) -> str:
+        return digits.replace(",", "{,}")
 
     def spelt_symbol(self, symbol: Symbol, index: str | None) -> str:
         text = symbol.macro or _letters(symbol.letter)

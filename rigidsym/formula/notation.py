@@ -67,6 +67,7 @@ class Notation:
     angular_velocity: str = "Omega"
     frames: tuple[str, str] = FRAMES
     vector: str = "v"  # the letter of the vector that the coordinates are components of
+    decimal: str = "."  # or a comma, beside which semicolons separate the items of a list
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "frames", _checked(self.frames))
@@ -95,7 +96,7 @@ class Notation:
     def is_default(self) -> bool:
         """Whether formulas stay as they were composed."""
         chosen = all(getattr(self, name) == known[0] for name, known in CHOICES.items())
-        return chosen and self.vector == "v"
+        return chosen and self.vector == "v" and self.decimal == "."
 
     def check(self, model: HasNames) -> None:
         """Raises ModelError for a name in a model that looks like the angular velocity."""
@@ -112,6 +113,11 @@ def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
     match node:
         case tree.Symbol():
             return _symbol(node, notation)
+        case tree.Numeral(digits):
+            return tree.Numeral(digits.replace(".", notation.decimal))
+        case tree.Row(parts) if notation.decimal == "," and _is_list_of_decimals(parts):
+            apart = (tree.Sign(";") if part == tree.COMMA else part for part in parts)
+            return tree.Row(tuple(_applied(part, notation) for part in apart))
         case tree.Power(tree.Symbol(prime="′"), exponent) if notation.body == "superscript":
             return tree.Power(tree.Bracket(_applied(node.base, notation)), exponent)
         case tree.Power(tree.Symbol(dots=dots), exponent) if dots and notation.rates == "fraction":
@@ -121,6 +127,19 @@ def _applied(node: tree.Formula, notation: Notation) -> tree.Formula:
             return tree.Fraction(_applied(above, notation), below)
     changed = {field.name: _within(getattr(node, field.name), notation) for field in fields(node)}
     return replace(node, **changed)
+
+
+def _is_list_of_decimals(parts: tuple[tree.Formula, ...]) -> bool:
+    return tree.COMMA in parts and _has_point(parts)
+
+
+def _has_point(value: Any) -> bool:
+    """Whether a node, or one of a tuple of them, holds a number with a decimal point."""
+    if isinstance(value, tree.Numeral):
+        return "." in value.digits
+    if isinstance(value, tree.Formula):
+        value = tuple(getattr(value, field.name) for field in fields(value))
+    return isinstance(value, tuple) and any(map(_has_point, value))
 
 
 def _within(value: Any, notation: Notation) -> Any:

@@ -107,7 +107,8 @@ class DerivationSpec:
         if self.notation is None or self.notation == type(self.notation)():
             return {}
         chosen = asdict(self.notation)
-        return {name: chosen[name] for name in chosen if name != "vector"}  # that is the model's
+        of_others = ("vector", "decimal")  # of the model and of the language
+        return {name: chosen[name] for name in chosen if name not in of_others}
 
 
 def spec_for(

@@ -15,8 +15,9 @@ from rigidsym.commands.cli import commands
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula
 from rigidsym.notes.document.catalogue import Catalogue, language_of
-from rigidsym.notes.document.document import Document, words
+from rigidsym.notes.document.document import Document, Figure, Section, words
 from rigidsym.notes.document.own_text import OwnText
+from rigidsym.notes.figure.chart import Range, chart
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.problems.exercise import sheet_of
@@ -163,6 +164,30 @@ def test_a_sheet_in_german_asks_in_german(tmp_path):
     assert done.exit_code == 0, done.output
     quiz = (tmp_path / "problems_bodies_1" / "problems_bodies_1.xml").read_text(encoding="utf-8")
     assert "<name><text>Der Satz von Steiner</text></name>" in quiz
+
+
+def test_numbers_have_a_decimal_comma_in_words_and_formulas():
+    sheet = sheet_of("all", SUBJECTS, count=6, variant=3, language="de").document(solved=True)
+    top = motion_of(read("heavy_symmetric_top")).note(language="de").document
+    for document in (sheet, top):
+        text, *_ = FORMATS["md"].render(document).split("## Quellen")
+        assert re.findall(r"[^.]*\d\.\d[^.]*", re.sub(r"\[\d+, [^]]*\]", "", text)) == []
+    assert "1,76 bei XZX" in FORMATS["md"].render(sheet)
+    assert r"(251{,}5; 251{,}5; 306{,}7)" in FORMATS["tex"].render(sheet)
+    assert "<mn>0,977</mn>" in FORMATS["html"].render(sheet)
+
+
+def test_numbers_have_a_decimal_comma_in_figures():
+    drawing = chart(Range.of([0, 1]), [(formula("x"), [(0, 0), (1, 1)])], (2, 1), formula("t"))
+    sections = (Section("Chart", (Figure(drawing, (), ()),)),)
+    document = replace(derived("ZXZ").note().document, sections=sections).translated(GERMAN)
+    labels = [label.symbol.text for label in document.figures[0].drawing.labels]
+    assert "0,2" in labels
+    assert not any("." in label for label in labels)
+
+
+def test_numbers_that_are_data_keep_their_point_in_german():
+    assert "NUMERICAL:=3.17" in sheet_of("all", SUBJECTS, count=2, variant=3, language="de").moodle
 
 
 @pytest.mark.usefixtures("tex")

@@ -35,6 +35,7 @@ _AS_IT_IS = {
     "text": rf"(?:(?!{_SPAN}).)+",
 }
 _ENDS = (".?!", ".:;?!")  # of a sentence; of a clause
+_POINT = re.compile(r"(?<=\d)\.(?=\d)")  # of a number
 _CITED = re.compile(rf"\u00a0({_SPAN})([.,:;]?)$")
 _WITHOUT_WORDS = re.compile(
     r"(?:[^A-Za-z]|(?<![A-Za-z])(?:rad|kg|[msNJxyz]|[XYZ]{3})(?![A-Za-z]))*"
@@ -48,6 +49,7 @@ class Catalogue:
     code: str  # as in HTML: "de"
     babel: str  # as in LaTeX; empty where nothing has to be loaded
     sentences: Mapping[str, str]
+    decimal: str = "."
     lacked: set[str] | None = None  # collects the sentences that the catalogue lacks
 
     def words(self, text: str) -> str:
@@ -60,7 +62,10 @@ class Catalogue:
             return tuple(text)
         letters, spans = _lettered(text)
         parts = re.split(f"({_SPAN})", "".join(self._parts(letters)))
-        found = (spans[ord(p) - _FIRST] if k % 2 else p for k, p in enumerate(parts))
+        found = (
+            spans[ord(p) - _FIRST] if k % 2 else _POINT.sub(self.decimal, p)
+            for k, p in enumerate(parts)
+        )
         return tuple(span for span in found if span != "")
 
     def _parts(self, text: str, ends: Sequence[str] = _ENDS) -> Iterator[str]:
@@ -191,4 +196,9 @@ def language_of(code: str) -> Catalogue:
     if code not in (known := resources.languages()):
         raise ModelError(f"language is {' or '.join(known)}, and not {code!r}")
     data = tomllib.loads(resources.text(resources.NOTES, f"{code}.toml"))
-    return Catalogue(code=code, babel=data["babel"], sentences=data["sentences"])
+    return Catalogue(
+        code=code,
+        babel=data["babel"],
+        sentences=data["sentences"],
+        decimal=data.get("decimal", ENGLISH.decimal),
+    )

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
+from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.sentence import sentence
 from rigidsym.formula.tree import Formula, Row, Words
 from rigidsym.models.rotation import Citation
@@ -203,8 +204,14 @@ class Document:
             title=language.words(self.title),
             subtitle=language.words(self.subtitle),
             sections=tuple(s._replace(title=language.words(s.title)) for s in sections),
+            letters=replace(self.letters, notation=_written_in(language, self.letters.notation)),
             language=language,
         )
+
+
+def _written_in(language: Catalogue, notation: Notation = DEFAULT) -> Notation:
+    """The notation with the numbers of a language."""
+    return replace(notation, decimal=language.decimal)
 
 
 def _translated(text: Text, language: Catalogue) -> Text:
@@ -220,9 +227,13 @@ def _translated(text: Text, language: Catalogue) -> Text:
 
 
 def _with_claims(section: Section, language: Catalogue) -> Section:
-    """The section with the words in what was proved of its equations."""
+    """The section with the words in what was proved of its equations, and those in its figures."""
 
     def translated(block: NoteBlock) -> NoteBlock:
+        if isinstance(block, Figure):
+            shown = block.drawing
+            labels = tuple(x._replace(symbol=_spelt(x.symbol, language)) for x in shown.labels)
+            return block._replace(drawing=shown._replace(labels=labels))
         if not isinstance(block, Equation):
             return block
         proved, unproved = (
@@ -238,6 +249,7 @@ def _spelt(formula: Formula, language: Catalogue) -> Formula:
     """The formula with the words in its row, such as: f for every integral."""
     if isinstance(formula, Words):
         return Words(language.words(formula.words))
+    formula = _written_in(language).applied(formula)
     if isinstance(formula, Row):
         return Row(tuple(_spelt(part, language) for part in formula.parts))
     return formula

@@ -10,7 +10,7 @@ import sympy as sp
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import Formula, Matrix, equal, indexed, row
+from rigidsym.formula.tree import MINUS, Formula, Matrix, Numeral, equal, indexed, row
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
@@ -146,7 +146,7 @@ def identify(rng: Random) -> Exercise:
     shown = matrices[right].applyfunc(lambda entry: sp.Rational(str(round(float(entry), 3))))
     apart = {s: max(abs(float(e)) for e in m - matrices[right]) for s, m in matrices.items()}
     arguments = derived[right].arguments
-    rows = [[numeral(float(entry)) for entry in line] for line in shown.tolist()]
+    rows = [[_to_three_places(float(entry)) for entry in line] for line in shown.tolist()]
     return Exercise(
         title="Identify the convention",
         question=(
@@ -168,6 +168,11 @@ def identify(rng: Random) -> Exercise:
         answers=(Asked(choices=(right, *wrong)),),
         arguments=arguments,
     )
+
+
+def _to_three_places(value: float) -> Formula:
+    digits = Numeral(f"{abs(value):.3f}")
+    return row(MINUS, digits) if value < 0 else digits
 
 
 def _words(names: Sequence[str]) -> str:

@@ -46,7 +46,7 @@ class Asked:
             return (self.choices[0],)
         assert self.symbol is not None
         shown = equal(self.symbol, numeral(self.value))
-        space = "" if self.unit == "°" else " "
+        space = "" if self.unit == "°" else "\u00a0"
         return (shown, f"{space}{self.unit}") if self.unit else (shown,)
 
     @property
@@ -113,8 +113,9 @@ class Sheet:
     @property
     def moodle(self) -> str:
         """A question bank in Moodle XML: one question with embedded answers a problem."""
-        asked = zip(self.document(solved=False).sections, self.problems, strict=True)
-        questions = "".join(_question(*each, self.letters) for each in asked)
+        document = self.document(solved=False)
+        asked = zip(document.sections, self.problems, strict=True)
+        questions = "".join(_question(*each, document.letters) for each in asked)
         return f'<?xml version="1.0" encoding="UTF-8"?>\n<quiz>\n{questions}</quiz>\n'
 
 
