@@ -26,6 +26,7 @@ from rigidsym.simulation.solver import with_motion
 _ANGLE = 0.05  # radians that the fastest body turns in a step
 _BLOCK = 512  # motions whose stages stay in the cache
 _WORTH_COMPILING = 1_000_000  # steps of a motion
+_FEW = 256  # motions: a step of fewer takes NumPy no less time
 
 Block = tuple[Array, Array | None]  # initial states, and parameters of all or of each
 Mapped = Callable[
@@ -109,7 +110,7 @@ def simulate_ensemble(
     speed = float(np.linalg.norm(first.omega(start), axis=1).max()) or 1.0
     count = max(1, int(np.ceil(times[1] / (step or _ANGLE / speed))))
     if target is None:
-        is_long = members * count * (samples - 1) >= _WORTH_COMPILING
+        is_long = max(members, _FEW) * count * (samples - 1) >= _WORTH_COMPILING
         target = "c" if is_long and _has_compiler() else "numpy"
     name = "state_derivative"
     slopes = replace(first.derivation.select(()), functions={name: first.derivation.step(name)})

@@ -8,6 +8,7 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.command import call
+from rigidsym.simulation import ensemble
 
 A, C = sp.symbols("A C")
 TOP = {"A": 1.3, "C": 0.7, "m": 2.0, "g": 9.81, "l": 0.4}
@@ -55,6 +56,16 @@ def test_a_body_without_parameters_takes_its_steps_in_c():
         for target in ("numpy", "c")
     ]
     assert np.abs(found[0].states - found[1].states).max() < 1e-14
+
+
+@pytest.mark.parametrize(("seconds", "target"), [(5.0, "numpy"), (500.0, "c")])
+def test_few_motions_of_many_steps_are_computed_in_c(top, monkeypatch, seconds, target):
+    asked = []
+    whole = ensemble.generate
+    monkeypatch.setattr(ensemble, "_has_compiler", lambda: True)
+    monkeypatch.setattr(ensemble, "generate", lambda d, name: asked.append(name) or whole(d, name))
+    top.simulate_many(START | {"theta": TILTS}, TOP, seconds, samples=2, step=0.1)
+    assert asked == [target]
 
 
 def test_rounding_does_not_add_up_over_a_thousand_steps():
