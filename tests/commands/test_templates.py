@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,19 @@ def test_templates_that_are_not_overridden_stay(tmp_path: Path):
 
 def test_an_own_template_that_was_changed_is_read_again(tmp_path: Path):
     assert [html_with(tmp_path, text) for text in ("one", "two")] == ["one", "two"]
+
+
+def test_an_own_template_from_an_older_version_gets_the_commands_that_it_lacks(tmp_path: Path):
+    name = "fragment.tex.jinja"
+    shipped = resources.text(resources.NOTES, name)
+    lacks = r"(?m)^\\newcommand\{\\(numbercell|figuretitle)\}.*\n"
+    older = re.sub(lacks, "", shipped) + "((* for section in last *))((* endfor *))"
+    (tmp_path / name).write_text(older, encoding="utf-8")
+    with resources.overridden_by(tmp_path):
+        latex = derived("ZXZ").note(style="lecture").latex()
+    assert latex.count(r"\providecommand{\numbercell}") == 1
+    assert latex.index(r"\providecommand{\figuretitle}") < latex.index(r"\figuretitle{Figure}")
+    assert r"\providecommand" not in derived("ZXZ").note(style="lecture").latex()
 
 
 def test_an_own_template_may_include_others(tmp_path: Path):

@@ -14,7 +14,9 @@ from rigidsym.errors import RigidsymError, SpecError
 from rigidsym.models.rotation import LECTURE
 from rigidsym.notes.document.document import Paragraph, plain
 from rigidsym.notes.document.own_text import OwnText
+from rigidsym.notes.formats.fragment import render as print_fragment
 from rigidsym.notes.formats.latex import render as print_latex
+from rigidsym.notes.formats.pdf import typeset
 from rigidsym.pipeline import output_of, read_record, read_spec
 
 MOTION = derived("ZXZ")
@@ -117,6 +119,22 @@ def test_a_file_holds_the_text_and_the_record_knows_it():
     assert "A gyroscope measures" in fragment
     assert r"\documentclass" not in fragment
     assert r"\begin{document}" not in fragment
+    assert r"\figuretitle{Figure}{top:figure-1}" in fragment
+    assert r"see Figure~\ref{top:figure-1}" in fragment
+    assert fragment.rindex(r"\section{") < fragment.index(r"\begin{thebibliography}")
+
+
+@pytest.mark.usefixtures("tex")
+def test_a_fragment_goes_into_a_report():
+    fragment = print_fragment(MOTION.note(style="lecture").document)
+    head = (
+        r"\documentclass[11pt,a4paper]{report}\usepackage[T1]{fontenc}\usepackage[margin=25mm]"
+        r"{geometry}\usepackage{lmodern,amsmath,array,booktabs,longtable,tikz}"
+        r"\usetikzlibrary{arrows.meta}"
+    )
+    figure = r"\begin{figure}\caption{Mine.}\end{figure}"
+    made = typeset(rf"{head}\begin{{document}}\chapter{{One}}{figure}{fragment}\end{{document}}")
+    assert not [w for w in made.warnings if "undefined" in w]
 
 
 def test_a_fault_in_a_sentence_has_its_line():

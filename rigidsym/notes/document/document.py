@@ -40,6 +40,12 @@ class EquationReference(NamedTuple):
     label: str
 
 
+class FigureReference(NamedTuple):
+    """A figure of this document, by its place among them, from 1."""
+
+    number: int
+
+
 class Cited(NamedTuple):
     """A place in a source."""
 
@@ -52,7 +58,7 @@ class Cited(NamedTuple):
         return f"eq.\u00a0{equation}" if equation else section.replace(" ", "\u00a0")
 
 
-Span = str | Formula | Code | Strong | EquationReference | Cited
+Span = str | Formula | Code | Strong | EquationReference | FigureReference | Cited
 Text = tuple[Span, ...]
 
 
@@ -83,6 +89,8 @@ def _plain(span: Span) -> str:
             return str(span.citation)
         case EquationReference():
             return span.label
+        case FigureReference():
+            return str(span.number)
 
 
 class Paragraph(NamedTuple):
@@ -126,7 +134,6 @@ class Section(NamedTuple):
     title: str
     blocks: tuple[NoteBlock, ...]
     on_own_page: bool = False  # at the end, on a sheet that can be handed out alone
-    is_appendix: bool = False  # at the end, behind the sources of a paper
 
 
 @dataclass(frozen=True, kw_only=True)

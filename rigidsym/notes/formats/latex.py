@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+
 from rigidsym.formula.display import PAGE, Rows, display, pack
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.sheet_pen import Inline
@@ -37,6 +40,8 @@ _DELIMITERS = {
     "comment_start_string": "((=",
     "comment_end_string": "=))",
 }
+_SHIPPED = "fragment.tex"
+_DEFINITION = re.compile(r"(?m)^\\newcommand(\{\\(\w+)\}.*\})$")
 _LINE = 41.5  # ems: 160 mm at 11 points
 _TALL = 30  # lines of text, of about fifty on a page: more than these may part
 
@@ -49,18 +54,15 @@ def render(document: Document) -> str:
 def rendered(template: str, document: Document) -> str:
     """A template with the parts of the note in it."""
     printer = _LatexPrinter(document)
-    written = [
-        (
-            section.on_own_page or section.is_appendix,
-            {
-                "title": escape(section.title),
-                "body": printer.body(section),
-                "on_own_page": section.on_own_page,
-            },
-        )
+    sections = [
+        {
+            "title": escape(section.title),
+            "body": printer.body(section),
+            "on_own_page": section.on_own_page,
+        }
         for section in document.sections
     ]
-    return (
+    text = (
         resources.environment(**_DELIMITERS)
         .get_template(template)
         .render(
@@ -69,8 +71,8 @@ def rendered(template: str, document: Document) -> str:
             title=escape(document.title),
             subtitle=escape(document.subtitle),
             byline=escape(" · ".join(document.byline)),
-            sections=[section for is_last, section in written if not is_last],
-            last=[section for is_last, section in written if is_last],
+            sections=sections,
+            last=(),  # for templates of users from the time when sections followed the sources
             metadata=metadata(document),
             sources=[
                 {"key": printer.key(place), "text": escape(printer.said(source))}
@@ -78,6 +80,17 @@ def rendered(template: str, document: Document) -> str:
             ],
         )
     )
+    first = str(sections[0]["body"]) if sections else ""
+    return text.replace(first, "".join((*_lacked(text), first)), 1)
+
+
+def _lacked(text: str) -> Iterator[str]:
+    """Short commands that are used but not defined, as with a template copied some time ago."""
+    shipped = resources.text(resources.NOTES, f"{_SHIPPED}.jinja")
+    for found in _DEFINITION.finditer(shipped):
+        definition, command = found.groups()
+        if rf"\{command}{{" in text and rf"{{\{command}}}" not in text:
+            yield f"\n\\providecommand{definition}"
 
 
 def metadata(document: Document) -> str:
@@ -235,6 +248,15 @@ class _LatexPrinter(NotePrinter):
     def figure(self, figure: Figure) -> str:
         drawing = f"\n\\begin{{drawing}}\n{tikz(figure.drawing)}\n\\end{{drawing}}"
         return f"{drawing}\n\\inthefigure{{{self.figure_words(figure)}}}"
+
+    def figure_title(self, number: int) -> str:
+        return (
+            rf"\figuretitle{{{escape(self.said('Figure'))}}}{{{self._label(f'figure-{number}')}}}"
+        )
+
+    def figure_number(self, number: int) -> str:
+        """As TeX counts them, which is the place of the figure in a larger document."""
+        return rf"\ref{{{self._label(f'figure-{number}')}}}"
 
     def formula_of(self, inline: Inline) -> str:
         return f"${inline.parts[0]}$"

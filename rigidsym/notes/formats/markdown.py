@@ -55,7 +55,8 @@ def parts(document: Document, *, has_pictures: bool = False) -> Iterator[str | C
     yield "\n\n".join([f"# {escape(document.title)}", *map(escape, filter(None, lines))])
     for section in document.sections:
         yield from printer.section(section)
-    yield printer.sources()
+    if document.sources:
+        yield printer.sources()
 
 
 def escape(text: str) -> str:

@@ -18,6 +18,7 @@ from rigidsym.notes.document.document import (
     Equation,
     EquationReference,
     Figure,
+    FigureReference,
     NoteBlock,
     Section,
     Span,
@@ -65,6 +66,8 @@ class NotePrinter:
                 return self.strong(text)
             case EquationReference(label):
                 return self.reference(label)
+            case FigureReference(number):
+                return self.figure_number(number)
             case Cited():
                 return self.citation(self.document.source_number(span), self.said(span.place))
 
@@ -94,5 +97,13 @@ class NotePrinter:
     def figure_words(self, figure: Figure) -> str:
         """What is said below a figure."""
         number = self.document.figures.index(figure) + 1
-        named = Strong(self.said(f"Figure {number}."))
-        return self.text((named, " ", *figure.caption, " ", *figure.description))
+        words = self.text((*figure.caption, " ", *figure.description))
+        return f"{self.figure_title(number)} {words}"
+
+    def figure_title(self, number: int) -> str:
+        """What a caption begins with."""
+        return self.strong(self.said(f"Figure {number}."))
+
+    def figure_number(self, number: int) -> str:
+        """A figure in the text."""
+        return str(number)

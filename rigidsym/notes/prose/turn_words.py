@@ -26,6 +26,7 @@ from rigidsym.notes.document.document import (
     Cited,
     Equation,
     EquationRow,
+    FigureReference,
     NoteBlock,
     Paragraph,
     Text,
@@ -122,11 +123,12 @@ def sum_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
     """Ω read off the figure, with the axes in space components."""
     if len(model.turns) < 2 or not all(turn.rate for turn in model.turns):
         return
-    see = "; see Figure 1" if scene_of(model, letters) else ""
+    figure = [FigureReference(1)] if scene_of(model, letters) else []
+    see = "; see Figure\u00a0{}" if figure else ""
     yield said(
         "Angular velocities about different axes add\u00a0{}. Each turn contributes its rate about "
         f"its own axis{see}:",
-        Cited(GOLDSTEIN),
+        *(Cited(GOLDSTEIN), *figure),
     )
     yield Equation(sides=(sum_of_turns(model, letters),))
     if len(model.turns) > _MOST_WRITTEN or any(turn.components for turn in model.turns):

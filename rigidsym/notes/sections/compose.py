@@ -27,6 +27,7 @@ from rigidsym.notes.document.document import (
     Equation,
     EquationRow,
     Figure,
+    FigureReference,
     NoteBlock,
     NoteTable,
     Paragraph,
@@ -199,8 +200,9 @@ class Composer:
         turns = [turn(t, self.letters) for t in self.model.turns]
         kind = "a product of turns" if len(turns) > 1 else "a single turn"
         figure = list(self._figure())
-        see = ", shown in Figure 1" if figure else ""
-        yield said(f"The rotation is {kind}\u00a0{{}}{see}:", Cited(self.model.source))
+        see = ", shown in Figure\u00a0{}" if figure else ""
+        spans = (Cited(self.model.source), *([FigureReference(1)] if figure else []))
+        yield said(f"The rotation is {kind}\u00a0{{}}{see}:", *spans)
         yield Equation(sides=(ROTATION, row(*turns)))
         yield from figure
         by_axis = list(self._turns_by_axis())

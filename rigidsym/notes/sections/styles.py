@@ -50,9 +50,7 @@ def in_style(document: Document, style: str, *, is_short: bool = False) -> Docum
         for section in document.sections
         if section.title not in left_out
     ]
-    identities = [
-        s._replace(title=APPENDIX, is_appendix=True) for s in kept if s.title == IDENTITIES
-    ]
+    identities = [s._replace(title=APPENDIX) for s in kept if s.title == IDENTITIES]
     others = [section for section in kept if section.title != IDENTITIES]
     if not identities and all(not equation.unproved for equation in document.equations):
         first, *rest = others
