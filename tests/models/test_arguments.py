@@ -5,12 +5,29 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import sympy as sp
+from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
+from rigidsym.models.body import Parameter, RigidBody
+from rigidsym.models.rotation_text import rotation_given, turned_by
 
 a, b = sp.symbols("a b")
 MASKED = np.ma.masked_array([1.0, 2.0, 3.0], mask=[0, 0, 1])
 IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
+M = Parameter(symbol=a, about="mass", unit="kg")
+TURNED = {"rotation": "z(psi)", "principal_moments": [1, 1, 1]}
+q = dynamicsymbols("q")
+
+
+def body(**changes: object) -> RigidBody:
+    given = {"name": "own", "mass": sp.Integer(1), "inertia": sp.eye(3), "parameters": []}
+    given |= {"centre": sp.zeros(3, 1), "title": "A body"} | changes
+    fixed = {k: sp.ImmutableMatrix(given[k]) for k in ("inertia", "centre")}
+    return RigidBody(**given | fixed | {"parameters": tuple(given["parameters"])})
+
+
+def dynamics(**acting: object) -> rs.Motion:
+    return rs.derive("z(theta)", body=rs.principal_moments(1, 1, 1), **acting)
 
 
 @pytest.mark.parametrize(
@@ -44,6 +61,47 @@ IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
         (lambda: rs.Particles(particles=[3]), "expected an rs.Particle, got 3"),
         (lambda: rs.Particle(mass=1, position=[1, 2]), "three components, got 2"),
         (lambda: rs.derive("ZXZ", only="weight"), "no quantity 'weight'"),
+        (lambda: rs.derive("ZXZ", only="mass"), "no quantity mass; it needs a body"),
+        (lambda: rs.chain([]), "a chain needs at least one turn, such as z(phi)"),
+        (
+            lambda: rs.Turn(axis="u", angle=a, components=(1, 0)),
+            "an axis has three components, got 2",
+        ),
+        (lambda: rs.given(sp.eye(3) * sp.I, name="mine", coordinates=[q]), "holds the number i"),
+        (
+            lambda: rotation_given(IDENTITY[:2], name="mine", coordinates=["a"]),
+            "three rows of three",
+        ),
+        (
+            lambda: rotation_given(IDENTITY, name="mine", coordinates=["a", "a"]),
+            "a coordinate is named twice: a, a",
+        ),
+        (
+            lambda: rs.given(sp.eye(3), name="mine", coordinates=[q], example={"c": 1}),
+            "no c for an",
+        ),
+        (lambda: rs.given(sp.eye(3), name="mine", coordinates=[q], example={"q": 0.5}), "exact"),
+        (lambda: turned_by("[u,0,1](a)"), "expected to have components in numbers"),
+        (lambda: turned_by("ZXZ", [a, b]), "ZXZ has 3 coordinates, got 2 values"),
+        (lambda: rs.Particles(particles=[]), "expected at least one particle"),
+        (lambda: body(name="My body"), "expected lower-case letters, digits and underscores"),
+        (lambda: body(inertia=sp.eye(2)), "an inertia tensor is (3, 3), got (2, 2)"),
+        (lambda: body(parameters=[M, M]), "own: a parameter is named twice"),
+        (lambda: body(mass=a * sp.I, parameters=[M]), "is no real constant"),
+        (lambda: body(mass=a * b, parameters=[M]), "own: b is not among the parameters"),
+        (lambda: dynamics(forces={"x": 1}), "a force on x, which is none of theta"),
+        (lambda: dynamics(torque=[1]), "torque: expected three components, got 1"),
+        (lambda: dynamics(method="newton"), "no method 'newton'"),
+        (lambda: dynamics(potential="k"), "depends on none of the coordinates theta"),
+        (lambda: dynamics(frame_rate=["t", 0, 0]), "t depends on t; expected a part, or a rate"),
+        (lambda: dynamics(parts=[{"mass": 1}]), "a part with mass; expected rotation and"),
+        (lambda: dynamics(parts=[{"mass": 1, "velocity": [1]}]), "or three components of velocity"),
+        (lambda: dynamics(parts=[TURNED]), "a part turns by psi, which is no coordinate"),
+        (lambda: dynamics(examples=[{"mass": 1}]), "an example with mass; expected"),
+        (lambda: dynamics(examples=[{"initial": 1}]), "parameters and initial values by name"),
+        (lambda: dynamics(examples=[{"initial": {"x": 1}}]), "an example begins with x"),
+        (lambda: dynamics(examples=[{"time": 0}]), "finite numbers, and a time > 0 in seconds"),
+        (lambda: dynamics(examples=[{"time": 1, "parameters": {"k": 1}}]), "has a value of k"),
     ],
 )
 def test_a_wrong_argument_is_named(make, said):
@@ -67,3 +125,19 @@ def test_numbers_describe_a_solid():
     ball = rs.solid("sphere", radius=1, mass=2)
     assert ball.mass == 2
     assert ball.inertia == sp.diag(*[sp.Rational(4, 5)] * 3)
+
+
+@pytest.mark.parametrize("shown", [rs.rotation_from("z(a)"), rs.EulerAngles("ZXZ", passive=True)])
+def test_a_rotation_shows_itself_in_jupyter(shown):
+    bundle = shown._repr_mimebundle_()
+    assert bundle["text/latex"].startswith(r"$$\mathbf{A}" if shown.passive else r"$$\mathbf{R}")
+    assert shown.presentation in bundle["text/plain"]
+    assert repr(shown) == f"<RotationModel {shown}: {shown.title}>"
+
+
+def test_a_body_shows_itself_in_jupyter():
+    cone = rs.solid("cone")
+    bundle = cone._repr_mimebundle_()
+    assert sp.latex(cone.centre) in bundle["text/latex"]
+    assert f"mass M = {cone.mass}" in bundle["text/plain"]
+    assert str(cone) == cone.name
