@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pty
+import resource
 import signal
 import subprocess
 import sys
@@ -143,6 +144,37 @@ def test_a_check_is_stopped_too(tmp_path, rotations):
     (tmp_path / "top.json").write_text(json.dumps(record))
     done = CliRunner().invoke(commands, ["check", str(tmp_path), "--timeout", "0.2"])
     assert isinstance(done.exception, LimitReached), done.output
+
+
+def test_a_system_without_timers_or_accounts_has_no_limits(monkeypatch, tmp_path):
+    monkeypatch.delattr(signal, "setitimer")
+    monkeypatch.setattr("rigidsym.system.limits.Path", lambda _: tmp_path / "none")
+    with time_limit(0.01), memory_limit(1e-9):
+        done = len("x" * 100_000)
+    monkeypatch.undo()
+    with memory_limit(float("inf")):
+        assert done == 100_000
+
+
+def test_the_limit_of_the_system_holds_too(monkeypatch):
+    limits = []
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (-1, 1 << 20))
+    monkeypatch.setattr(resource, "setrlimit", lambda _, pair: limits.append(pair))
+    with memory_limit(64):
+        assert limits == [(1 << 20, 1 << 20)]
+    assert limits[1:] == [(-1, 1 << 20)]
+
+
+def test_other_errors_of_finalizers_are_told_as_ever(monkeypatch):
+    class Lost:
+        def __del__(self) -> None:
+            raise ValueError("lost")
+
+    told = []
+    monkeypatch.setattr(sys, "unraisablehook", told.append)
+    with time_limit(9):
+        Lost()
+    assert [each.exc_type for each in told] == [ValueError]
 
 
 def test_memory_is_bounded():

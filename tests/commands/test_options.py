@@ -139,14 +139,21 @@ def test_an_unknown_quantity_is_answered_with_the_nearest():
         (("derive", "ZXZ", "--angles", "a,b"), "three different names, got a, b"),
         (("derive", "ZXZ", "--only", "mass"), "no quantity mass; it needs a body"),
         (("derive", "ZXZ", "--only", "hamiltonian"), "it needs a body and forces or a potential"),
+        (("page", "ZXZ", "--angles", "a,b"), "three different names, got a, b"),
+        (("page", "ZXX", "--angles", "a,b,c"), "consecutive axes must differ"),
         (("page", "yaw"), "or a derivation file, NAME.toml or a shipped one; "),
+        (
+            ("eval", "euler_all", __file__, "--out", "r.csv"),
+            "euler_all has 24 rotations; expected one",
+        ),
+        (("simulate", "euler_all"), "euler_all has 24 rotations; expected one"),
     ],
 )
 def test_a_message_says_what_is_wrong_and_no_more(words, said):
     message = str(run(*words).exception)
     assert said in message
     assert len(message) < 300
-    assert ("derivation file" in message) == (words[1] == "yaw")
+    assert ("derivation file" in message) == (words[1] in ("yaw", "ZXX"))
 
 
 def test_the_syntax_of_the_option_is_named_for_the_option():
@@ -161,6 +168,45 @@ def test_derivatives_may_be_separated_by_commas(tmp_path):
     module = (tmp_path / "euler_zxz_intrinsic/euler_zxz_intrinsic.py").read_text("utf-8")
     assert f"def {BODY}_jacobian_q(" in module
     assert f"def {BODY}_jvp_q_dot(" in module
+
+
+def test_the_faults_of_all_files_are_reported(tmp_path):
+    files = [tmp_path / name for name in ("a.toml", "b.toml")]
+    for file in files:
+        file.write_text('[rotation]\nsequence = "ZXX"\n')
+    done = run("run", *map(str, files))
+    assert "a.toml: 1 fault" in done.stderr
+    assert "b.toml: 1 fault" in str(done.exception)
+
+
+def test_two_derivations_of_one_name_are_refused(tmp_path):
+    files = [tmp_path / name / "own.toml" for name in "ab"]
+    for file, axes in zip(files, ("ZXZ", "ZYX"), strict=True):
+        file.parent.mkdir()
+        file.write_text(f'[rotation]\nsequence = "{axes}"\n')
+    done = run("run", *map(str, files), "--out", str(tmp_path / "out"))
+    assert done.exit_code == 2
+    assert "two different derivations are named own and would write one folder" in done.stderr
+
+
+def test_a_module_needs_c_with_arrays(tmp_path):
+    file = tmp_path / "own.toml"
+    file.write_text('[rotation]\nsequence = "ZXZ"\n[output.c]\narrays = false\n')
+    done = run("build", str(file), "--out", str(tmp_path / "out"))
+    assert "a Python module needs C with arrays and both precisions" in str(done.exception)
+
+
+def test_a_problem_sheet_is_written_for_moodle(tmp_path):
+    done = run("problems", "euler", "--number", "1", "--moodle", "--quiet", "--out", str(tmp_path))
+    assert done.exit_code == 0, done.exception
+    (questions,) = tmp_path.rglob("*.xml")
+    assert str(questions) in done.stdout
+    assert questions.read_text(encoding="utf-8").startswith("<?xml")
+
+
+def test_without_colour_no_terminal_codes_are_written(monkeypatch):
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert "\x1b" not in CliRunner().invoke(commands, ["list"], color=True).stdout
 
 
 @pytest.mark.parametrize("option", ["--timeout", "--memory"])
