@@ -359,7 +359,19 @@ def test_a_mesh_from_a_file_is_that_of_trimesh(folder):
         ("parts = [{ at = [0, 0, 0] }]", "body.parts[0]: expected one of shape, particles"),
         ('parts = [{ shape = "sphere", turned = "z(" }]', "body.parts[0].turned"),
         ('parts = [{ shape = "sphere", hole = true, mass = 2.0 }]', "the mass is -2 kg"),
+        (
+            'shape = "polyhedron"\nvertices = [[0, 0, 0]]\nfaces = 3\nmass = 1',
+            "body.faces: expected a list of faces, each a list of corner numbers, got the number 3",
+        ),
+        (
+            'parts = [{ shape = "sphere", turned = { rotation = "ZXZ" } }]',
+            'expected rotation = "ZXZ" or another, and a list of values',
+        ),
         ('mesh = "none.stl"\ndensity = 1.0', "no such mesh"),
+        ('mesh = "../none.stl"\ndensity = 1.0', "a body, got No such file or directory"),
+        ('mesh = ".."\ndensity = 1.0', "expected a file with a body, got a folder"),
+        ('mesh = "/etc/passwd"\ndensity = 1.0', "expected a file with a body, got a file of"),
+        ('particles = "/dev/null"', "expected a file with a body, got a device"),
         ('particles = "none.npy"', "none.npy: no such file"),
     ],
 )

@@ -188,6 +188,21 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
             "a = 1\nb = \nc = 2",
             "line 2: not TOML: Invalid value, at column 5",
         ),
+        (f"{ZXZ}constraints = ['phi']", "line 3: rotation.constraints: this key goes with matrix"),
+        (
+            f"{ZXZ}[output]\nderivatives = ['angular_velocity_body by q']\n"
+            "quantities = ['rotation_matrix']",
+            "line 4: output.derivatives[0]: no quantity \"angular_velocity_body\"; known: "
+            "rotation_matrix",
+        ),
+        (
+            f"{ZXZ}[notation]\nrates = 'dashed'",
+            'line 4: notation.rates: unknown choice "dashed"; known: dot, fraction',
+        ),
+        (
+            f"{ZXZ}[body]\nshape = 'sphere'\n[dynamics]\ntorque = 3",
+            "line 6: dynamics.torque: expected a list of three texts in quotes, got the number 3",
+        ),
         ("a = [1,\n2\n\n", "line 2: not TOML: Unclosed array, at the end of the file"),
         ("a = 1\na = 2\n", "line 2: not TOML: Cannot overwrite a value, at column 6"),
         ("a = " + "[" * 990, "lists or tables nested too deeply to be read"),
@@ -370,6 +385,7 @@ def test_entries_of_a_matrix_may_be_numbers():
         ("[1]", f"rotation.matrix[2][2]: {AN_ENTRY}, got a list"),
         ("nan", f"rotation.matrix[2][2]: {AN_ENTRY}, got a number"),
         ('"cos(psi"', "rotation.matrix[2][2]: "),
+        ('"1"]]\nsequence = "ZXZ"\n#', "rotation.sequence: this key does not go with matrix"),
         ("1, 0", "rotation.matrix: expected three rows of three expressions, got a list"),
     ],
 )
