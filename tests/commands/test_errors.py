@@ -63,12 +63,12 @@ def no_tex(patch: pytest.MonkeyPatch) -> None:
     typeset("x")
 
 
-def failing_tex(patch: pytest.MonkeyPatch) -> None:
-    Path("latexmk").write_text("#!/bin/sh\nexit 1\n")
+def failing_tex(patch: pytest.MonkeyPatch, program: str = "exit 1", **options: float) -> None:
+    Path("latexmk").write_text(f"#!/bin/sh\n{program}\n")
     Path("latexmk").chmod(0o755)
     Path("pdflatex").symlink_to("latexmk")
     patch.setenv("PATH", f"{Path.cwd()}:/bin:/usr/bin")
-    typeset("x")
+    typeset("x", **options)
 
 
 def no_extra(patch: pytest.MonkeyPatch) -> None:
@@ -143,6 +143,12 @@ def test_each_error_is_provoked(kind, tmp_path, monkeypatch):
         PROVOKED[kind](monkeypatch)
     assert caught.type is kind
     assert str(caught.value)
+
+
+def test_tex_is_ended_with_all_that_it_started(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(errors.ToolFailed, match=r"TeX was stopped after 0\.2 seconds"):
+        failing_tex(monkeypatch, "sleep 60", timeout=0.2)
 
 
 def turning() -> rs.Motion:

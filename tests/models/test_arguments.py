@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -10,6 +12,8 @@ from sympy.physics.vector import dynamicsymbols
 import rigidsym as rs
 from rigidsym.models.body import Parameter, RigidBody
 from rigidsym.models.rotation_text import rotation_given, turned_by
+from rigidsym.notes.formats import register
+from rigidsym.notes.problems.exercise import sheet_of
 
 a, b = sp.symbols("a b")
 MASKED = np.ma.masked_array([1.0, 2.0, 3.0], mask=[0, 0, 1])
@@ -62,6 +66,9 @@ def dynamics(**acting: object) -> rs.Motion:
         (lambda: rs.Particle(mass=1, position=[1, 2]), "three components, got 2"),
         (lambda: rs.derive("ZXZ", only="weight"), "no quantity 'weight'"),
         (lambda: rs.derive("ZXZ", only="mass"), "no quantity mass; it needs a body"),
+        (lambda: rs.derive("z(a)").note(language="xx"), "language is en or de, and not 'xx'"),
+        (lambda: sheet_of("tops", {}, count=1, variant=1), "no problems on 'tops'"),
+        (lambda: register(Path("/none/format.txt")), "/none/format.txt cannot be imported"),
         (lambda: rs.chain([]), "a chain needs at least one turn, such as z(phi)"),
         (
             lambda: rs.Turn(axis="u", angle=a, components=(1, 0)),

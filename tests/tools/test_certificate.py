@@ -430,6 +430,8 @@ def test_the_files_are_written_and_checked(tmp_path):
     done = subprocess.run(alone, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert "REFUSED: rotation_matrix" in done.stdout
+    assert checker.main([str(tmp_path)]) == 1
+    assert checker.main([str(tmp_path / "none")]) == 0
     done = call("check", "out", cwd=tmp_path, status=1)
     assert f"{NAME}.cert.json: refused: rotation_matrix" in done.stdout
 

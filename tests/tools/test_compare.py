@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
+import numpy as np
 import pytest
 import sympy as sp
 
@@ -250,3 +251,24 @@ def test_rates_of_a_quaternion_are_known_with_the_scalar_last_and_twice(order, f
     found = rs.compare(factor * rates.extract(places, [0]))
     assert found.is_proved
     assert found.arrangement == ", ".join(filter(None, (words, "twice" if factor == 2 else "")))
+
+
+@pytest.mark.parametrize("last", [False, True], ids=["first", "last"])
+@pytest.mark.parametrize("factor", [1, 2])
+def test_the_matrix_that_takes_a_quaternion_to_its_rates_is_known(last, factor):
+    a, b, c = sp.symbols("omega_1:4", real=True)
+    rates = sp.Matrix([[0, -a, -b, -c], [a, 0, c, -b], [b, -c, 0, a], [c, b, -a, 0]]) * factor / 2
+    places = [1, 2, 3, 0] if last else [0, 1, 2, 3]
+    found = rs.compare(rates.extract(places, places))
+    words = filter(None, ("scalar last" if last else "", "twice" if factor == 2 else ""))
+    end = "".join(f", {word}" for word in words)
+    assert (
+        found.text() == f"equal to quaternion_rate_operator_body of unit_quaternion{end} (proved)"
+    )
+
+
+def test_functions_may_return_anything_with_entries():
+    found = rs.compare(lambda q: np.full((3, 3), q[0]), "ZYX", "rotation_matrix")
+    assert found.text() == "not rotation_matrix of ZYX, and no single change makes it one"
+    turn = lambda q: sp.Matrix([[sp.cos(q[0]), -sp.sin(q[0])], [sp.sin(q[0]), sp.cos(q[0])]])  # noqa: E731
+    assert rs.compare(lambda q: sp.diag(turn(q), 1), "z(a)", "rotation_matrix").is_proved

@@ -124,6 +124,33 @@ def test_a_declaration_in_c_may_hold_several_names(tmp_path):
     assert "(a sign)" in str(found)
 
 
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("R << cos(a), -sin(a), 0, sin(a), cos(a), 0, 0, 0, 1;\nS = R;", [(1, "R")]),
+        ("p = cos(a)*x - sin(a)*y;\nq = sin(a)*x + cos(a)*y;\nr = z;", [(3, "p, q, r")]),
+        (
+            "m[0] = cos(a); m[1] = sin(a); m[2] = 0;\nm[0] = sin(b); m[1] = cos(b); m[2] = 1;",
+            [(1, "m"), (2, "m")],  # written anew
+        ),
+        ("k[0] = cos(a); k[0][1] = sin(a);", []),
+        ("n[0][0] = cos(a); n[1][1] = sin(a);", []),
+        ("v << cos(a), sin(a), cos(b), sin(b), 1;", []),
+        ("m << 1, 2, 3;", []),
+    ],
+)
+def test_streams_components_and_entries_are_followed(text, expected):
+    assert [(line, name) for line, name, _ in formulas(text, ".cpp")] == expected
+
+
+def test_a_folder_with_too_many_files_is_refused(tmp_path, monkeypatch):
+    for name in ("a.py", "b.py"):
+        (tmp_path / name).write_text("")
+    monkeypatch.setattr("rigidsym.tools.compare.search._MOST_FILES", 1)
+    with pytest.raises(ExpressionError, match="2 source files; expected at most 1"):
+        list(source_files([tmp_path]))
+
+
 def test_a_wrong_entry_of_a_matrix_filled_entry_by_entry_is_named(tmp_path):
     entries = {
         "0][0": "1 - 2*(y*y + z*z)", "0][1": "2*(x*y - w*z)", "0][2": "2*(x*z + w*y)",

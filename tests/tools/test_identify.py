@@ -278,6 +278,7 @@ def test_without_motion_the_frame_of_omega_is_asked_for_with_rates():
     found = rs.identify(**sample(reading, GENERIC[False], (0.0, 0.0, 0.0)))
     assert len(found.answers) == len(VELOCITIES)
     assert {answer.reading.orientation for answer in found.answers} == {reading.orientation}
+    assert "They differ only in Ω; no sample at rest tells them apart." in str(found)
     (further,) = found.further.samples
     given = [omega(a.reading, further.angles, further.rates) for a in found.answers]
     apart = [

@@ -61,6 +61,15 @@ def test_columns_by_name(tmp_path, header, separator):
     assert holds(answer, AEROSPACE)
 
 
+def test_columns_of_several_units_are_converted_and_named(tmp_path):
+    header = HEADERS["units"].replace("[deg]", "[cdeg]", 1)
+    table = rows(30)
+    table[:, 0] *= 100
+    found = identify_file(written(tmp_path / "log.csv", table, header, ","))
+    assert holds(found.answers[0], AEROSPACE)
+    assert "converted to degrees: " in found.text()
+
+
 def test_columns_without_a_header_by_their_number_or_by_given_names(tmp_path):
     table = rows(20)
     (answer,) = identify_file(written(tmp_path / "plain.csv", table)).answers
