@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
 from typing import ClassVar, NamedTuple
 
 _LONGEST = 40  # letters of a name that a message looks for
@@ -25,6 +24,8 @@ def printable(text: str) -> str:
 
 def offer(name: str, known: Iterable[str]) -> str:
     """The end of a message about an unknown name: the nearest known ones, or a few of them."""
+    from difflib import get_close_matches  # few commands end with a message
+
     known = list(known)
     near = get_close_matches(name, known, n=2) if len(name) <= _LONGEST else []
     if near:

@@ -118,6 +118,7 @@ def _displayed(
     return inside._replace(text=setter.pen.boxed(inside.text), width=inside.width + BOX)
 
 
+@lru_cache(maxsize=512)
 def spoken(equation: Equation, letters: Letters) -> str:
     """The equation on one line of Unicode; a matrix row by row."""
     value: list[Formula] = []

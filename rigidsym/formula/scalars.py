@@ -74,6 +74,9 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     if len(entries) < 2 or len(below) > 1:
         return sp.S.One, matrix
     (divisor,) = below
+    numbers = matrix.atoms(sp.Rational)
+    if divisor == 1 and all(n.is_Integer for n in numbers) and _constants_in_all(entries) == 1:
+        return sp.S.One, matrix
     contents = [_over(entry, divisor).as_content_primitive() for entry in matrix]
     number = sp.gcd_list([content for content, rest in contents if rest != 0])
     constants = _constants_in_all([rest for _, rest in contents if rest != 0])

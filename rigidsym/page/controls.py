@@ -193,13 +193,19 @@ def _control(argument: Argument, place: int, start: float, period: float, reach:
 @lru_cache(maxsize=64)
 def period_of(symbol: sp.Expr, model: RotationModel) -> float:
     """After how many radians R is as before; 0 where the symbol is no angle in R."""
-    matrix = model.matrix
-    within = [f for f in matrix.atoms(sp.sin, sp.cos) if f.has(symbol)]
-    outside = matrix.xreplace({f: sp.Dummy() for f in within})
+    waves, outside = _waves(model.matrix)
+    within = [wave for wave in waves if wave.has(symbol)]
     slopes = [_slope(f.args[0], symbol) for f in within]
     if not within or outside.has(symbol) or not all(slope.is_Rational for slope in slopes):
         return 0.0
     return 2 * pi * lcm(*(int(slope.q) for slope in slopes))
+
+
+@lru_cache(maxsize=64)
+def _waves(matrix: sp.ImmutableMatrix) -> tuple[set[sp.Expr], sp.ImmutableMatrix]:
+    """The sines and cosines of a matrix, and the matrix with letters in their places."""
+    waves = matrix.atoms(sp.sin, sp.cos)
+    return waves, matrix.xreplace({wave: sp.Dummy() for wave in waves})
 
 
 @lru_cache(maxsize=1024)

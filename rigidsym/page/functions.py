@@ -65,7 +65,11 @@ class Functions:
 
 def functions_of(derivation: Derivation) -> Functions:
     """All functions that the page of a derivation evaluates."""
-    shown = derivation_of(derivation.model, (*SHOWN, _WITH_A_MARGIN))
+    names = (*SHOWN, _WITH_A_MARGIN)
+    if {step.quantity.name for step in derivation.steps}.issuperset(names):
+        shown = replace(derivation.select(names), body=None, forces=None)
+    else:
+        shown = derivation_of(derivation.model, names)
     whole = {argument.name: argument for argument in (*shown.arguments, *derivation.arguments)}
     flow = _flow(derivation)
     places = places_of(derivation.body)

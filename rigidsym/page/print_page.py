@@ -179,19 +179,22 @@ def _script(functions: Functions, data: object) -> str:
         "// --- the functions of the derivation: every number of this page comes from them\n",
         functions.source,
         f"\nconst kernels = {{ {names} }};\nconst page = {_json(data)};\n",
-        *(_EXPORT.sub("", _IMPORT.sub("", _module(name))) for name in MODULES),
+        _modules(),
     ]
     return "\n".join(parts).replace("</", "<\\/").replace("<!--", "<\\!--")
 
 
-def _words() -> list[str]:
-    """What the script shows or says."""
-    return [s for name in MODULES for s in _SAID.findall(_module(name))]
+@cache
+def _modules() -> str:
+    """The modules as one script, in which nothing is imported."""
+    texts = (resources.text("templates", f"page/{name}.mjs") for name in MODULES)
+    return "\n".join(_EXPORT.sub("", _IMPORT.sub("", text)) for text in texts)
 
 
 @cache
-def _module(name: str) -> str:
-    return resources.text("templates", f"page/{name}.mjs")
+def _words() -> list[str]:
+    """What the script shows or says."""
+    return _SAID.findall(_modules())
 
 
 def _json(data: object) -> str:

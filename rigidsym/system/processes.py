@@ -35,10 +35,14 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     rest = items[1:]
     # the threads of JAX are not copied, and a copy would wait for them
     count = 1 if "jax" in sys.modules else max(min(cores(), len(rest)), 1)
-    with _copies(work, [rest[first::count] for first in range(1, count)]) as copies:
-        for place, item in enumerate(rest):
+    copy_of = [place % count for place in range(len(rest))]  # 0: it is done here
+    if count > 1 and not copy_of[-1]:
+        copy_of[-1] = 1  # this process has more to do: what becomes of the results
+    shares = [[rest[p] for p, k in enumerate(copy_of) if k == copy] for copy in range(1, count)]
+    with _copies(work, shares) as copies:
+        for item, copy in zip(rest, copy_of, strict=True):
             try:
-                yield copies[place % count - 1].recv() if place % count else work(item)
+                yield copies[copy - 1].recv() if copy else work(item)
             except EOFError:
                 yield work(item)
 

@@ -122,43 +122,48 @@ class Graph:
         """Give a node of its own to what several products or several sums have in common."""
         roots = list(roots)
         of_factors, of_terms = cache(_factor_pairs), cache(_term_pairs)  # a round alters few nodes
-        while pair := _most_common(map(of_factors, self._used(self.products, roots))):
-            self._take_factors(roots, *pair)
-        self._take_reciprocals(roots)
-        while found := _most_common(map(of_terms, self._used(self.sums, roots))):
-            self._take_terms(roots, *found)
+        used = self._used(self.products, roots)
+        while pair := _most_common(map(of_factors, used.values())):
+            self._take_factors(used, *pair)
+            used = self._used(self.products, roots)
+        self._take_reciprocals(used)
+        used_sums = self._used(self.sums, roots)
+        while found := _most_common(map(of_terms, used_sums.values())):
+            self._take_terms(used_sums, *found)
+            used_sums = self._used(self.sums, roots)
 
-    def _used(self, table: Mapping[int, Pair], roots: list[int]) -> list[Pair]:
-        return [table[node] for node in sorted(self.reachable(roots)) if node in table]
+    def _used(self, table: Mapping[int, Pair], roots: list[int]) -> dict[int, Pair]:
+        """The part of a table that the roots are made of, in the order of the nodes."""
+        return {node: table[node] for node in sorted(self.reachable(roots) & table.keys())}
 
-    def _take_factors(self, roots: list[int], a: int, b: int) -> None:
+    def _take_factors(self, used: Mapping[int, Factors], a: int, b: int) -> None:
         common = self.product((a, b))
-        for node in sorted(self.reachable(roots) & self.products.keys() - {common}):
-            factors = list(self.products[node])
-            while _holds(factors, a, b):
+        for node, whole in used.items():
+            factors = list(whole)
+            while node != common and _holds(factors, a, b):
                 factors.remove(a)
                 factors.remove(b)
                 factors.append(common)
             self._redefine(self.products, node, tuple(sorted(factors)))
 
-    def _take_terms(self, roots: list[int], a: int, b: int, ratio: Fraction) -> None:
+    def _take_terms(self, used: Mapping[int, Terms], a: int, b: int, ratio: Fraction) -> None:
         _, common = self.sum(((Fraction(1), a), (ratio, b)))
-        for node in sorted(self.reachable(roots) & self.sums.keys() - {common}):
-            terms = {part: c for c, part in self.sums[node]}
-            if a in terms and terms.get(b) == ratio * terms[a]:
+        for node, whole in used.items():
+            terms = {part: c for c, part in whole}
+            if node != common and a in terms and terms.get(b) == ratio * terms[a]:
                 terms[common] = terms.pop(a)
                 del terms[b]
                 self._redefine(self.sums, node, tuple((c, n) for n, c in sorted(terms.items())))
 
-    def _take_reciprocals(self, roots: list[int]) -> None:
+    def _take_reciprocals(self, used: Mapping[int, Factors]) -> None:
         """One reciprocal for several divisions by one thing."""
-        products = self._used(self.products, roots)
-        divided = Counter(f for factors in products for f in set(factors) if f < 0)
+        divided = Counter(f for factors in used.values() for f in set(factors) if f < 0)
         for divisor in sorted(f for f, n in divided.items() if n >= _FEWEST_RECIPROCALS):
             inverse = self.product((divisor,))
-            for node in sorted(self.reachable(roots) & self.products.keys() - {inverse}):
-                factors = (inverse if f == divisor else f for f in self.products[node])
-                self._redefine(self.products, node, tuple(sorted(factors)))
+            for node in used:
+                if node != inverse:
+                    factors = (inverse if f == divisor else f for f in self.products[node])
+                    self._redefine(self.products, node, tuple(sorted(factors)))
 
     def _redefine(self, table: dict[int, Pair], node: int, value: Pair) -> None:
         """Write a node in other terms; it can still be found by its new form."""

@@ -17,8 +17,9 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.present import halved
-from rigidsym.algebra.stumpff import Stumpff, at_zero, rewriter_of
+from rigidsym.algebra.stumpff import Rewriter, Stumpff, at_zero, rewriter_of
 from rigidsym.kernels import ir
+from rigidsym.kernels.lowering.cse import Graph, Weighted
 from rigidsym.kernels.lowering.degrees import (
     ABOUT,
     SUFFIX,
@@ -128,10 +129,6 @@ class _Lowering:
         for vector in derivation.arguments:
             self._argument(vector)
         self._definitions = {d.symbol: d.expression for d in derivation.definitions}
-        model = derivation.model
-        inputs = [symbol for vector in derivation.arguments for symbol in vector.symbols]
-        self._given = [*model.matrix, *inputs, *_roots(derivation)]
-        self._rewriter = rewriter_of(self._given, model.constraints)
 
     def _argument(
         self, vector: Vector, *, is_scaled: bool = True, **kinds: Any
@@ -298,6 +295,16 @@ class _Lowering:
         squares = sp.Add(*(minor**2 for minor in found.minors)) / number
         return {base: squares, -base: -squares}
 
+    @cached_property
+    def _given(self) -> list[sp.Expr]:
+        """What the entries are made of."""
+        inputs = [symbol for vector in self.derivation.arguments for symbol in vector.symbols]
+        return [*self.derivation.model.matrix, *inputs, *_roots(self.derivation)]
+
+    @cached_property
+    def _rewriter(self) -> Rewriter | None:
+        return rewriter_of(self._given, self.derivation.model.constraints)
+
     def rewritten(self, entries: Iterable[sp.Expr]) -> list[sp.Expr]:
         """The entries in forms that keep their digits where they can: see `algebra`."""
         plain = list(entries)
@@ -324,7 +331,7 @@ class _Lowering:
         )
 
 
-@lru_cache(maxsize=256)  # conventions have kernels in common, and so have a page and a module
+@lru_cache(maxsize=256)  # conventions have kernels in common
 def _kernel(
     name: str,
     arguments: tuple[ir.KernelArgument, ...],
@@ -336,15 +343,28 @@ def _kernel(
     **words: Any,
 ) -> ir.Kernel:
     """A kernel whose common subexpressions are shared, with its divisors guarded."""
-    reader = Reader(name, dict(inputs), dict(definitions), in_degrees)
-    weighted = [reader.weighted(entry) for entry in entries]
-    reader.graph.share(node for _, node in weighted)
+    graph, weighted = _shared(name, inputs, definitions, entries, in_degrees)
     names = Names(taken)
-    assignments, outputs = write(reader.graph, weighted, names)
+    assignments, outputs = write(graph, weighted, names)
     kernel = ir.Kernel(
         name=name, arguments=arguments, assignments=assignments, outputs=outputs, **words
     )
     return guarded(kernel, names)
+
+
+@lru_cache(maxsize=64)  # a page and a module share the same, and then name it in their languages
+def _shared(
+    name: str,
+    inputs: tuple[tuple[sp.Expr, str], ...],
+    definitions: tuple[tuple[sp.Expr, sp.Expr], ...],
+    entries: tuple[sp.Expr, ...],
+    in_degrees: frozenset[str],
+) -> tuple[Graph, list[Weighted]]:
+    """The entries as nodes of a graph, in which what they have in common is one node."""
+    reader = Reader(name, dict(inputs), dict(definitions), in_degrees)
+    weighted = [reader.weighted(entry) for entry in entries]
+    reader.graph.share(node for _, node in weighted)
+    return reader.graph, weighted
 
 
 def _scaled(minors: Sequence[sp.Expr], found: Singularities) -> tuple[sp.Rational, str]:
