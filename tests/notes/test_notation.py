@@ -19,6 +19,8 @@ from rigidsym.formula.notation import CHOICES, DEFAULT, Notation
 from rigidsym.formula.reader import formula
 from rigidsym.formula.unicode_pen import columns
 from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.models.parametrisations import UnitQuaternion
+from rigidsym.notes.document.document import plain
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import read_file, read_record, read_spec
@@ -262,3 +264,18 @@ def test_a_file_and_the_command_line_name_the_frames(tmp_path: Path):
     )
     assert run.exit_code == 0, run.output
     assert "angular velocity, craft components" in run.output
+
+
+@pytest.mark.parametrize("scalar_last", [False, True])
+def test_a_quaternion_is_printed_in_letters_that_are_no_axes(scalar_last):
+    """The functions go on taking w, x, y, z, which the note says once."""
+    motion = rs.derive(UnitQuaternion(scalar_last=scalar_last), ["rotation_matrix"])
+    note = motion.note(style="lecture")
+    said = (
+        "q₁, q₂, q₃, q₀), in programs x, y, z, w" if scalar_last else "q₃), in programs w, x, y, z"
+    )
+    texts = [plain(b.text) for s in note.document.sections for b in s.blocks if hasattr(b, "text")]
+    assert sum(said in text for text in texts) == 1
+    assert r"q_0^2" in note.latex()
+    assert "<mi>w</mi>" not in note.html()
+    assert motion.argument("q").names == tuple(order)

@@ -255,8 +255,8 @@ def test_rates_of_vector_forms_are_the_derivatives(name):
 @pytest.mark.parametrize(
     ("name", "quantity", "written"),
     [
-        ("quaternion", "angular_velocity_space", "(2/n²) (w v̇ + v × v̇ − ẇ v)"),
-        ("quaternion", "rotation_matrix", "1 + (2/n²) (w C(v) + C(v)²)"),
+        ("quaternion", "angular_velocity_space", "(2/n²) (q₀ v̇ + v × v̇ − q̇₀ v)"),
+        ("quaternion", "rotation_matrix", "1 + (2/n²) (q₀ C(v) + C(v)²)"),
         ("gibbs_vector", "inverse_rate_matrix_body", "½(1 + C(v) + v vᵀ)"),
         ("modified_rodrigues", "inverse_rate_matrix_space", "¼(1 − n²) 1 − ½(C(v) − v vᵀ)"),
         ("axis_angle", "rotation_matrix", "1 + sin φ C(v) + (1 − cos φ) C(v)²"),

@@ -237,7 +237,7 @@ def _gibbs(make: Make, q: Vector) -> ClosedForm:
         back=back,
         backward="The vector part is divided by the scalar.",
         choice="Every rotation has one vector. A half turn gives inf, and 0 where its axis has 0.",
-        residuals=(_equal(_along(parts[0], q), parts[1:], r"p_w\,\mathbf{g} = \mathbf{p}_v"),),
+        residuals=(_equal(_along(parts[0], q), parts[1:], r"p_0\,\mathbf{g} = \mathbf{p}_v"),),
     )
 
 
@@ -259,7 +259,7 @@ def _modified(make: Make, q: Vector) -> ClosedForm:
         backward="The vector part is divided by one plus the scalar.",
         choice=r"Of the two sets, the one with $\mathbf{s}\cdot\mathbf{s} \le 1$, a turn by at "
         "most π.",
-        residuals=(_equal(_along(1 + scalar, q), vector, r"(1 + p_w)\,\mathbf{s} = \mathbf{p}_v"),),
+        residuals=(_equal(_along(1 + scalar, q), vector, r"(1 + p_0)\,\mathbf{s} = \mathbf{p}_v"),),
         continuity="Of the two sets the one whose quaternion is nearer to that of the sample "
         "before; at a whole turn it is infinite.",
     )

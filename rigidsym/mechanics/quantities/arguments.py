@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 POINT = tuple(sp.Symbol(f"p_{axis}") for axis in "xyz")
 DIRECTION = tuple(sp.Symbol(f"n_{axis}") for axis in "xyz")
+# beside the axes x, y, z of space, a quaternion (w, x, y, z) is printed in other letters
+_QUATERNION = {"w": "q_0", "x": "q_1", "y": "q_2", "z": "q_3"}
 _SPACE = tuple(sp.Symbol(f"Omega_{k}") for k in (1, 2, 3))
 
 
@@ -64,7 +66,7 @@ def arguments_of_motion(model: RotationModel) -> tuple[Argument, ...]:
     """The generalised momenta and the torque, inputs of Hamilton's and Euler's equations."""
     plain = [coordinate.func.__name__ for coordinate in model.coordinates]
     momenta = [sp.Symbol(f"p_{label}") for label in plain]
-    shown = [formula("p_{#1}", named(label)) for label in plain]
+    shown = [formula("p_{#1}", named(label)) for label in _shown(plain)]
     torque, components = sp.symbols("torque_1:4"), [formula(f"N'_{k}") for k in (1, 2, 3)]
     about = "body components of the torque about the fixed point"
     return (
@@ -140,10 +142,14 @@ def _moving(
         name=name,
         symbols=tuple(_derivative(function, order) for function in functions),
         names=tuple(label + ("", "_dot", "_ddot")[order] for label in plain),
-        notation=tuple(named(label, order) for label in plain),
+        notation=tuple(named(label, order) for label in _shown(plain)),
         units=tuple(f"{unit or '1'}{per}" if order else unit for unit in units),
         about=about,
     )
+
+
+def _shown(names: Sequence[str]) -> Sequence[str]:
+    return [_QUATERNION[name] for name in names] if {*names} == {*_QUATERNION} else names
 
 
 @lru_cache(maxsize=1024)

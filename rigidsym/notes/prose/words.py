@@ -20,7 +20,7 @@ from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTAT
 from rigidsym.mechanics.quantities.mass import DIRECTION, MASS, OF_BODY_ALONE, POINT
 from rigidsym.models.rotation import Citation
 from rigidsym.models.so3 import AXES
-from rigidsym.notes.document.document import Cited, Text, listed, words
+from rigidsym.notes.document.document import Cited, Code, Text, listed, words
 from rigidsym.notes.formula.derivation_letters import VECTOR, length_of, letters_of
 
 POSITION = formula(r"\mathbf{x}")
@@ -58,7 +58,9 @@ def symbols_of(derivation: Derivation) -> dict[str, Formula]:
     if derivation.model.vector:
         length = length_of(derivation.model)
         named = chain(named, (VECTOR,), (length.names[length.symbol],) if length else ())
-    return {text: found for text, found in by_text(tuple(named)).items() if text not in _ALSO_WORDS}
+    q = derivation.argument("q")
+    found = by_text(tuple(named)) | dict(zip(q.names, q.notation, strict=True))
+    return {text: symbol for text, symbol in found.items() if text not in _ALSO_WORDS}
 
 
 def with_symbols(sentence: str, symbols: Mapping[str, Formula]) -> Text:
@@ -185,7 +187,10 @@ def _coordinates(argument: Argument, *, has_dots: bool) -> Text:
     several = len(argument.notation) > 1
     head = words(f"The coordinate{'s are' if several else ' is'} {{}} = (", COORDINATES)
     dots = "; a dot denotes the derivative with respect to time" if has_dots else ""
-    return (*head, *names, f"){measured}{dots}.")
+    programs: Text = ()
+    if {*argument.names} == {*"wxyz"}:  # printed in other letters
+        programs = (", in programs ", *listed([(Code(n),) for n in argument.names], ", "))
+    return (*head, *names, f"){measured}", *programs, f"{dots}.")
 
 
 def unit_in_words(unit: str) -> str:

@@ -59,7 +59,7 @@ def _matrix(found: Conversions) -> Iterator[NoteBlock]:
     )
     yield said(text, found.from_matrix.claim, Cited(SHEPPERD))
     matrix = columns_of_matrix()
-    sides = (formula(rf"4\,p_{name}\,\mathbf{{p}}") for name in "wxyz")
+    sides = (formula(rf"4\,p_{name}\,\mathbf{{p}}") for name in "0123")
     columns = (
         Equation(sides=(side,), matrix=matrix[:, k], entries=indexed(side, (4,)))
         for k, side in enumerate(sides)
