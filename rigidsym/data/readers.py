@@ -92,7 +92,8 @@ class ArrayReader:
                 found = f"{array.dtype} of shape {array.shape}"
                 raise DataError(f"expected numbers of shape (rows, columns), got {found}")
         self._arrays = arrays
-        self.width = sum(array.shape[1] for array in arrays)
+        self._columns = [column for array in arrays for column in array.T]
+        self.width = len(self._columns)
         floats = [a.dtype for a in arrays if a.dtype.kind == "f"]
         is_single = len(floats) == len(arrays) and all(kind.itemsize == 4 for kind in floats)
         self.dtype = np.dtype(np.float32 if is_single else np.float64)
@@ -119,7 +120,7 @@ class ArrayReader:
         unread = 0
         for first in range(start, last, rows):
             end = min(first + rows, last)
-            passed = tuple(self._column(column)[first:end].copy() for column in kept)
+            passed = tuple(self._columns[column][first:end].copy() for column in kept)
             yield Chunk(
                 self._rows(slice(first, end), columns), np.arange(first, end), end / last, passed
             )
@@ -140,17 +141,10 @@ class ArrayReader:
             if list(columns) == list(range(first, first + len(columns))):
                 return np.asarray(rows[:, first : first + len(columns)], self.dtype)
             return np.asarray(rows[:, list(columns)], self.dtype)
-        table = np.empty((len(self._column(0)[which]), len(columns)), self.dtype)
+        table = np.empty((len(self._columns[0][which]), len(columns)), self.dtype)
         for place, column in enumerate(columns):
-            table[:, place] = self._column(column)[which]
+            table[:, place] = self._columns[column][which]
         return table
-
-    def _column(self, column: int) -> NDArray[Any]:
-        for array in self._arrays:
-            if column < array.shape[1]:
-                return array[:, column]
-            column -= array.shape[1]
-        raise IndexError(column)
 
     def _forget(self) -> None:
         if hasattr(mmap, "MADV_DONTNEED"):

@@ -110,7 +110,5 @@ def _memory_in_use() -> int | None:
         status = Path("/proc/self/status").read_text(encoding="ascii", errors="replace")
     except OSError:
         return None
-    for line in status.splitlines():
-        if line.startswith("VmData:"):
-            return int(line.split()[1]) * 1024
-    return None
+    lines = (line.split() for line in status.splitlines() if line.startswith("VmData:"))
+    return next((int(line[1]) * 1024 for line in lines), None)

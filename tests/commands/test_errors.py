@@ -21,6 +21,7 @@ from rigidsym.mechanics.mass import derive as mass
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.system import cluster
 from rigidsym.system.limits import time_limit
+from rigidsym.system.resources import folder
 
 KNOWN = [
     each
@@ -110,6 +111,12 @@ def bad_data(_: pytest.MonkeyPatch) -> None:
 def no_record(_: pytest.MonkeyPatch) -> None:
     Path("empty").mkdir()
     said("check", "empty")
+
+
+def test_a_package_without_its_files_says_where_it_looked(monkeypatch, tmp_path):
+    monkeypatch.setattr("rigidsym.system.resources._HOMES", (tmp_path,))
+    with pytest.raises(FileNotFoundError, match=f"without its templates: looked for {tmp_path}"):
+        folder("templates")
 
 
 PROVOKED = {

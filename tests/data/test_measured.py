@@ -18,7 +18,7 @@ from rigidsym.data.mass.blocks import BLOCK, block_of, cloud_of
 from rigidsym.data.mass.mesh import Mesh, mesh_inertia, read_mesh_file
 from rigidsym.data.mass.point_masses import inertia_of
 from rigidsym.data.mass.properties import principal_axes_of
-from rigidsym.errors import BodyError
+from rigidsym.errors import BodyError, ClusterError
 
 EPS = np.finfo(float).eps
 
@@ -294,6 +294,18 @@ def test_a_cluster_reads_the_file(tmp_path):
         )
     assert (found.inertia == inertia_of(table).inertia).all()
     assert seen[-1] == 1
+
+
+@pytest.mark.filterwarnings("ignore::Warning:distributed.*", "ignore:.*:ResourceWarning")
+def test_a_cluster_without_workers_is_refused(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    np.save(tmp_path / "cloud.npy", rows(3))
+    options = {"processes": False, "dashboard_address": None, "protocol": "inproc"}
+    with (
+        distributed.LocalCluster(n_workers=0, **options) as cluster,
+        pytest.raises(ClusterError, match="its cluster has no workers now"),
+    ):
+        inertia_of(tmp_path / "cloud.npy", scheduler=cluster.scheduler_address)
 
 
 # principal axes

@@ -11,6 +11,8 @@ from sympy.physics.vector import dynamicsymbols
 
 import rigidsym as rs
 from rigidsym.models.body import Parameter, RigidBody
+from rigidsym.models.distribution import Polyhedron
+from rigidsym.models.example import no_rotation
 from rigidsym.models.rotation_text import rotation_given, turned_by
 from rigidsym.notes.formats import register
 from rigidsym.notes.problems.exercise import sheet_of
@@ -19,6 +21,7 @@ a, b = sp.symbols("a b")
 MASKED = np.ma.masked_array([1.0, 2.0, 3.0], mask=[0, 0, 1])
 IDENTITY = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
 M = Parameter(symbol=a, about="mass", unit="kg")
+NO_NUMBER = Parameter(symbol=a, positive=False, value=float("nan"))
 TURNED = {"rotation": "z(psi)", "principal_moments": [1, 1, 1]}
 q = dynamicsymbols("q")
 
@@ -96,6 +99,8 @@ def dynamics(**acting: object) -> rs.Motion:
         (lambda: body(parameters=[M, M]), "own: a parameter is named twice"),
         (lambda: body(mass=a * sp.I, parameters=[M]), "is no real constant"),
         (lambda: body(mass=a * b, parameters=[M]), "own: b is not among the parameters"),
+        (lambda: body(inertia=sp.diag(a, 1, 1), parameters=[NO_NUMBER]), "holds NaN or infinity"),
+        (lambda: Polyhedron(vertices=(), faces=()), "expected either the mass or the density"),
         (lambda: dynamics(forces={"x": 1}), "a force on x, which is none of theta"),
         (lambda: dynamics(torque=[1]), "torque: expected three components, got 1"),
         (lambda: dynamics(method="newton"), "no method 'newton'"),
@@ -126,6 +131,23 @@ def test_an_argument_of_the_wrong_type_is_a_type_error_that_says_what_was_expect
 def test_symbols_may_name_angles():
     named = rs.EulerAngles("ZYX", angles=sp.symbols("a b c"))
     assert named == rs.EulerAngles("ZYX", angles=("a", "b", "c"))
+
+
+def test_a_body_is_turned_by_constants_of_the_names_of_the_coordinates():
+    matrix, bound = turned_by("zxz")
+    assert matrix.free_symbols == {*sp.symbols("phi theta psi")}
+    assert bound == ()
+
+
+def test_without_coordinates_of_no_rotation_all_are_zero():
+    assert no_rotation(rs.rotation_from("x(pi/2) z(a)")) == {"a": 0.0}
+    assert no_rotation(rs.rotation_from("quaternion")) == {"w": 1.0, "x": 0.0, "y": 0.0, "z": 0.0}
+
+
+def test_the_former_name_of_a_choice_of_notation_goes_on_working():
+    motion = rs.derive("z(a)")
+    with pytest.warns(DeprecationWarning, match=r"written\(\) is now called with_notation\(\)"):
+        assert motion.written(rates="fraction") == motion.with_notation(rates="fraction")
 
 
 def test_numbers_describe_a_solid():

@@ -188,6 +188,10 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
             "a = 1\nb = \nc = 2",
             "line 2: not TOML: Invalid value, at column 5",
         ),
+        (
+            f"{ZXZ}[body]\nshape = 'sphere'\n[dynamics]\nmethod = 'newton'",
+            "line 6: dynamics.method: no method 'newton'; known: lagrange, euler",
+        ),
         (f"{ZXZ}constraints = ['phi']", "line 3: rotation.constraints: this key goes with matrix"),
         (
             f"{ZXZ}[output]\nderivatives = ['angular_velocity_body by q']\n"

@@ -56,7 +56,7 @@ def test_printed_latex_of_notes_is_read_back(name):
     [
         *("__import__('os')", "(lambda: 1)()", "[x for x in y]", "9**9**9", "1e999"),
         *("(" * 5000, "[" * 300 + "]" * 300, "x" * 30_000, "\0", "[1, [2, [3]]", "one(10**9)"),
-        *("[[a, b], [c]]", r"x_{a+b}", "sin(a, b)", "[[a, b], [c, d]] / [[1, 2], [3, 4]]"),
+        *("[[a, b], [c]]", r"\sin x_{a+b}", "sin(a, b)", "[[a, b], [c, d]] / [[1, 2], [3, 4]]"),
         *("one(20) + [a" + ", a" * 20 + "]", "a < b", "([[a+b, 1], [a, c]]**8)**8"),
         *(r"\frac{", r"\begin{pmatrix} & \end{pmatrix}", r"\input{a}"),
     ],

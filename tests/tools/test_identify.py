@@ -374,6 +374,11 @@ def test_noise_needs_a_tolerance_and_is_named_without():
     assert holds(answer, reading)
 
 
+def test_with_a_tolerance_nothing_else_is_tried():
+    matrices = np.array([np.eye(3), np.diag([1, -1, -1])])
+    assert not rs.identify(np.zeros((2, 3)), matrix=matrices, tolerance=1e-6).fits
+
+
 def test_one_outlier_is_named_with_its_place():
     reading = Reading(sequence="ZYX", degrees=True)
     angles = np.random.default_rng(11).uniform(-80, 80, (1000, 3))

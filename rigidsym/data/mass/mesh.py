@@ -80,8 +80,6 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
     if not np.isfinite(vertices).all():
         wrong = int(np.argmin(np.isfinite(vertices).all(axis=1)))
         raise BodyError(f"{path}: vertex {wrong} is not finite: {vertices[wrong].tolist()}")
-    if faces.min() < 0 or faces.max() >= len(vertices):
-        raise BodyError(f"{path}: a triangle with a vertex that is not in the file")
     return Mesh(vertices=vertices, faces=faces)
 
 

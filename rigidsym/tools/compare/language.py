@@ -82,8 +82,6 @@ def _checked(value: Any) -> Any:
         if sum(1 for entry in value for _ in sp.preorder_traversal(entry)) > _MOST_PARTS:
             raise ExpressionError("too large: a matrix with too many terms")
         return sp.ImmutableMatrix(value)
-    if isinstance(value, Sized):
-        return value
     expression = sp.sympify(value)
     return Sized.atom(expression, bits=longest_number(expression) or 1)
 
