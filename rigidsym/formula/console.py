@@ -3,42 +3,103 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import chain
+from typing import Any, Literal, NamedTuple
 
 import sympy as sp
 
+from rigidsym.formula.display import Equation
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import break_lines
 from rigidsym.formula.scalars import formula_of, listed_entries, matrix_of
-from rigidsym.formula.tree import Formula, Matrix, equal
+from rigidsym.formula.tree import Formula, Matrix, indexed
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 
 INDENT = "  "
 _DEEPER = "    "
 _NO_BREAK = "\u00a0"
 
+Style = Callable[[str, Literal["heading", "dim"]], str]
+Spans = tuple[Any, ...]  # words, formulas, and what else has a text
 
-class Console:
-    """Lines of Unicode, at most `width` columns wide where formulas allow."""
 
-    def __init__(self, letters: Letters, width: int) -> None:
+class Headline(NamedTuple):
+    """A heading, with an aside at the right margin."""
+
+    words: Spans
+    aside: str = ""
+
+
+class Line(NamedTuple):
+    """Words and formulas on one line, however long, before a matrix if there is one."""
+
+    spans: Spans
+    matrix: Matrix | None = None
+
+
+Block = str | Headline | Line | Equation | Spans  # a line as it is; spans are a sentence
+
+
+def unstyled(words: str, _: str) -> str:
+    """The style of a terminal without any."""
+    return words
+
+
+def lines_of(
+    blocks: Sequence[Block], letters: Letters, width: int, style: Style = unstyled
+) -> list[str]:
+    """The lines of the blocks, at most `width` columns wide where formulas allow."""
+    console = _Console(letters, width, style)
+    return list(chain.from_iterable(map(console.block, blocks)))
+
+
+class _Console:
+    """Lines of Unicode in one width."""
+
+    def __init__(self, letters: Letters, width: int, style: Style) -> None:
         self.letters = letters
         self.width = width
+        self.style = style
         self.pen = UnicodePen(letters.notation)
 
-    def text(self, *sides: Formula) -> str:
-        """Equal sides on one line."""
-        return self.pen.write(equal(*sides)).text
+    def block(self, block: Block) -> list[str]:
+        match block:
+            case str():
+                return [block]
+            case Headline():
+                return self.headline(block)
+            case Line(spans, matrix):
+                head = "".join(s if isinstance(s, str) else self.text(s) for s in spans)
+                return grid(head, self._texts(matrix.rows)) if matrix else [head]
+            case Equation():
+                return self.equation(block)
+        return self.sentence(block)
 
-    def words(self, spans: Iterable[str | Formula]) -> str:
+    def text(self, formula: Formula) -> str:
+        return self.pen.write(formula).text
+
+    def words(self, spans: Spans) -> str:
         """A sentence on one line; its formulas have blanks at which no line may end."""
         named = self.letters.notation.words
         return "".join(
-            named(span) if isinstance(span, str) else self.text(span).replace(" ", _NO_BREAK)
+            self.text(span).replace(" ", _NO_BREAK)
+            if isinstance(span, Formula)
+            else named(span if isinstance(span, str) else span.text)
             for span in spans
         )
 
-    def sentence(self, spans: Iterable[str | Formula]) -> list[str]:
+    def headline(self, block: Headline) -> list[str]:
+        """The aside on a line of its own, if there is no room for it."""
+        left, right = self.words(block.words), block.aside
+        room = self.width - columns(left)
+        if not right:
+            return [self.style(left, "heading")]
+        if room - columns(right) < len(INDENT):
+            return [self.style(left, "heading"), self.style(right.rjust(self.width), "dim")]
+        return [self.style(left, "heading") + self.style(right.rjust(room), "dim")]
+
+    def sentence(self, spans: Spans) -> list[str]:
         """A sentence on as many lines as it needs."""
         lines = textwrap.wrap(
             self.words(spans),
@@ -50,7 +111,22 @@ class Console:
         )
         return [line.replace(_NO_BREAK, " ") for line in lines]
 
-    def scalar(self, sides: Sequence[Formula], value: Formula | sp.Expr) -> list[str]:
+    def equation(self, equation: Equation) -> list[str]:
+        """Sides with their value; without sides, its entries by their names."""
+        sides, matrix = equation.sides, equation.matrix
+        if matrix is None:
+            *sides, value = sides if equation.scalar is None else (*sides, equation.scalar)
+            return self._scalar(sides, value)
+        if not sides:
+            return self._listing(equation.entries, matrix)
+        rows = matrix_of(matrix, self.letters)
+        for lines in _forms(self._heads(sides), self._texts(rows)):
+            if max(map(columns, lines)) <= self.width:
+                return lines
+        names = equation.entries or indexed(sides[0], matrix.shape)
+        return self._listing(*zip(*listed_entries(names, matrix), strict=True))
+
+    def _scalar(self, sides: Sequence[Formula], value: Formula | sp.Expr) -> list[str]:
         """The value behind its sides, or below them, where a long one is broken."""
         shown = value if isinstance(value, Formula) else formula_of(value, self.letters)
         heads = self._heads(sides)
@@ -63,28 +139,13 @@ class Console:
         first = f"{INDENT}{heads[0].removesuffix(' = ')}"
         return [first, *self._hung(f"{' ' * columns(head)}= ", shown)]
 
-    def matrix(
-        self, sides: Sequence[Formula], matrix: sp.ImmutableMatrix, names: Sequence[Formula]
-    ) -> list[str]:
-        """The matrix in brackets, in the first form that fits, or else entry by entry."""
-        rows = matrix_of(matrix, self.letters)
-        for lines in _forms(self._heads(sides), self._texts(rows)):
-            if max(map(columns, lines)) <= self.width:
-                return lines
-        return self.listing(*zip(*listed_entries(names, matrix), strict=True))
-
-    def listing(self, names: Iterable[Formula], entries: Iterable[Formula | sp.Expr]) -> list[str]:
+    def _listing(self, names: Iterable[Formula], entries: Iterable[sp.Expr]) -> list[str]:
         """A line an entry; long ones are broken."""
         lines: list[str] = []
         for name, entry in zip(names, entries, strict=True):
-            shown = entry if isinstance(entry, Formula) else formula_of(entry, self.letters)
-            lines += self._hung(f"{INDENT}{self.text(name)} = ", shown)
+            head = f"{INDENT}{self.text(name)} = "
+            lines += self._hung(head, formula_of(entry, self.letters))
         return lines
-
-    def numbered(self, number: str, sides: Sequence[Formula], matrix: Matrix | None) -> list[str]:
-        """An equation behind its number, with the matrix that its sides are equal to, if any."""
-        head = f"{_DEEPER}{number:<6}{self.text(*sides)}"
-        return grid(f"{head} = ", self._texts(matrix.rows)) if matrix else [head]
 
     def _texts(self, rows: Iterable[Iterable[Formula]]) -> list[list[str]]:
         return [[self.text(entry) for entry in line] for line in rows]

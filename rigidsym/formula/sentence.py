@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
@@ -27,8 +27,8 @@ def sentence(typed: str, *spans: _Span) -> tuple[str | Formula | _Span, ...]:
     return tuple(span for span in found if span != "")
 
 
-def text_of(words: Sentence) -> str:
-    """The sentence on one line of Unicode."""
+def text_of(words: Iterable[Any]) -> str:
+    """The sentence on one line of Unicode; each span is words, or has a `text`."""
     return "".join(span if isinstance(span, str) else span.text for span in words)
 
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.formula.sentence import sentence
+from rigidsym.formula.sentence import sentence, text_of
 from rigidsym.formula.tree import Formula, Row, Words
 from rigidsym.models.rotation import Citation
 from rigidsym.notes.document.catalogue import ENGLISH, Catalogue
@@ -39,17 +39,29 @@ class EquationReference(NamedTuple):
 
     label: str
 
+    @property
+    def text(self) -> str:
+        return self.label
+
 
 class FigureReference(NamedTuple):
     """A figure of this document, by its place among them, from 1."""
 
     number: int
 
+    @property
+    def text(self) -> str:
+        return str(self.number)
+
 
 class Cited(NamedTuple):
     """A place in a source."""
 
     citation: Citation
+
+    @property
+    def text(self) -> str:
+        return str(self.citation)
 
     @property
     def place(self) -> str:
@@ -62,9 +74,8 @@ Span = str | Formula | Code | Strong | EquationReference | FigureReference | Cit
 Text = tuple[Span, ...]
 
 
-def words(typed: str, *spans: Span) -> Text:
-    """The text with the formulas between its dollar signs read, and a span for each {}."""
-    return sentence(typed, *spans)
+words = sentence
+plain = text_of
 
 
 def listed(items: Sequence[Text], last: str = " and ") -> Text:
@@ -72,25 +83,6 @@ def listed(items: Sequence[Text], last: str = " and ") -> Text:
     joints = [*[", "] * (len(items) - 2), last] if len(items) > 1 else []
     mixed = chain.from_iterable((*item, joint) for item, joint in zip_longest(items, joints))
     return tuple(span for span in mixed if span not in (None, ""))
-
-
-def plain(text: Text) -> str:
-    """The text on one line of Unicode."""
-    return "".join(map(_plain, text))
-
-
-def _plain(span: Span) -> str:
-    match span:
-        case str():
-            return span
-        case Formula() | Code() | Strong():
-            return span.text
-        case Cited():
-            return str(span.citation)
-        case EquationReference():
-            return span.label
-        case FigureReference():
-            return str(span.number)
 
 
 class Paragraph(NamedTuple):

@@ -7,11 +7,11 @@ Expressions are strings in the plain names of the arguments ("sin(theta)*phi_dot
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from rigidsym.formula.plain_data import Names, plain_data
 from rigidsym.formula.sentence import text_of
 from rigidsym.mechanics.derivation import (
     Argument,
@@ -33,8 +33,6 @@ if TYPE_CHECKING:
 SCHEMA = "rigidsym.derivation"
 SCHEMA_VERSION = 2
 
-Names = Mapping[sp.Expr, sp.Symbol]
-
 
 def record(
     derivation: Derivation, request: Mapping[str, Any], conversions: Conversions | None = None
@@ -45,7 +43,7 @@ def record(
     `conversions` stand in it where they were asked for.
     """
     names = _plain_names(derivation.arguments)
-    return {
+    found = {
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,
         "generator": f"rigidsym {__version__}",
@@ -53,31 +51,31 @@ def record(
         "name": derivation.name,
         "title": derivation.title,
         "presentation": "passive" if derivation.model.passive else "active",
-        "convention": list(derivation.model.convention),
+        "convention": derivation.model.convention,
         "source": str(derivation.model.source),
         "rotation": _rotation(derivation.model, names),
         "is_proved": derivation.is_proved and (not conversions or conversions.is_proved),
-        "request": dict(request),
+        "request": request,
         **({"theory": _theory(derivation)} if derivation.theory else {}),
-        "arguments": [_argument(argument) for argument in derivation.arguments],
-        "quantities": [_step(step, names) for step in derivation.steps],
+        "arguments": list(map(_argument, derivation.arguments)),
+        "quantities": list(map(_step, derivation.steps)),
         "first_integrals": [
             {
                 "name": integral.name,
-                "expression": _plain(integral.expression, names),
-                "proof": _proof(integral.proof, names),
+                "expression": integral.expression,
+                "proof": _proof(integral.proof),
             }
             for integral in derivation.first_integrals
         ],
         "definitions": [
-            {"name": d.symbol.name, "expression": _plain(d.expression, names)}
-            for d in derivation.definitions
+            {"name": d.symbol.name, "expression": d.expression} for d in derivation.definitions
         ],
-        "singularities": _singularities(derivation.singularities, names),
-        **({"body": _body(derivation.body, names)} if derivation.body else {}),
-        **_motion(derivation, names),
-        **({"conversions": _conversions(conversions, names)} if conversions else {}),
+        "singularities": _singularities(derivation.singularities),
+        **({"body": _body(derivation.body)} if derivation.body else {}),
+        **_motion(derivation),
+        **({"conversions": _conversions(conversions)} if conversions else {}),
     }
+    return dict(plain_data(found, names))
 
 
 def _rotation(model: RotationModel, names: Names) -> dict[str, Any]:
@@ -88,35 +86,32 @@ def _rotation(model: RotationModel, names: Names) -> dict[str, Any]:
         conditions = [products[i, j] for i in range(3) for j in range(i + 1)] + [matrix.det() - 1]
     texts = [text for turn in model.turns for text in _turn(turn, names)]
     found = texts or ([model.definition] if model.definition else [])
-    return {
-        **({"turns": found} if found else {"matrix": _entries(matrix, names, is_vector=False)}),
-        "conditions": [_plain(condition, names) for condition in conditions],
-    }
+    return {**({"turns": found} if found else {"matrix": matrix}), "conditions": conditions}
 
 
 def _turn(turn: Turn, names: Names) -> Iterator[str]:
     """One turn, or two about the same axis where a number is part of the angle."""
     constant, moving = sp.expand(turn.angle).as_coeff_add()
     constant += sum(term for term in moving if term.is_number)
-    angle = _plain(turn.angle - constant, names)
-    axis = ", ".join(_plain(part, names) for part in turn.direction)
+    angle = (turn.angle - constant).xreplace(names)
+    axis = ", ".join([str(part.xreplace(names)) for part in turn.direction])
     if turn.angle != constant:
         yield f"axis_angle({axis}, {angle})" if turn.components else f"{turn.axis}({angle})"
     if constant:
         yield f"constant_turn({axis}, {sp.cos(constant)}, {sp.sin(constant)})"
 
 
-def _body(body: RigidBody, names: Names) -> dict[str, Any]:
+def _body(body: RigidBody) -> dict[str, Any]:
     """The body itself; its principal axes in numbers, where all its parameters have values."""
     from rigidsym.mechanics.mass.numbers import in_numbers, parts_of
 
     found, parts = in_numbers(body), parts_of(body)
     return {
         "title": body.title,
-        "mass": _plain(body.mass, names),
-        "centre": _vector(body.centre, names),
-        "inertia": _entries(body.inertia, names, is_vector=False),
-        **({"parts": [_part(part, names) for part in parts]} if parts else {}),
+        "mass": body.mass,
+        "centre": _vector(body.centre),
+        "inertia": body.inertia,
+        **({"parts": list(map(_part, parts))} if parts else {}),
         "parameters": [
             {"name": p.symbol.name, "about": p.about, "unit": p.unit, "value": p.value}
             for p in body.parameters
@@ -125,18 +120,13 @@ def _body(body: RigidBody, names: Names) -> dict[str, Any]:
     }
 
 
-def _part(part: Sequence[Any], names: Names) -> dict[str, Any]:
+def _part(part: Sequence[Any]) -> dict[str, Any]:
     """A part about its centre of mass; `turn` takes its axes to those of the whole."""
     mass, centre, inertia, turn = part
-    return {
-        "mass": _plain(mass, names),
-        "centre": _vector(centre, names),
-        "inertia": _entries(inertia, names, is_vector=False),
-        "turn": _entries(turn, names, is_vector=False),
-    }
+    return {"mass": mass, "centre": _vector(centre), "inertia": inertia, "turn": turn}
 
 
-def _motion(derivation: Derivation, names: Names) -> dict[str, Any]:
+def _motion(derivation: Derivation) -> dict[str, Any]:
     """V and the generalised forces, if nothing else enters Lagrange's equations of the body."""
     acting, groups = derivation.forces, {argument.name for argument in derivation.arguments}
     if acting is None or "momenta" not in groups:
@@ -144,20 +134,20 @@ def _motion(derivation: Derivation, names: Names) -> dict[str, Any]:
     if acting.depend_on_time or any(acting.torque) or acting.parts or acting.frame_rate:
         return {}
     coordinates = derivation.model.coordinates
-    forces = [_plain(sp.sympify(acting.generalised.get(q, 0)), names) for q in coordinates]
-    return {"motion": {"potential": _plain(acting.potential, names), "forces": forces}}
+    forces = [sp.sympify(acting.generalised.get(q, 0)) for q in coordinates]
+    return {"motion": {"potential": acting.potential, "forces": forces}}
 
 
-def _conversions(found: Conversions, names: Names) -> dict[str, Any]:
+def _conversions(found: Conversions) -> dict[str, Any]:
     """How the coordinates go over into the unit quaternion, and come back from it and from R."""
     back, forward = found.inverse, found.quaternion
     return {
-        "quaternion": _step(forward, names) if forward else None,
-        "quaternion_from_matrix": _proof(found.from_matrix, names),
+        "quaternion": _step(forward) if forward else None,
+        "quaternion_from_matrix": _proof(found.from_matrix),
         "coordinates": {
             "because": text_of(back.because),
             "branch": text_of(back.branch),
-            "proofs": [_proof(proof, names) for proof in back.proofs],
+            "proofs": list(map(_proof, back.proofs)),
         }
         if back
         else None,
@@ -173,12 +163,10 @@ def _theory(derivation: Derivation) -> list[dict[str, Any]]:
             "name": statement.name,
             "section": statement.section,
             "because": text_of(statement.because),
-            "sides": [side.markup for side in statement.sides],
-            "summands": None
-            if statement.summands is None
-            else _entries(statement.summands, {}, is_vector=False),
+            "sides": statement.sides,
+            "summands": statement.summands,
             "source": str(statement.source),
-            "proofs": [_proof(proof, {}) for proof in statement.proofs],
+            "proofs": list(map(_proof, statement.proofs)),
         }
         for statement in derivation.theory
     ]
@@ -204,107 +192,78 @@ def _argument(argument: Argument) -> dict[str, Any]:
     }
 
 
-def _step(step: Step, names: Names) -> dict[str, Any]:
-    quantity = step.quantity
+def _step(step: Step) -> dict[str, Any]:
+    quantity, entries = step.quantity, [*step.expression]
+    values = {
+        "scalar": ((), *entries[:1]),
+        "vector": ((len(entries),), entries),
+        "matrix": (step.expression.shape, step.expression),
+    }
+    shape, expression = values[quantity.shape]
     return {
         "number": step.number,
         "name": quantity.name,
         "about": quantity.about,
         "unit": quantity.unit,
-        "symbol": quantity.symbol.markup,
-        "inputs": list(quantity.inputs),
-        "shape": list(step.shape),
-        "expression": _expression(step, names),
-        "vector_form": _vector_form(step.vector_form, names),
+        "symbol": quantity.symbol,
+        "inputs": quantity.inputs,
+        "shape": shape,
+        "expression": expression,
+        "vector_form": _vector_form(step.vector_form),
         "because": step.because,
         "source": str(quantity.source) if quantity.source else None,
-        "proofs": [_proof(proof, names) for proof in step.proofs],
+        "proofs": list(map(_proof, step.proofs)),
     }
 
 
-def _vector_form(form: VectorForm | None, names: Names) -> dict[str, Any] | None:
+def _vector_form(form: VectorForm | None) -> dict[str, Any] | None:
     """Coefficients as expressions in the length n of the vector v; None where there is no form."""
     if form is None:
         return None
     return {
-        "vector": [_plain(part, names) for part in form.components],
+        "vector": form.components,
         "length": str(form.length),
-        "terms": [
-            {"coefficient": _plain(term.coefficient, names), "vector": term.vector.markup}
-            for term in (*form.terms, *([form.last] if form.last else []))
-        ],
+        "terms": [term._asdict() for term in (*form.terms, form.last) if term],
     }
 
 
-def _proof(proof: Proof, names: Names) -> dict[str, Any]:
-    left = proof.residual
-    return {
-        "claim": proof.claim.markup,
-        "status": proof.status,
-        "residual": None if left is None else _entries(left, names, is_vector=False),
-    }
+def _proof(proof: Proof) -> dict[str, Any]:
+    return {"claim": proof.claim, "status": proof.status, "residual": proof.residual}
 
 
-def _singularities(found: Singularities | None, names: Names) -> dict[str, Any] | None:
+def _singularities(found: Singularities | None) -> dict[str, Any] | None:
     if found is None:
         return None
     return {
         "rank": found.rank,
         "measure": found.measure,
-        "determinant": None if found.determinant is None else _plain(found.determinant, names),
-        "minors": [_plain(minor, names) for minor in found.minors],
+        "determinant": found.determinant,
+        "minors": found.minors,
         "is_solved": found.is_solved,
-        "points": [_point(point, names) for point in found.points],
+        "points": list(map(_point, found.points)),
     }
 
 
-def _point(point: Singularity, names: Names) -> dict[str, Any]:
+def _point(point: Singularity) -> dict[str, Any]:
     return {
-        "at": [_place(place, names) for place in point.places],
+        "at": list(map(_place, point.places)),
         "rank": point.rank,
-        "lost_direction_space": _vector(point.lost_axis_space, names),
-        "lost_direction_body": _vector(point.lost_axis_body, names),
-        "undetermined_rates": [_vector(idle, names) for idle in _columns(point.null_rates)],
-        "reached_direction_space": _vector(point.reachable_axis, names),
+        "lost_direction_space": _vector(point.lost_axis_space),
+        "lost_direction_body": _vector(point.lost_axis_body),
+        "undetermined_rates": point.null_rates.T,
+        "reached_direction_space": _vector(point.reachable_axis),
     }
 
 
-def _place(place: Place, names: Names) -> dict[str, Any]:
+def _place(place: Place) -> dict[str, Any]:
     """The values are value + k modulo, for whole k; none of them below `least`, if there is one."""
-    value = _plain(place.value, names)
     return {
-        "coordinate": _plain(place.coordinate, names),
-        "value": value,
-        "modulo": _plain(place.period, names),
-        "least": value if place.is_length else None,
+        "coordinate": place.coordinate,
+        "value": place.value,
+        "modulo": place.period,
+        "least": place.value if place.is_length else None,
     }
 
 
-def _columns(matrix: sp.ImmutableMatrix) -> list[sp.ImmutableMatrix]:
-    return [matrix[:, place] for place in range(matrix.shape[1])]
-
-
-def _vector(column: sp.ImmutableMatrix | None, names: Names) -> list[str] | None:
-    return None if column is None else [_plain(entry, names) for entry in column]
-
-
-def _expression(step: Step, names: Names) -> Any:
-    """A string, a list of them, or a list of rows, as the shape is."""
-    shape = step.quantity.shape
-    if shape == "scalar":
-        return _plain(step.expression[0], names)
-    return _entries(step.expression, names, is_vector=shape == "vector")
-
-
-def _entries(matrix: sp.ImmutableMatrix, names: Names, *, is_vector: bool) -> list[Any]:
-    rows = [[_plain(entry, names) for entry in row] for row in matrix.tolist()]
-    return [row[0] for row in rows] if is_vector else rows
-
-
-def _plain(expression: sp.Expr, names: Names) -> str:
-    return _text(expression.xreplace(names))
-
-
-@lru_cache(maxsize=4096)  # an entry comes up in several quantities, and again in other conventions
-def _text(expression: sp.Expr) -> str:
-    return str(expression)
+def _vector(column: sp.ImmutableMatrix | None) -> list[sp.Expr] | None:
+    return None if column is None else [*column]
