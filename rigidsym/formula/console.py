@@ -115,8 +115,8 @@ class _Console:
         """Sides with their value; without sides, its entries by their names."""
         sides, matrix = equation.sides, equation.matrix
         if matrix is None:
-            *sides, value = sides if equation.scalar is None else (*sides, equation.scalar)
-            return self._scalar(sides, value)
+            *heads, value = sides if equation.scalar is None else (*sides, equation.scalar)
+            return self._scalar(heads, value)
         if not sides:
             return self._listing(equation.entries, matrix)
         rows = matrix_of(matrix, self.letters)
