@@ -271,9 +271,8 @@ def test_a_quaternion_is_printed_in_letters_that_are_no_axes(scalar_last):
     """The functions go on taking w, x, y, z, which the note says once."""
     motion = rs.derive(UnitQuaternion(scalar_last=scalar_last), ["rotation_matrix"])
     note = motion.note(style="lecture")
-    said = (
-        "q₁, q₂, q₃, q₀), in programs x, y, z, w" if scalar_last else "q₃), in programs w, x, y, z"
-    )
+    order = "xyzw" if scalar_last else "wxyz"
+    said = f"), in programs {', '.join(order)}"
     texts = [plain(b.text) for s in note.document.sections for b in s.blocks if hasattr(b, "text")]
     assert sum(said in text for text in texts) == 1
     assert r"q_0^2" in note.latex()

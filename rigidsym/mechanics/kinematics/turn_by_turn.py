@@ -267,18 +267,20 @@ _RESTS_ON = {  # the laws of the turns that a law of the product follows from
 
 _TURNING = (
     "Turn k has the matrix Tₖ, the axis nₖ and the angle θₖ; the turns are multiplied one after "
-    "the other, from left to right"
+    "the other, from left to right, starting from P₀ = 1"
 )
 _WORDS: dict[str, tuple[str, str | None]] = {  # how it follows, and the recursion that is shown
     "rotation_matrix": (f"{_TURNING}.", _LAWS["product"]),
     "rotation_rate": ("The derivative follows from the angular velocity.", r"\mathbf{C}(#1)\,#2"),
     "spin_matrix": ("The derivative times the transpose is the operator of Ω.", r"\mathbf{C}(#1)"),
     "angular_velocity_space": (
-        "Each turn adds its rate about its own axis, and rotates the sum of the later turns.",
+        "Each turn adds its rate about its own axis, and rotates the sum of the later turns, "
+        "which is 0 for the last one.",
         rf"\mathbf{{u}}_1, \quad {_LAWS['omega_space']}",
     ),
     "angular_velocity_body": (
-        "Seen from the body, each turn rotates the sum of the turns before it backwards.",
+        "Seen from the body, each turn rotates the sum of the turns before it backwards; for the "
+        "first one it is 0.",
         rf"\mathbf{{w}}_{{LAST}}, \quad {_LAWS['omega_body']}",
     ),
     "rate_matrix_space": ("The columns of W are the axes of the turns.", None),

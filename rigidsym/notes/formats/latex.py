@@ -59,6 +59,9 @@ def rendered(template: str, document: Document) -> str:
             "title": escape(section.title),
             "body": printer.body(section),
             "on_own_page": section.on_own_page,
+            "lines": _WITH_TABLE
+            if any(isinstance(b, NoteTable) for b in section.blocks[:2])
+            else 6,
         }
         for section in document.sections
     ]
@@ -82,6 +85,11 @@ def rendered(template: str, document: Document) -> str:
     )
     first = str(sections[0]["body"]) if sections else ""
     return text.replace(first, "".join((*_lacked(text), first)), 1)
+
+
+def _least_lines(section: Section) -> int:
+    """Lines of a section that stay on one page: more where it begins with a table."""
+    return 14 if any(isinstance(block, NoteTable) for block in section.blocks[:2]) else 6
 
 
 def _lacked(text: str) -> Iterator[str]:

@@ -20,7 +20,7 @@ from rigidsym.mechanics.derivation import (
     Singularity,
 )
 from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
-from rigidsym.notes.document.document import Text, listed, words
+from rigidsym.notes.document.document import Code, Text, listed, words
 from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.prose.turn_words import are_euler_angles
 from rigidsym.notes.prose.words import vector
@@ -98,10 +98,10 @@ def failures(derivation: Derivation, found: Singularities) -> Iterator[Text]:
 def _zeros(found: Singularities, derivation: Derivation, letters: Letters) -> Text:
     """Where the determinant vanishes, as far as that was decided."""
     if found.determinant is None and not found.is_solved:
-        return (
+        return words(
             "The rates are not determined where the axes of all turns lie in one plane. For this "
-            "many turns such orientations are not listed; the function singularity_margin is 0 "
-            "there.",
+            "many turns such orientations are not listed; the function {} is 0 there.",
+            Code("singularity_margin"),
         )
     if found.determinant is None and not found.minors:
         return ("The rates follow without any divisor, so that there is no singular orientation.",)

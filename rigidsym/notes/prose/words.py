@@ -41,6 +41,9 @@ _OF_BODIES = (
     DIRECTION,
 )
 
+_OF_TURNS = tuple(
+    map(formula, (r"\mathbf{T}_k", r"\mathbf{n}_k", r"\theta_k", r"\mathbf{P}_0 = \mathbf{1}"))
+)
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _ALSO_WORDS = ("a", "A", "I")  # in a sentence these are words, whatever an angle is called
 
@@ -59,7 +62,7 @@ def symbols_of(derivation: Derivation) -> dict[str, Formula]:
         length = length_of(derivation.model)
         named = chain(named, (VECTOR,), (length.names[length.symbol],) if length else ())
     q = derivation.argument("q")
-    found = by_text(tuple(named)) | dict(zip(q.names, q.notation, strict=True))
+    found = by_text((*named, *_OF_TURNS)) | dict(zip(q.names, q.notation, strict=True))
     return {text: symbol for text, symbol in found.items() if text not in _ALSO_WORDS}
 
 
