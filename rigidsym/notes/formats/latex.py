@@ -59,9 +59,7 @@ def rendered(template: str, document: Document) -> str:
             "title": escape(section.title),
             "body": printer.body(section),
             "on_own_page": section.on_own_page,
-            "lines": _WITH_TABLE
-            if any(isinstance(b, NoteTable) for b in section.blocks[:2])
-            else 6,
+            "lines": _least_lines(section),
         }
         for section in document.sections
     ]
