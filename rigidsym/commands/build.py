@@ -22,7 +22,7 @@ from rigidsym.pipeline import integrated, output_of, read
 class BuildOptions(FolderOptions, KernelOptions, RotationOptions):
     """All options of `build`."""
 
-    portable: bool = option("--portable", is_flag=True, help="Run on any CPU of this architecture.")
+    portable: bool = option("--portable", help="Run on any CPU of this architecture.")
 
 
 @make("rigidsym build ZXZ")

@@ -67,14 +67,25 @@ NAMES, NAMED_NUMBER = _Names(), _NamedNumber()
 EXISTING_FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 FILE = click.Path(dir_okay=False, path_type=Path)
 _OPTION = "click option"
+_KINDS: dict[Any, dict[str, Any]] = {  # annotation of a field: how click reads its option
+    "bool": {"is_flag": True},
+    "list[str] | None": {"type": NAMES, "metavar": "NAME,..."},
+    "tuple[list[str], ...]": {"type": NAMES, "multiple": True, "metavar": "NAME,..."},
+    "tuple[str, ...]": {"multiple": True},
+    "tuple[tuple[str, float], ...]": {
+        "type": NAMED_NUMBER,
+        "multiple": True,
+        "metavar": "NAME=NUMBER",
+    },
+    "Path | None": {"type": FILE},
+}
 
 
 def option(*flags: str, **settings: Any) -> Any:
-    """A field of a dataclass that a command-line option sets."""
-    if settings.get("multiple"):
-        settings.setdefault("default", ())
-    default = settings.get("default", False if settings.get("is_flag") else None)
-    return field(default=default, metadata={_OPTION: (flags, settings)})
+    """A field of a dataclass that a command-line option sets; its annotation is the type."""
+    if "default" in settings:
+        settings["show_default"] = True
+    return field(metadata={_OPTION: (flags, settings)})
 
 
 def with_options(kind: type[Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -88,7 +99,7 @@ def with_options(kind: type[Any]) -> Callable[[Callable[..., None]], Callable[..
 
         for each in reversed(fields(kind)):
             flags, settings = each.metadata[_OPTION]
-            run = click.option(*flags, each.name, **settings)(run)
+            run = click.option(*flags, each.name, **_KINDS.get(each.type, {}) | settings)(run)
         return run
 
     return decorate

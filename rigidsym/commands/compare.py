@@ -36,7 +36,7 @@ class CompareOptions(RotationOptions):
     quantity: str | None = option(
         "--quantity", metavar="NAME", help="What the formula should be; see `rigidsym list`."
     )
-    as_json: bool = option("--json", is_flag=True, help="Print the results as JSON.")
+    as_json: bool = option("--json", help="Print the results as JSON.")
 
     def motion(self) -> Motion | str | None:
         """The rotation to compare with, with the quantity derived."""

@@ -12,8 +12,6 @@ from pathlib import Path
 import click
 
 from rigidsym.commands.command import (
-    NAMED_NUMBER,
-    NAMES,
     command as make,
     message,
     option,
@@ -40,9 +38,7 @@ class EvaluationOptions(RotationOptions):
         "--quantity",
         "--only",
         multiple=True,
-        type=NAMES,
         default=("angular_velocity_body",),
-        show_default=True,
         metavar="NAME,...",
         help="A quantity, or quaternion, from_quaternion, from_rotation_matrix. May be repeated.",
     )
@@ -53,32 +49,17 @@ class EvaluationOptions(RotationOptions):
         metavar="RESULT",
         help="Result file: NPY, Parquet or CSV by its ending, or - for CSV on standard output.",
     )
-    columns: list[str] | None = option(
-        "--columns", type=NAMES, metavar="NAME,...", help="Names of the columns of FILE, in order."
-    )
-    given: tuple[tuple[str, float], ...] = option(
-        "--given",
-        type=NAMED_NUMBER,
-        multiple=True,
-        metavar="NAME=NUMBER",
-        help="An input without a column.",
-    )
-    keep: list[str] | None = option(
-        "--keep", type=NAMES, metavar="NAME,...", help="Columns of FILE to copy, such as time."
-    )
+    columns: list[str] | None = option("--columns", help="Names of the columns of FILE, in order.")
+    given: tuple[tuple[str, float], ...] = option("--given", help="An input without a column.")
+    keep: list[str] | None = option("--keep", help="Columns of FILE to copy, such as time.")
     missing: Missing = option(
         "--missing",
         type=click.Choice(["error", "nan", "drop"]),
         default="error",
-        show_default=True,
         help="If a number of a row is missing: an error, NaN as the result, or no result.",
     )
-    degrees: bool = option(
-        "--degrees", is_flag=True, help="Write degrees; read them if no unit is stated."
-    )
-    threads: int = option(
-        "--threads", type=click.IntRange(1), default=1, show_default=True, help="Worker threads."
-    )
+    degrees: bool = option("--degrees", help="Write degrees; read them if no unit is stated.")
+    threads: int = option("--threads", type=click.IntRange(1), default=1, help="Worker threads.")
     scheduler: str | None = option(
         "--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster."
     )

@@ -14,7 +14,7 @@ import click
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rigidsym.commands.command import EXISTING_FILE, NAMES, command as make, option, with_options
+from rigidsym.commands.command import EXISTING_FILE, command as make, option, with_options
 from rigidsym.system.progress import bar
 from rigidsym.tools.identify.identification import identify_file, identify_source
 from rigidsym.tools.identify.readings import ANGLE_NAMES
@@ -27,7 +27,7 @@ _BRACKETS = str.maketrans("[](){};", "      ,")
 
 
 def _samples(name: str, form: str, about: str) -> Any:
-    return option(f"--{name}", multiple=True, metavar=form, help=about)
+    return option(f"--{name}", metavar=form, help=about)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,10 +40,7 @@ class IdentifyOptions:
     rates: tuple[str, ...] = _samples("rates", "A,B,C", "Rates of the angles; needs --omega.")
     omega: tuple[str, ...] = _samples("omega", "X,Y,Z", "The angular velocity.")
     columns: list[str] | None = option(
-        "--columns",
-        type=NAMES,
-        metavar="NAME,...",
-        help="Names of the columns of FILE; - skips one.",
+        "--columns", help="Names of the columns of FILE; - skips one."
     )
     tolerance: float | None = option(
         "--tolerance",
@@ -55,11 +52,10 @@ class IdentifyOptions:
         "--missing",
         type=click.Choice(["error", "drop"]),
         default="error",
-        show_default=True,
         help="Samples in which a number is missing.",
     )
-    everything: bool = option("--all", is_flag=True, help="Show all readings, with all calls.")
-    as_json: bool = option("--json", is_flag=True, help="Print the results as JSON.")
+    everything: bool = option("--all", help="Show all readings, with all calls.")
+    as_json: bool = option("--json", help="Print the results as JSON.")
 
 
 @make("rigidsym identify --angles roll=10,pitch=20,yaw=30 --quaternion 0.95,0.04,0.19,0.24")

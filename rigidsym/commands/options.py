@@ -10,7 +10,7 @@ from typing import Any
 
 import click
 
-from rigidsym.commands.command import NAMES, option, unique
+from rigidsym.commands.command import option, unique
 from rigidsym.errors import KernelError, QuantityError
 from rigidsym.formula.notation import CHOICES, DEFAULT
 from rigidsym.kernels.lowering.derivatives import read_requests
@@ -48,11 +48,10 @@ class FolderOptions(TemplateOptions):
         "--out",
         type=click.Path(file_okay=False, path_type=Path),
         default=Path("out"),
-        show_default=True,
         metavar="DIR",
         help="Write to DIR/NAME/.",
     )
-    force: bool = option("--force", is_flag=True, help="Overwrite files that were edited since.")
+    force: bool = option("--force", help="Overwrite files that were edited since.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,19 +59,13 @@ class RotationOptions:
     """How the text of a rotation is read."""
 
     angles: list[str] | None = option(
-        "--angles",
-        "--names",
-        type=NAMES,
-        metavar="A,B,C",
-        help="Names of the coordinates, in their order.",
+        "--angles", "--names", metavar="A,B,C", help="Names of the coordinates, in their order."
     )
     constants: list[str] | None = option(
-        "--constants", type=NAMES, metavar="A,B", help="Names in turns that are constants."
+        "--constants", metavar="A,B", help="Names in turns that are constants."
     )
-    scalar_last: bool = option("--scalar-last", is_flag=True, help="Quaternions as (x, y, z, w).")
-    passive: bool = option(
-        "--passive", is_flag=True, help="Present the direction cosine matrix A = Rᵀ."
-    )
+    scalar_last: bool = option("--scalar-last", help="Quaternions as (x, y, z, w).")
+    passive: bool = option("--passive", help="Present the direction cosine matrix A = Rᵀ.")
 
     def of_rotation(self) -> dict[str, Any]:
         """The options that were given, as `spec_for` takes them."""
@@ -95,10 +88,7 @@ class NotationOptions:
     body: str | None = _notation("body", "Body components as Ω′ or as Ωᴮ.")
     angular_velocity: str | None = _notation("angular_velocity", "Angular velocity as Ω or ω.")
     frames: list[str] | None = option(
-        "--frames",
-        type=NAMES,
-        metavar="SPACE,BODY",
-        help="Names of the two frames: inertial,spacecraft.",
+        "--frames", metavar="SPACE,BODY", help="Names of the two frames: inertial,spacecraft."
     )
 
     def in_notation(self, spec: DerivationSpec) -> DerivationSpec:
@@ -116,15 +106,10 @@ class SelectionOptions:
     only: tuple[list[str], ...] = option(
         "--only",
         "--quantity",
-        multiple=True,
-        type=NAMES,
-        metavar="NAME,...",
         help="Derive these quantities only; `rigidsym list` shows the names. May be repeated.",
     )
     conversions: bool = option(
-        "--conversions",
-        is_flag=True,
-        help="Add conversions to and from quaternion and matrix, and `unwrap`.",
+        "--conversions", help="Add conversions to and from quaternion and matrix, and `unwrap`."
     )
 
     def selected(self, spec: DerivationSpec) -> DerivationSpec:
@@ -143,16 +128,13 @@ class KernelOptions(SelectionOptions):
     derivative: tuple[list[str], ...] = option(
         "--derivative",
         multiple=True,
-        type=NAMES,
         metavar="QUANTITY:VECTOR,...",
         help="Add the Jacobian of a quantity with respect to q, q_dot, ...; QUANTITY:VECTOR:jvp "
         "and :vjp add products with a vector. May be repeated.",
     )
 
     degrees: bool = option(
-        "--degrees",
-        is_flag=True,
-        help="Functions that take and return degrees, in files NAME_deg.",
+        "--degrees", help="Functions that take and return degrees, in files NAME_deg."
     )
 
     def selected(self, spec: DerivationSpec) -> DerivationSpec:
@@ -196,15 +178,11 @@ class OutputOptions(LanguageOptions):
 
     target: tuple[list[str], ...] = option(
         "--target",
-        multiple=True,
-        type=NAMES,
-        metavar="NAME,...",
         help="Languages of the kernels; `rigidsym list` shows them. May be repeated.  "
         "[default: numpy]",
     )
     lean: bool = option(
         "--lean",
-        is_flag=True,
         help="C for firmware: double precision, one orientation a call, <math.h>, and a test.",
     )
     style: str | None = option(
@@ -213,21 +191,18 @@ class OutputOptions(LanguageOptions):
         help="Style of the note: lecture explains, paper is terse, audit shows every identity and "
         "function.  [default: lecture]",
     )
-    pdf: bool = option("--pdf", is_flag=True, help="Also typeset the note; needs TeX.")
+    pdf: bool = option("--pdf", help="Also typeset the note; needs TeX.")
     fragment: bool = option(
-        "--fragment", is_flag=True, help="Also write the note without a preamble, for \\input."
+        "--fragment", help="Also write the note without a preamble, for \\input."
     )
     certificates: bool = option(
         "--certificates",
-        is_flag=True,
         help="Also write NAME.cert.json, NAME.v and NAME.lean, with which others can check the "
         "claims.",
     )
-    as_json: bool = option("--json", is_flag=True, help="Print the results as JSON.")
-    quiet: bool = option("--quiet", is_flag=True, help="Print only the names of the files written.")
-    full: bool = option(
-        "--full", is_flag=True, help=f"Show all lines instead of the first {MOST_LINES}."
-    )
+    as_json: bool = option("--json", help="Print the results as JSON.")
+    quiet: bool = option("--quiet", help="Print only the names of the files written.")
+    full: bool = option("--full", help=f"Show all lines instead of the first {MOST_LINES}.")
 
 
 @dataclass(frozen=True, kw_only=True)

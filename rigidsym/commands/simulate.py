@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 import numpy as np
 
-from rigidsym.commands.command import FILE, NAMED_NUMBER, command as make, option, with_options
+from rigidsym.commands.command import command as make, option, with_options
 from rigidsym.data.writers import check_ending, table_writer
 from rigidsym.errors import DerivationError
 from rigidsym.models.example import OMEGA, OMEGA_COMPONENTS, Example, initial_values
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from rigidsym.simulation.ensemble import Ensemble
     from rigidsym.simulation.trajectory import Trajectory
 
-_NUMBERS = {"type": NAMED_NUMBER, "multiple": True, "metavar": "NAME=NUMBER"}
 _ARCHIVE = ".npz"
 
 
@@ -53,11 +52,10 @@ class SimulationOptions:
     """All options of `simulate`."""
 
     constants: tuple[tuple[str, float], ...] = option(
-        "--set", **_NUMBERS, help="A parameter.  [default: the first example of the file]"
+        "--set", help="A parameter.  [default: the first example of the file]"
     )
     initial: tuple[tuple[str, float], ...] = option(
         "--initial",
-        **_NUMBERS,
         help="A coordinate, a rate, or angular_velocity_body_1, _2, _3 in place of rates. "
         "The others are 0.  [default: the first example of the file, else no rotation, at rest]",
     )
@@ -68,7 +66,6 @@ class SimulationOptions:
         "--method",
         type=click.Choice(METHODS),
         default=METHODS[0],
-        show_default=True,
         help="lie takes steps in the rotation group; exact is for free bodies.",
     )
     samples: int | None = option(
@@ -78,11 +75,9 @@ class SimulationOptions:
         "--ensemble", type=click.IntRange(1), help="Simulate this many motions at once."
     )
     spread: tuple[tuple[str, float], ...] = option(
-        "--spread",
-        **_NUMBERS,
-        help="With --ensemble: standard deviation of an initial value or a parameter.",
+        "--spread", help="With --ensemble: standard deviation of an initial value or a parameter."
     )
-    seed: int = option("--seed", type=int, default=0, show_default=True, help="Of --ensemble.")
+    seed: int = option("--seed", type=int, default=0, help="Of --ensemble.")
     grid: dict[str, Any] = option(
         "--grid",
         multiple=True,
@@ -93,10 +88,10 @@ class SimulationOptions:
     scheduler: str | None = option(
         "--scheduler", metavar="ADDRESS", help="Compute the ensemble on a Dask cluster."
     )
-    out: Path | None = option("--out", type=FILE, help="CSV, NPY, NPZ or Parquet file.")
-    plot: Path | None = option("--plot", type=FILE, help="PNG, SVG or PDF picture.")
+    out: Path | None = option("--out", help="CSV, NPY, NPZ or Parquet file.")
+    plot: Path | None = option("--plot", help="PNG, SVG or PDF picture.")
     animate: Path | None = option(
-        "--animate", type=FILE, help="GIF, MP4 (extra video), or an HTML page that plays."
+        "--animate", help="GIF, MP4 (extra video), or an HTML page that plays."
     )
 
 
