@@ -7,9 +7,9 @@ is; what holds in its ring holds for all. Vectors without a derivation of their 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, reduce
 from typing import TypeAlias
 
 import sympy as sp
@@ -104,13 +104,17 @@ class _Theory:
 
     def inertia(self, place: RingMatrix) -> RingMatrix:
         """m (e_j × x)·(e_k × x), the summand of equation 4."""
-        crossed = [self.cross(self._column(row), place) for row in self._units]
+        crossed = [self.cross(unit, place) for unit in self.units]
         rows = [[self.ring.reduce(self.m * self.dot(u, v)) for v in crossed] for u in crossed]
         return RingMatrix.of(self.ring, rows)
 
     @property
-    def _units(self) -> list[list[sp.Expr]]:
-        return [list(row) for row in sp.eye(3).tolist()]
+    def units(self) -> list[RingMatrix]:
+        return [RingMatrix.column(self.ring, row) for row in self.one.rows]
+
+    def crossed(self) -> list[RingMatrix]:
+        """e_j × x for the three vectors of the basis."""
+        return [self.cross(unit, self.x) for unit in self.units]
 
     def spin(self) -> RingMatrix:
         """Ω of the rotation, from the skew matrix dR/dt Rᵀ."""
@@ -126,6 +130,9 @@ class _Theory:
 
     def cross(self, first: RingMatrix, second: RingMatrix) -> RingMatrix:
         return RingMatrix.column(self.ring, cross(self.ring, first.entries, second.entries))
+
+    def added(self, vectors: Iterable[RingMatrix]) -> RingMatrix:
+        return reduce(lambda a, b: a + b, vectors)
 
     def form(self, matrix: RingMatrix, vector: RingMatrix) -> PolyElement:
         """vᵀ M v."""
@@ -148,131 +155,45 @@ class _Theory:
         return RingMatrix.of(self.ring, [[self.codec.encode(e) for e in row] for row in rows])
 
 
-def _squares(t: _Theory) -> Residual:
-    """|ṙ + ẋ|² = |ṙ|² + 2 ẋ·ṙ + |ẋ|²."""
-    parts = t.square(t.r_dot) + 2 * t.dot(t.x_dot, t.r_dot) + t.square(t.x_dot)
-    return t.square(t.r_dot + t.x_dot) - parts
-
-
-def _mass_outside(t: _Theory) -> Residual:
-    """The sum of these squares, whatever Σ m ẋ is."""
-    of, m = t.sum_of_any.of, t.m
-    parts = of(m * t.square(t.r_dot)) + 2 * t.dot(t.r_dot, t.v) + of(m * t.square(t.x_dot))
-    return of(m * t.square(t.r_dot + t.x_dot)) - parts
-
-
-def _four_products(t: _Theory) -> Residual:
-    """(r + x) × (ṙ + ẋ) = r × ṙ + r × ẋ + x × ṙ + x × ẋ."""
-    products = [t.cross(a, b) for a in (t.r, t.x) for b in (t.r_dot, t.x_dot)]
-    first, second, third, fourth = products
-    return t.cross(t.r + t.x, t.r_dot + t.x_dot) - first - second - third - fourth
-
-
-def _centre_outside(t: _Theory) -> Residual:
-    """Σ m r × (ṙ + ẋ) = r × (M ṙ) + r × Σ m ẋ, whatever Σ m ẋ is."""
-    whole = t.sum_of_any.of_matrix(t.by_mass(t.cross(t.r, t.r_dot + t.x_dot)))
-    return whole - t.cross(t.r, t.r_dot).scale(t.M) - t.cross(t.r, t.v)
-
-
-def _crossed(t: _Theory) -> list[RingMatrix]:
-    """e_j × x for the three vectors of the basis."""
-    return [t.cross(t._column(row), t.x) for row in t._units]
-
-
-def _in_the_basis(t: _Theory) -> Residual:
-    first, second, third = (e.scale(t.omega[j, 0]) for j, e in enumerate(_crossed(t)))
-    return t.cross(t.omega, t.x) - first - second - third
-
-
-def _coefficients(t: _Theory) -> Residual:
-    crossed = list(enumerate(_crossed(t)))
-    terms = (t.omega[j, 0] * t.omega[k, 0] * t.dot(u, v) for j, u in crossed for k, v in crossed)
-    return t.square(t.cross(t.omega, t.x)) - t.ring.reduce(sum(terms, t.ring.zero))
-
-
-def _whole_vector(t: _Theory) -> Residual:
-    """Σ_j (Ω·R e_j) R e_j = Ω."""
-    turned = [t.R @ t._column(row) for row in t._units]
-    first, second, third = (e.scale(t.dot(t.omega, e)) for e in turned)
-    return first + second + third - t.omega
-
-
-def _double_product(t: _Theory) -> Residual:
-    """x × (Ω × x) = |x|² Ω − (x·Ω) x."""
-    right = t.omega.scale(t.square(t.x)) - t.x.scale(t.dot(t.x, t.omega))
-    return t.cross(t.x, t.cross(t.omega, t.x)) - right
-
-
-def _energy_splits(t: _Theory) -> Residual:
-    whole = t.sum.of(t.m * t.square(t.r_dot + t.x_dot))
-    return whole - t.ring.reduce(t.M * t.square(t.r_dot)) - t.sum.of(t.m * t.square(t.x_dot))
-
-
-def _energy_is_a_form(t: _Theory) -> Residual:
-    speed = t.square(t.cross(t.omega, t.x))
-    return t.sum.of(t.m * speed) - t.sum.of(t.form(t.inertia(t.x), t.omega))
-
-
-def _lagrange(t: _Theory) -> Residual:
-    """(u × v)·(w × Ω) = (u·w)(v·Ω) − (u·Ω)(v·w)."""
-    left = t.dot(t.cross(t.u, t.v), t.cross(t.w, t.omega))
-    right = t.dot(t.u, t.w) * t.dot(t.v, t.omega) - t.dot(t.u, t.omega) * t.dot(t.v, t.w)
-    return left - t.ring.reduce(right)
-
-
-def _about_a_line(t: _Theory) -> Residual:
-    """Σ m |x − (x·e) e|² = eᵀ I e for a unit vector e."""
-    across = t.x - t.line.scale(t.dot(t.x, t.line))
-    return t.sum.of(t.m * t.square(across)) - t.sum.of(t.form(t.inertia(t.x), t.line))
-
-
-def _momentum_splits(t: _Theory) -> Residual:
-    whole = t.sum.of_matrix(t.by_mass(t.cross(t.r + t.x, t.r_dot + t.x_dot)))
-    of_centre = t.cross(t.r, t.r_dot).scale(t.M)
-    return whole - of_centre - t.sum.of_matrix(t.by_mass(t.cross(t.x, t.x_dot)))
-
-
-def _momentum_is_linear(t: _Theory) -> Residual:
-    turning = t.by_mass(t.cross(t.x, t.cross(t.omega, t.x)))
-    return t.sum.of_matrix(turning - t.inertia(t.x) @ t.omega)
-
-
-def _twice_the_energy(t: _Theory) -> Residual:
-    turned = t.cross(t.omega, t.x)
-    momentum = t.by_mass(t.cross(t.x, turned))
-    return t.sum.of(t.dot(momentum, t.omega)) - t.sum.of(t.m * t.square(turned))
-
-
-def _components_of_momentum(t: _Theory) -> Residual:
-    parts = [t.diagonal()[k, k] * t.omega[k, 0] for k in range(3)]
-    return t.diagonal() @ t.omega - RingMatrix.column(t.ring, parts)
-
-
-def _energy_in_principal_axes(t: _Theory) -> Residual:
-    squares = sum((t.diagonal()[k, k] * t.omega[k, 0] ** 2 for k in range(3)), t.ring.zero)
-    return t.form(t.diagonal(), t.omega) - t.ring.reduce(squares)
-
-
-def _entries(t: _Theory) -> Residual:
-    """The matrix of section 2.2 is m (x·x 1 − x xᵀ)."""
-    outer = t.x @ t.x.T
-    return t.inertia(t.x) - (t.one.scale(t.square(t.x)) - outer).scale(t.m)
-
-
 _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
     "no_moment": lambda t: t.sum_of_places.of_matrix(t.by_mass(t.x - t.r)),
     "no_momentum": lambda t: t.sum_of_places.of_matrix(t.by_mass(t.x_dot - t.r_dot)),
     "no_mixed_energy": lambda t: t.sum.of(t.m * t.dot(t.x_dot, t.r_dot)),
-    "squares": _squares,
-    "mass_outside": _mass_outside,
-    "energy_splits": _energy_splits,
+    "squares": lambda t: (
+        t.square(t.r_dot + t.x_dot)
+        - (t.square(t.r_dot) + 2 * t.dot(t.x_dot, t.r_dot) + t.square(t.x_dot))
+    ),
+    "mass_outside": lambda t: (
+        t.sum_of_any.of(t.m * t.square(t.r_dot + t.x_dot))
+        - t.sum_of_any.of(t.m * t.square(t.r_dot))
+        - 2 * t.dot(t.r_dot, t.v)
+        - t.sum_of_any.of(t.m * t.square(t.x_dot))
+    ),
+    "energy_splits": lambda t: (
+        t.sum.of(t.m * t.square(t.r_dot + t.x_dot))
+        - t.ring.reduce(t.M * t.square(t.r_dot))
+        - t.sum.of(t.m * t.square(t.x_dot))
+    ),
     "skew": lambda t: t.R_dot @ t.R.T + (t.R_dot @ t.R.T).T,
     "turning": lambda t: t.R_dot @ t.at_rest - t.cross(t.spin(), t.R @ t.at_rest),
-    "in_the_basis": _in_the_basis,
-    "coefficients": _coefficients,
-    "energy_is_a_form": _energy_is_a_form,
+    "in_the_basis": lambda t: (
+        t.cross(t.omega, t.x) - t.added(e.scale(t.omega[j, 0]) for j, e in enumerate(t.crossed()))
+    ),
+    "coefficients": lambda t: (
+        t.square(t.cross(t.omega, t.x))
+        - t.ring.dot(
+            (t.omega[j, 0] * t.omega[k, 0], t.dot(u, v))
+            for j, u in enumerate(t.crossed())
+            for k, v in enumerate(t.crossed())
+        )
+    ),
+    "energy_is_a_form": lambda t: (
+        t.sum.of(t.m * t.square(t.cross(t.omega, t.x))) - t.sum.of(t.form(t.inertia(t.x), t.omega))
+    ),
     "symmetric": lambda t: t.inertia(t.x) - t.inertia(t.x).T,
-    "whole_vector": _whole_vector,
+    "whole_vector": lambda t: (
+        t.added(e.scale(t.dot(t.omega, e)) for e in (t.R @ unit for unit in t.units)) - t.omega
+    ),
     "keeps_products": lambda t: t.dot(t.u, t.v) - t.dot(t.R @ t.u, t.R @ t.v),
     "goes_over": lambda t: t.dot(t.R.T @ t.u, t.v) - t.dot(t.u, t.R @ t.v),
     "components": lambda t: t.R.T @ t.omega - (t.omega.T @ t.R).T,
@@ -280,21 +201,54 @@ _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
     "and_back": lambda t: t.R @ (t.R.T @ t.omega) - t.omega,
     "same_energy": lambda t: t.form(t.I, t.R @ t.omega) - t.form(t.R.T @ t.I @ t.R, t.omega),
     "tensor_turns": lambda t: t.R.T @ t.inertia(t.R @ t.at_rest) @ t.R - t.inertia(t.at_rest),
-    "entries": _entries,
-    "lagrange": _lagrange,
-    "about_a_line": _about_a_line,
+    "entries": lambda t: t.inertia(t.x) - (t.one.scale(t.square(t.x)) - t.x @ t.x.T).scale(t.m),
+    "lagrange": lambda t: (
+        t.dot(t.cross(t.u, t.v), t.cross(t.w, t.omega))
+        - t.ring.reduce(
+            t.dot(t.u, t.w) * t.dot(t.v, t.omega) - t.dot(t.u, t.omega) * t.dot(t.v, t.w)
+        )
+    ),
+    "about_a_line": lambda t: (
+        t.sum.of(t.m * t.square(t.x - t.line.scale(t.dot(t.x, t.line))))
+        - t.sum.of(t.form(t.inertia(t.x), t.line))
+    ),
     "stays_symmetric": lambda t: t.R.T @ t.I @ t.R - (t.R.T @ t.I @ t.R).T,
-    "energy_in_principal_axes": _energy_in_principal_axes,
-    "four_products": _four_products,
-    "centre_outside": _centre_outside,
-    "momentum_splits": _momentum_splits,
+    "energy_in_principal_axes": lambda t: (
+        t.form(t.diagonal(), t.omega)
+        - t.ring.dot((t.I[k, k], t.omega[k, 0] ** 2) for k in range(3))
+    ),
+    "four_products": lambda t: (
+        t.cross(t.r + t.x, t.r_dot + t.x_dot)
+        - t.added(t.cross(a, b) for a in (t.r, t.x) for b in (t.r_dot, t.x_dot))
+    ),
+    "centre_outside": lambda t: (
+        t.sum_of_any.of_matrix(t.by_mass(t.cross(t.r, t.r_dot + t.x_dot)))
+        - t.cross(t.r, t.r_dot).scale(t.M)
+        - t.cross(t.r, t.v)
+    ),
+    "momentum_splits": lambda t: (
+        t.sum.of_matrix(t.by_mass(t.cross(t.r + t.x, t.r_dot + t.x_dot)))
+        - t.cross(t.r, t.r_dot).scale(t.M)
+        - t.sum.of_matrix(t.by_mass(t.cross(t.x, t.x_dot)))
+    ),
     "no_mixed_momentum": lambda t: t.sum.of_matrix(
         t.by_mass(t.cross(t.r, t.x_dot) + t.cross(t.x, t.r_dot))
     ),
-    "double_product": _double_product,
-    "momentum_is_linear": _momentum_is_linear,
-    "components_of_momentum": _components_of_momentum,
-    "twice_the_energy": _twice_the_energy,
+    "double_product": lambda t: (
+        t.cross(t.x, t.cross(t.omega, t.x))
+        - (t.omega.scale(t.square(t.x)) - t.x.scale(t.dot(t.x, t.omega)))
+    ),
+    "momentum_is_linear": lambda t: t.sum.of_matrix(
+        t.by_mass(t.cross(t.x, t.cross(t.omega, t.x))) - t.inertia(t.x) @ t.omega
+    ),
+    "components_of_momentum": lambda t: (
+        t.diagonal() @ t.omega
+        - RingMatrix.column(t.ring, [t.I[k, k] * t.omega[k, 0] for k in range(3)])
+    ),
+    "twice_the_energy": lambda t: (
+        t.sum.of(t.dot(t.by_mass(t.cross(t.x, t.cross(t.omega, t.x))), t.omega))
+        - t.sum.of(t.m * t.square(t.cross(t.omega, t.x)))
+    ),
     "velocity": lambda t: t.R_dot @ t.at_rest - t.R_dot @ t.R.T @ (t.R @ t.at_rest),
     "operator": lambda t: hat(t.u) @ t.v - t.cross(t.u, t.v),
     "spin": lambda t: t.R_dot @ t.R.T - hat(t.spin()),
