@@ -25,6 +25,7 @@ from rigidsym.algebra.angles import (
     combination,
     cosine_sine_of_pi,
 )
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import Generator, Quotient, Ring
 from rigidsym.errors import AlgebraError
 
@@ -156,6 +157,18 @@ class Codec:
         if not self.ring.is_one(value.denominator):
             raise AlgebraError(f"{expression} is a quotient, and its inverse is not in the ring")
         return value.numerator
+
+    def column(self, expressions: Iterable[sp.Expr]) -> RingMatrix:
+        """Expressions as a column over the ring, (n, 1)."""
+        return RingMatrix.column(self.ring, map(self.encode, expressions))
+
+    def matrix(self, given: sp.MatrixBase) -> RingMatrix:
+        """A matrix of expressions over the ring."""
+        return RingMatrix.of(self.ring, [map(self.encode, row) for row in given.tolist()])
+
+    def decoded(self, matrix: RingMatrix) -> sp.ImmutableMatrix:
+        """A matrix over the ring as expressions."""
+        return sp.ImmutableMatrix([list(map(self.decode, row)) for row in matrix.rows])
 
     def encode_quotient(self, expression: sp.Expr) -> Quotient:
         """An expression as a quotient of two normal forms.

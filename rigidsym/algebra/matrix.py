@@ -27,7 +27,7 @@ class RingMatrix:
     origin: Origin | None = field(default=None, repr=False)
 
     @classmethod
-    def of(cls, ring: Ring, rows: Iterable[Sequence[PolyElement]]) -> RingMatrix:
+    def of(cls, ring: Ring, rows: Iterable[Iterable[PolyElement]]) -> RingMatrix:
         return cls(ring, tuple(tuple(ring.reduce(entry) for entry in row) for row in rows))
 
     @classmethod

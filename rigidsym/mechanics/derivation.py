@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, Self
 
 import sympy as sp
@@ -161,7 +162,7 @@ class Definition(NamedTuple):
     expression: sp.Expr
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True)
 class Step:
     """One quantity, derived: its textbook form, how it follows, and what was proved of it."""
 
@@ -200,7 +201,7 @@ class Step:
     def _repr_latex_(self) -> str:
         return self._repr_mimebundle_()["text/latex"]
 
-    @property
+    @cached_property
     def shape(self) -> tuple[int, ...]:
         """Shape of one value in kernels and JSON."""
         rows, columns = self.expression.shape

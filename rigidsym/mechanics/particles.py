@@ -8,7 +8,7 @@ that agree for the generic summand agree for every body, of however many particl
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -77,8 +77,3 @@ def sums_of_body(codec: Codec, mass: sp.Expr, inertia: sp.ImmutableMatrix) -> Pa
     for j, first in enumerate(IN_BODY):
         known |= {MASS * first * IN_BODY[k]: second[j, k] for k in range(j, 3)}
     return ParticleSums(codec, SYMBOLS, known)
-
-
-def vector(codec: Codec, components: Sequence[sp.Expr]) -> RingMatrix:
-    """Components as a column, (3, 1)."""
-    return RingMatrix.column(codec.ring, map(codec.encode, components))

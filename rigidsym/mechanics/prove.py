@@ -89,7 +89,7 @@ class Prover:
         Raises DerivationError if the matrix is shown not to be zero. If the ring does not know
         enough to tell, the proof is *unproved* and holds what is left.
         """
-        divisors = () if divided_by is None else (divided_by,)
+        divisors = () if divided_by is None or divided_by == 1 else (divided_by,)
         if residual.is_zero():
             if self.subject.pullback is None and self.witness.disagrees(residual, self._values):
                 raise Defect(
@@ -97,7 +97,7 @@ class Prover:
                     "this is a defect of rigidsym, please report it"
                 )
             return self._unless_zero(divisors, claim)
-        left = self._decoded(residual)
+        left = self.codec.decoded(residual)
         if self.subject.pullback is not None and self._pulled_back(left).is_zero():
             return self._unless_zero(divisors, claim)
         if any(map(self.witness.is_nonzero, residual.entries)):
@@ -139,14 +139,13 @@ class Prover:
         except DerivationError as error:
             raise NotARotation(
                 f"{self.subject.name}: not a rotation, since {claim.text} fails; "
-                f"left over: {self._plain(self._decoded(residual))}"
+                f"left over: {self._plain(self.codec.decoded(residual))}"
             ) from error
 
     def _pulled_back(self, left: sp.ImmutableMatrix) -> RingMatrix:
         """The residual in the ring of the functions that the coordinates are pulled back to."""
         codec, values = self._pullback
-        rows = [[codec.encode(entry.xreplace(values)) for entry in row] for row in left.tolist()]
-        return RingMatrix.of(codec.ring, rows)
+        return codec.matrix(left.xreplace(values))
 
     @cached_property
     def _pullback(self) -> tuple[Codec, dict[sp.Expr, sp.Expr]]:
@@ -164,13 +163,9 @@ class Prover:
     def _unless_zero(self, divisors: Iterable[PolyElement], claim: Formula) -> Proof:
         """Exact, unless a divisor may be zero everywhere; the divisor is then the residual."""
         for divisor in filterfalse(self.witness.is_nonzero, divisors):
-            left = self._decoded(RingMatrix.of(self.codec.ring, [[divisor]]))
+            left = self.codec.decoded(RingMatrix.of(self.codec.ring, [[divisor]]))
             return Proof(claim=claim, status="unproved", residual=left)
         return Proof(claim=claim, status="exact")
-
-    def _decoded(self, residual: RingMatrix) -> sp.ImmutableMatrix:
-        decode = self.codec.decode
-        return sp.ImmutableMatrix([[decode(entry) for entry in row] for row in residual.rows])
 
     def _plain(self, left: sp.ImmutableMatrix) -> str:
         """The entries that are not zero, in the plain names of the coordinates."""

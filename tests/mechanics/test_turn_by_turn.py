@@ -196,7 +196,7 @@ def test_a_body_on_a_long_chain_has_the_energy_and_momentum_of_the_expanded_rota
     assert all(step.proofs for step in motion.steps if step.quantity.name in ENERGY_QUANTITIES)
     assert motion.is_proved
     values = Values(model, motion.body)
-    omega, inertia = values.omega_body, values.encoded(motion.body.inertia)
+    omega, inertia = values.omega_body, values.codec.matrix(motion.body.inertia)
     encode = values.codec.encode
     assert encode(2 * motion.rotational_energy) == (omega.T @ inertia @ omega)[0, 0]
     momentum = (values.R @ (inertia @ omega)).entries

@@ -173,8 +173,6 @@ def _proved_step(
     model: RotationModel, codec: Codec, shown: sp.ImmutableMatrix, because: Sentence
 ) -> Step:
     prove = Prover(model, codec)
-    residual = [codec.encode(e) for e in rotation_of(list(shown)) - model.matrix]
-    length = codec.encode(shown.dot(shown) - 1)
     is_fixed = shown.free_symbols.isdisjoint(model.constants)
     return Step(
         number=0,
@@ -182,8 +180,8 @@ def _proved_step(
         expression=shown,
         because=text_of(because),
         proofs=(
-            prove.vanishes(RingMatrix.column(codec.ring, residual), _TURNS),
-            prove.vanishes(RingMatrix.column(codec.ring, [length]), _UNIT),
+            prove.vanishes(codec.column(rotation_of(list(shown)) - model.matrix), _TURNS),
+            prove.vanishes(codec.column([shown.dot(shown) - 1]), _UNIT),
         ),
     )
 

@@ -11,7 +11,6 @@ from typing import ClassVar
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.formula.reader import formula
 from rigidsym.formula.sentence import Sentence
 from rigidsym.formula.tree import Formula
@@ -36,10 +35,7 @@ def vanishing(model: RotationModel, claims: Sequence[Claim]) -> tuple[Proof, ...
     residuals = [residual for found, _ in claims for residual in found]
     codec = codec_for([*model.matrix, *residuals], constraints=model.constraints, order=0)
     prove = Prover(model, codec)
-    return tuple(
-        prove.vanishes(RingMatrix.column(codec.ring, map(codec.encode, found)), text)
-        for found, text in claims
-    )
+    return tuple(prove.vanishes(codec.column(found), text) for found, text in claims)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -23,7 +23,6 @@ from rigidsym.mechanics.dynamics.euler import EulerEquations
 from rigidsym.mechanics.dynamics.flow import Flow, StateBlock
 from rigidsym.mechanics.dynamics.lagrange import Lagrange, is_bound
 from rigidsym.mechanics.dynamics.reduced import Reduced
-from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.models.body import RigidBody
@@ -87,12 +86,6 @@ class LagrangeEquations(Flow):
 
     def _scalar(self, expression: sp.Expr) -> RingMatrix:
         return self.column([expression])
-
-    @property
-    def _left_side(self) -> RingMatrix:
-        """M q̈ + h."""
-        work = self.work
-        return work.mass_matrix @ work.column(work.accelerations) + work.bias
 
     @cached_property
     def _of_lagrange(self) -> RingMatrix:
@@ -171,7 +164,9 @@ class LagrangeEquations(Flow):
             rate, divisor = self.rate(self.whole)
             power = self.work.q_dot.T @ self.work.column(self.work.forces)
             return rate - (power + self.driving).scale(divisor)
-        power = self.work.q_dot.T @ self._left_side
+        work = self.work
+        left = work.mass_matrix @ work.column(work.accelerations) + work.bias  # M q̈ + h
+        power = work.q_dot.T @ left
         return self._scalar(self.whole).dt() - power - self.driving
 
     def generalised_momenta(self) -> Found:
@@ -292,13 +287,13 @@ class LagrangeEquations(Flow):
         own = reduce(
             add,
             (
-                encoded(codec, part.jacobian).T
-                @ encoded(codec, part.inertia)
-                @ encoded(codec, part.jacobian)
+                codec.matrix(part.jacobian).T
+                @ codec.matrix(part.inertia)
+                @ codec.matrix(part.jacobian)
                 for part in work.moving
             ),
         )
-        p = RingMatrix.column(codec.ring, map(codec.encode, momenta))
+        p = codec.column(momenta)
         twice = p.T @ own.adjugate() @ p
         half = presenter_for(codec).matrix(twice, codec.encode(sp.Integer(2)) * own.det())
         return half[0] + work.potential

@@ -20,7 +20,7 @@ from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derivation import FirstIntegral, Found
 from rigidsym.mechanics.dynamics.flow import Flow, StateBlock, slopes_of, solved_euler
-from rigidsym.mechanics.kinematics.workspace import Values, encoded
+from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.models.body import RigidBody
@@ -48,9 +48,8 @@ class EulerEquations(Flow):
                 f"{model.name}: Euler's equations need rates that follow from the angular velocity"
             )
         inverse, divisor = rotation.inverse_body
-        decode = rotation.codec.decode
-        self._inverse = sp.ImmutableMatrix(*inverse.shape, [decode(e) for e in inverse.entries])
-        self._divisor = decode(divisor)
+        self._inverse = rotation.codec.decoded(inverse)
+        self._divisor = rotation.codec.decode(divisor)
         self._matrix = rotation.model.matrix
         q = model.coordinates
         turning = self._inverse * sp.Matrix(OMEGA_BODY) / self._divisor
@@ -70,7 +69,7 @@ class EulerEquations(Flow):
 
     @cached_property
     def inertia(self) -> RingMatrix:
-        return encoded(self.codec, self.body.inertia)
+        return self.codec.matrix(self.body.inertia)
 
     @cached_property
     def torque(self) -> tuple[RingMatrix, sp.Expr]:
@@ -80,12 +79,12 @@ class EulerEquations(Flow):
         if not any(acting):
             return given, self.codec.ring.one
         below = self.codec.encode(self._divisor)
-        turning = encoded(self.codec, self._inverse).T @ self.column(acting)
+        turning = self.codec.matrix(self._inverse).T @ self.column(acting)
         return given.scale(below) + turning, below
 
     @cached_property
     def blocks(self) -> tuple[StateBlock, StateBlock]:
-        rates = encoded(self.codec, self._inverse) @ self.omega
+        rates = self.codec.matrix(self._inverse) @ self.omega
         slopes, below = solved_euler(self.inertia, self.omega, *self.torque)
         return (
             StateBlock(self.model.coordinates, rates, self.codec.encode(self._divisor)),
@@ -108,7 +107,7 @@ class EulerEquations(Flow):
         """With its rate, the power of what the potential does not account for."""
         rate, divisor = self.rate(self._energy)
         below = self.codec.encode(self._divisor)
-        forced = encoded(self.codec, self._inverse).T @ self.column(self._forces)
+        forced = self.codec.matrix(self._inverse).T @ self.column(self._forces)
         power = self.omega.T @ (self.column(self._torque).scale(below) + forced)
         residual = (rate - self.driving.scale(divisor)).scale(below) - power.scale(divisor)
         return Found(
@@ -136,7 +135,7 @@ class EulerEquations(Flow):
         do not change.
         """
         momentum = self.inertia @ self.omega
-        matrix = encoded(self.codec, sp.ImmutableMatrix(self._matrix))
+        matrix = self.codec.matrix(self._matrix)
         in_space = self.present.matrix(matrix @ momentum)
         in_body = self.present.matrix(momentum)
         candidates = {"energy": (claims.ENERGY, self._energy)}

@@ -27,7 +27,6 @@ from rigidsym.mechanics.derivation import (
     Step,
 )
 from rigidsym.mechanics.dynamics.free import of_free_body
-from rigidsym.mechanics.kinematics.workspace import encoded
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.arguments import (
@@ -75,7 +74,7 @@ class Flow:
                 yield name, getattr(self, name)()
 
     def column(self, entries: Sequence[sp.Expr]) -> RingMatrix:
-        return RingMatrix.column(self.codec.ring, map(self.codec.encode, entries))
+        return self.codec.column(entries)
 
     @property
     def blocks(self) -> tuple[StateBlock, StateBlock]:
@@ -189,8 +188,7 @@ class Flow:
         omega, torque = self.arguments["omega_body"].symbols, self.arguments["torque"].symbols
         inertia = self.body.inertia
         codec = codec_for([e for e in (*inertia, *omega, *torque) if e != 0], order=0)
-        w, n = (RingMatrix.column(codec.ring, map(codec.encode, v)) for v in (omega, torque))
-        tensor = encoded(codec, inertia)
+        w, n, tensor = codec.column(omega), codec.column(torque), codec.matrix(inertia)
         above, below = solved_euler(tensor, w, n, codec.ring.one)
         left = n - turned(tensor, w)
         residual = tensor @ above - left.scale(below)

@@ -26,7 +26,7 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import ModelError
 from rigidsym.mechanics.dynamics.flow import turned
-from rigidsym.mechanics.kinematics.workspace import Inverse, Values, encoded
+from rigidsym.mechanics.kinematics.workspace import Inverse, Values
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces, MovingPart
 from rigidsym.models.rotation import RotationModel
@@ -89,8 +89,7 @@ class Lagrange:
         short = values.present.matrix(above, below)
         if all(sp.denom(entry).is_number for entry in short):
             return short, sp.S.One
-        decode = values.codec.decode
-        return sp.ImmutableMatrix(*above.shape, [decode(e) for e in above.entries]), decode(below)
+        return values.codec.decoded(above), values.codec.decode(below)
 
     def _moving(self) -> Iterator[Moving]:
         """The body itself first."""
@@ -104,8 +103,7 @@ class Lagrange:
     def _turning(self, model: RotationModel, inertia: sp.ImmutableMatrix) -> Moving:
         """A body that turns so; its rate matrix has a column for each coordinate of all."""
         values = Values(model)
-        decode, own = values.codec.decode, values.rate_matrix_body
-        entries = sp.Matrix(*own.shape, [decode(e) for e in own.entries])
+        entries = values.codec.decoded(values.rate_matrix_body)
         columns = [
             entries.col(model.coordinates.index(q)) if q in model.coordinates else sp.zeros(3, 1)
             for q in self.model.coordinates
@@ -128,7 +126,7 @@ class Lagrange:
         return Moving(jacobian, zero, sp.ImmutableMatrix(sp.diag(*part.inertia)), turns=False)
 
     def column(self, entries: Sequence[sp.Expr]) -> RingMatrix:
-        return RingMatrix.column(self.ring, map(self.codec.encode, entries))
+        return self.codec.column(entries)
 
     def slopes(self, element: PolyElement) -> RingMatrix:
         """The derivatives by q, a column, by the chain rule over the generators of the ring."""
@@ -148,7 +146,7 @@ class Lagrange:
     def terms(self) -> tuple[tuple[RingMatrix, RingMatrix, RingMatrix, bool], ...]:
         """J, j, I of each moving part over the ring, and whether it turns."""
         return tuple(
-            (*(encoded(self.codec, m) for m in part[:3]), part.turns)  # type: ignore[misc]
+            (*map(self.codec.matrix, part[:3]), part.turns)  # type: ignore[misc]
             for part in self.moving
         )
 
@@ -227,7 +225,7 @@ class Lagrange:
         Raises ModelError for forces on what does not matter, such as the length of a quaternion.
         """
         assert self.back is not None
-        back, below = encoded(self.codec, self.back[0]), self.codec.encode(self.back[1])
+        back, below = self.codec.matrix(self.back[0]), self.codec.encode(self.back[1])
         seen = self.terms[0][0].T @ (back.T @ self.driving)
         if not self.model.constraints and not (seen - self.driving.scale(below)).is_zero():
             raise ModelError(

@@ -38,7 +38,7 @@ class _Energy:
         self.values, self.body, self.codec = values, values.body, values.codec
         self.ring = values.ring
         self.present, self.prove = values.present, values.prove
-        self.inertia = values.encoded(self.body.inertia)
+        self.inertia = values.codec.matrix(self.body.inertia)
         self.mass = self.codec.encode(self.body.mass)
         self.centre = values.argument("centre")
         self.velocity = values.argument("centre_dot")
@@ -52,7 +52,7 @@ class _Energy:
     @cached_property
     def _particle(self) -> tuple[RingMatrix, RingMatrix]:
         """x and ẋ of the generic particle."""
-        place = particles.vector(self.codec, particles.IN_BODY)
+        place = self.codec.column(particles.IN_BODY)
         return self.values.R @ place, self.values.R_dot @ place
 
     def _of_particles(self, summand: RingMatrix) -> RingMatrix:

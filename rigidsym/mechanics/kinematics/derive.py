@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, cached_property
 
 from sympy.polys.rings import PolyElement
 
@@ -201,9 +201,11 @@ class Expanded(Kinematics):
     def _shown(self, matrix: RingMatrix) -> RingMatrix:
         return matrix.T if self.model.passive else matrix
 
-    @property
+    @cached_property
     def _spin(self) -> RingMatrix:
-        return self.values.spin_of_transpose if self.model.passive else self.values.spin
+        """dR/dt Rᵀ, or dA/dt Aᵀ of A = Rᵀ."""
+        values = self.values
+        return values.R_dot.T @ values.R if self.model.passive else values.spin
 
     # How each follows, in words
 

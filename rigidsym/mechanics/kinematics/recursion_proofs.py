@@ -7,7 +7,7 @@ dR/dt Rᵀ = C(Ω), Ω = R Ω′, Ω = W q̇ and their derivatives hold for the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -77,14 +77,7 @@ def _encoded(entries: list[sp.Expr], recursion: Recursion) -> Encoded:
     symbols = {symbol for entry in entries for symbol in entry.free_symbols}
     bound = [c for c in recursion.model.constraints if not symbols.isdisjoint(c.free_symbols)]
     codec = codec_for(entries, constraints=bound)
-    return codec, RingMatrix.column(
-        codec.ring, [codec.encode(entry) for entry in entries or [sp.S.Zero]]
-    )
-
-
-def _product(r: Recursion, k: int) -> Iterator[sp.Expr]:
-    yield from r.opened(r.turns[k], f"T{k + 1}") - r.plain[k]
-    yield from r.opened(r.partial[k + 1], f"P{k + 1}") - r.partial[k] * r.turns[k]
+    return codec, codec.column(entries or [sp.S.Zero])
 
 
 def _speed(r: Recursion, k: int) -> sp.Expr:
@@ -94,47 +87,40 @@ def _speed(r: Recursion, k: int) -> sp.Expr:
     return speed - sp.Add(*rates)
 
 
-def _omega_space(r: Recursion, k: int) -> Iterator[sp.Expr]:
-    u = r.omega_space
-    yield from r.opened(u[k], f"u{k + 1}") - r.axes[k] * r.speeds[k] - r.turns[k] * u[k + 1]
-
-
-def _omega_body(r: Recursion, k: int) -> Iterator[sp.Expr]:
-    w = r.omega_body
-    yield from r.opened(w[k + 1], f"w{k + 1}") - r.axes[k] * r.speeds[k] - r.turns[k].T * w[k]
-
-
-def _alpha_space(r: Recursion, k: int) -> Iterator[sp.Expr]:
-    du, gained = r.alpha_space, r.axes[k].cross(r.omega_space[k]) * r.speeds[k]
-    yield from (
-        r.opened(du[k], f"du{k + 1}") - r.axes[k] * r.spins[k] - gained - r.turns[k] * du[k + 1]
-    )
-
-
-def _alpha_body(r: Recursion, k: int) -> Iterator[sp.Expr]:
-    dw, gained = r.alpha_body, r.axes[k].cross(r.omega_body[k + 1]) * r.speeds[k]
-    yield from (
-        r.opened(dw[k + 1], f"dw{k + 1}") - r.axes[k] * r.spins[k] + gained - r.turns[k].T * dw[k]
-    )
-
-
-def _axes_space(r: Recursion, k: int) -> Iterator[sp.Expr]:
-    yield from r.opened(r.axes_space[k], f"n{k + 1}") - r.partial[k] * r.axes[k]
-    yield _speed(r, k)
-
-
-def _axes_body(r: Recursion, k: int) -> Iterator[sp.Expr]:
-    yield from r.opened(r.remaining[k], f"B{k + 1}") - r.turns[k] * r.remaining[k + 1]
-    yield from r.opened(r.axes_body[k], f"m{k + 1}") - r.remaining[k + 1].T * r.axes[k]
-    yield _speed(r, k)
-
-
-_LAWS = {
-    "product": _product,
-    "omega_space": _omega_space,
-    "omega_body": _omega_body,
-    "alpha_space": _alpha_space,
-    "alpha_body": _alpha_body,
-    "axes_space": _axes_space,
-    "axes_body": _axes_body,
+_LAWS: dict[str, Callable[[Recursion, int], Iterable[sp.Expr]]] = {
+    "product": lambda r, k: (
+        *(r.opened(r.turns[k], f"T{k + 1}") - r.plain[k]),
+        *(r.opened(r.partial[k + 1], f"P{k + 1}") - r.partial[k] * r.turns[k]),
+    ),
+    "omega_space": lambda r, k: (
+        r.opened(r.omega_space[k], f"u{k + 1}")
+        - r.axes[k] * r.speeds[k]
+        - r.turns[k] * r.omega_space[k + 1]
+    ),
+    "omega_body": lambda r, k: (
+        r.opened(r.omega_body[k + 1], f"w{k + 1}")
+        - r.axes[k] * r.speeds[k]
+        - r.turns[k].T * r.omega_body[k]
+    ),
+    "alpha_space": lambda r, k: (
+        r.opened(r.alpha_space[k], f"du{k + 1}")
+        - r.axes[k] * r.spins[k]
+        - r.axes[k].cross(r.omega_space[k]) * r.speeds[k]
+        - r.turns[k] * r.alpha_space[k + 1]
+    ),
+    "alpha_body": lambda r, k: (
+        r.opened(r.alpha_body[k + 1], f"dw{k + 1}")
+        - r.axes[k] * r.spins[k]
+        + r.axes[k].cross(r.omega_body[k + 1]) * r.speeds[k]
+        - r.turns[k].T * r.alpha_body[k]
+    ),
+    "axes_space": lambda r, k: (
+        *(r.opened(r.axes_space[k], f"n{k + 1}") - r.partial[k] * r.axes[k]),
+        _speed(r, k),
+    ),
+    "axes_body": lambda r, k: (
+        *(r.opened(r.remaining[k], f"B{k + 1}") - r.turns[k] * r.remaining[k + 1]),
+        *(r.opened(r.axes_body[k], f"m{k + 1}") - r.remaining[k + 1].T * r.axes[k]),
+        _speed(r, k),
+    ),
 }

@@ -75,7 +75,7 @@ class Values:
 
     @cached_property
     def R(self) -> RingMatrix:
-        return self.encoded(self.model.matrix)
+        return self.codec.matrix(self.model.matrix)
 
     @cached_property
     def R_dot(self) -> RingMatrix:
@@ -85,11 +85,6 @@ class Values:
     def spin(self) -> RingMatrix:
         """dR/dt Rᵀ."""
         return self.R_dot @ self.R.T
-
-    @cached_property
-    def spin_of_transpose(self) -> RingMatrix:
-        """dA/dt Aᵀ of A = Rᵀ."""
-        return self.R_dot.T @ self.R
 
     @cached_property
     def omega_space(self) -> RingMatrix:
@@ -148,7 +143,7 @@ class Values:
         coordinates = self.model.coordinates
         binding = [c for c in self.model.constraints if c.has(*coordinates)]
         rows = [[sp.diff(c, q) for q in coordinates] for c in binding]
-        return self.encoded(sp.Matrix(rows)) if rows else None
+        return self.codec.matrix(sp.Matrix(rows)) if rows else None
 
     def _jacobian(self, omega: RingMatrix) -> RingMatrix:
         """∂Ω/∂q̇, by the generators of the rates themselves: a constraint may relate them."""
@@ -156,13 +151,10 @@ class Values:
 
     def argument(self, name: str) -> RingMatrix:
         """The components of an argument as a column."""
-        return self.column(map(self.codec.encode, self.arguments[name].symbols))
+        return self.codec.column(self.arguments[name].symbols)
 
     def column(self, entries: Iterable[PolyElement]) -> RingMatrix:
         return RingMatrix.column(self.ring, entries)
-
-    def encoded(self, matrix: sp.MatrixBase) -> RingMatrix:
-        return encoded(self.codec, matrix)
 
 
 class NamedRotation(Values):
@@ -193,7 +185,7 @@ class NamedRotation(Values):
 
     @cached_property
     def R(self) -> RingMatrix:
-        return self.encoded(self.names().matrix)
+        return self.codec.matrix(self.names().matrix)
 
     @cached_property
     def R_dot(self) -> RingMatrix:
@@ -205,13 +197,7 @@ class NamedRotation(Values):
 
     @cached_property
     def omega_body(self) -> RingMatrix:
-        return self.encoded(sp.Matrix(self.velocity))
-
-
-def encoded(codec: Codec, matrix: sp.MatrixBase) -> RingMatrix:
-    """A matrix over the ring of a codec."""
-    rows = [[codec.encode(entry) for entry in row] for row in matrix.tolist()]
-    return RingMatrix.of(codec.ring, rows)
+        return self.codec.column(self.velocity)
 
 
 def right_inverse(matrix: RingMatrix, bound: RingMatrix | None) -> Inverse | None:

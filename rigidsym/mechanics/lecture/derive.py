@@ -65,13 +65,13 @@ class _Theory:
         )
         self.ring = self.codec.ring
         self.prover = Prover(Conditions("lecture", constraints, tuple(moving)), self.codec)
-        self.R = self._matrix(model.matrix)
+        self.R = self.codec.matrix(model.matrix)
         self.R_dot = self.R.dt()
-        self.x, self.x_dot = self._column(_PLACE), self._column(_rates(_PLACE))
-        self.r, self.r_dot = self._column(_CENTRE), self._column(_rates(_CENTRE))
-        self.at_rest, self.line = self._column(IN_BODY), self._column(_LINE)
-        self.omega, self.u, self.v, self.w = map(self._column, (_OMEGA, _U, _V, _W))
-        self.I = self._matrix(_TENSOR)
+        self.x, self.x_dot = self.codec.column(_PLACE), self.codec.column(_rates(_PLACE))
+        self.r, self.r_dot = self.codec.column(_CENTRE), self.codec.column(_rates(_CENTRE))
+        self.at_rest, self.line = self.codec.column(IN_BODY), self.codec.column(_LINE)
+        self.omega, self.u, self.v, self.w = map(self.codec.column, (_OMEGA, _U, _V, _W))
+        self.I = self.codec.matrix(_TENSOR)
         self.one = RingMatrix.identity(self.ring, 3)
         self.m, self.M = self.codec.encode(MASS), self.codec.encode(_WHOLE)
         own = [MASS, *_PLACE, *_rates(_PLACE)]
@@ -146,13 +146,6 @@ class _Theory:
 
     def by_mass(self, vector: RingMatrix) -> RingMatrix:
         return vector.scale(self.m)
-
-    def _column(self, parts: Sequence[sp.Expr]) -> RingMatrix:
-        return RingMatrix.column(self.ring, [self.codec.encode(part) for part in parts])
-
-    def _matrix(self, matrix: sp.MatrixBase) -> RingMatrix:
-        rows = matrix.tolist()
-        return RingMatrix.of(self.ring, [[self.codec.encode(e) for e in row] for row in rows])
 
 
 _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {

@@ -229,7 +229,7 @@ class _Inertia:
 
     def inertia_tensor_space(self) -> Found:
         values = self.values
-        body = values.encoded(self.body.inertia)
+        body = values.codec.matrix(self.body.inertia)
         space = values.R @ (body @ values.R.T)
         trace = values.column([sum((space[k, k] - body[k, k] for k in range(3)), values.ring.zero)])
         prove = values.prove

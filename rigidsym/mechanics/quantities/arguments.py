@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from functools import cache, lru_cache
+from itertools import repeat
 from typing import TYPE_CHECKING
 
 import sympy as sp
@@ -137,12 +138,15 @@ def _moving(
 ) -> Argument:
     """Functions of time, or their derivatives of an order."""
     plain = [function.func.__name__ for function in functions]
+    symbols = functions
+    for _ in range(order):
+        symbols = tuple(map(rate_of, symbols))
     per = ("", "/s", "/s^2")[order]
     return Argument(
         name=name,
-        symbols=tuple(_derivative(function, order) for function in functions),
+        symbols=symbols,
         names=tuple(label + ("", "_dot", "_ddot")[order] for label in plain),
-        notation=tuple(named(label, order) for label in _shown(plain)),
+        notation=tuple(map(named, _shown(plain), repeat(order))),
         units=tuple(f"{unit or '1'}{per}" if order else unit for unit in units),
         about=about,
     )
@@ -150,11 +154,6 @@ def _moving(
 
 def _shown(names: Sequence[str]) -> Sequence[str]:
     return [_QUATERNION[name] for name in names] if {*names} == {*_QUATERNION} else names
-
-
-@lru_cache(maxsize=1024)
-def _derivative(function: sp.Expr, order: int) -> sp.Expr:
-    return rate_of(_derivative(function, order - 1)) if order else function
 
 
 @cache

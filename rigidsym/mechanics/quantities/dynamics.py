@@ -86,27 +86,19 @@ DYNAMICS_QUANTITIES = read_table(
     },
 )
 
-EULER_QUANTITIES = read_table(
+_EULER = read_table(
     """
-    potential_energy                  scalar  J         q                   -
-        potential energy
-    torque_body                       vector  N m       q omega_body        Goldstein 5.5
+    torque_body  vector  N m  q omega_body  Goldstein 5.5
         torque about the fixed point, body components
-    energy                            scalar  J         q omega_body        -
+    energy       scalar  J    q omega_body  -
         energy
-    angular_acceleration_from_torque  vector  rad/s^2   omega_body torque   Goldstein 5.5
-        angular acceleration from the torque, body components (Euler's equations)
     """,
-    {
-        "potential_energy": (POTENTIAL,),
-        "torque_body": (TORQUE,),
-        "energy": (ENERGY, formula(_PLUS, ROTATIONAL, POTENTIAL)),
-        "angular_acceleration_from_torque": (
-            ALPHA_BODY,
-            formula(r"#1^{-1}\left(#2 - #3\times#1\,#3\right)", *(INERTIA, TORQUE, BODY.omega)),
-        ),
-    },
+    {"torque_body": (TORQUE,), "energy": (ENERGY, formula(_PLUS, ROTATIONAL, POTENTIAL))},
 )
+EULER_QUANTITIES = {
+    name: _EULER.get(name) or DYNAMICS_QUANTITIES[name]
+    for name in ("potential_energy", *_EULER, "angular_acceleration_from_torque")
+}
 
 FLOW_QUANTITIES = read_table(
     """

@@ -29,14 +29,6 @@ def half_product(omega: Formula, inertia: Formula) -> Formula:
     return formula(r"\tfrac{1}{2}\,#1\,#2\,#3", transpose_of(omega), inertia, omega)
 
 
-def _sum(first: Formula, second: Formula) -> Formula:
-    return formula("#1 + #2", first, second)
-
-
-def _product(matrix: Formula, vector: Formula) -> Formula:
-    return formula("#1#2", matrix, vector)
-
-
 _HALF_SQUARE = formula(r"\tfrac{1}{2} #1\,|#2|^2", MASS, CENTRE_VELOCITY)
 _ARM = formula(r"#1\times(#2\,#3)", CENTRE, MASS, CENTRE_VELOCITY)
 
@@ -60,11 +52,14 @@ ENERGY_QUANTITIES = read_table(
     {
         "translational_energy": (TRANSLATIONAL, _HALF_SQUARE),
         "rotational_energy": (ROTATIONAL, half_product(BODY.omega, INERTIA)),
-        "kinetic_energy": (KINETIC, _sum(TRANSLATIONAL, ROTATIONAL)),
+        "kinetic_energy": (KINETIC, formula("#1 + #2", TRANSLATIONAL, ROTATIONAL)),
         "angular_momentum_centre": (MOMENTUM_CENTRE, _ARM),
-        "angular_momentum_rotation_body": (MOMENTUM_BODY, _product(INERTIA, BODY.omega)),
-        "angular_momentum_rotation": (MOMENTUM_ROTATION, _product(INERTIA_SPACE, SPACE.omega)),
-        "angular_momentum": (MOMENTUM, _sum(MOMENTUM_CENTRE, MOMENTUM_ROTATION)),
+        "angular_momentum_rotation_body": (MOMENTUM_BODY, formula("#1#2", INERTIA, BODY.omega)),
+        "angular_momentum_rotation": (
+            MOMENTUM_ROTATION,
+            formula("#1#2", INERTIA_SPACE, SPACE.omega),
+        ),
+        "angular_momentum": (MOMENTUM, formula("#1 + #2", MOMENTUM_CENTRE, MOMENTUM_ROTATION)),
     },
 )
 MOMENTA = tuple(name for name in ENERGY_QUANTITIES if name.startswith("angular_momentum"))
@@ -99,34 +94,19 @@ _VELOCITY = formula(r"\dot{\mathbf{r}}_i")
 _SUM = formula(r"{\textstyle\sum_i} m_i")
 
 
-def _equal(first: Formula, second: Formula) -> Formula:
-    return formula("#1 = #2", first, second)
-
-
-def _half_sum(velocity: Formula) -> Formula:
-    """½ Σ mᵢ |v|²."""
-    return formula(r"\tfrac{1}{2} #1\,|#2|^2", _SUM, velocity)
-
-
-def _crossed_sum(position: Formula, velocity: Formula) -> Formula:
-    """Σ mᵢ x × v."""
-    return formula(r"#1\,#2\times#3", _SUM, position, velocity)
-
-
-def _twice_energy(momentum: Formula, omega: Formula) -> Formula:
-    return formula(r"#1\cdot#2 = 2 #3", momentum, omega, ROTATIONAL)
-
-
 _ROTATED = formula(r"(#1\,#2\,#3)", ROTATION, INERTIA, transpose_of(ROTATION))
-TRANSLATION_OF_PARTICLES = _equal(_half_sum(CENTRE_VELOCITY), TRANSLATIONAL)
-BOTH_FORMS = _equal(half_product(SPACE.omega, _ROTATED), ROTATIONAL)
-ROTATION_OF_PARTICLES = _equal(_half_sum(_PARTICLE_VELOCITY), ROTATIONAL)
-ENERGY_SPLITS = _equal(_half_sum(_VELOCITY), _sum(TRANSLATIONAL, ROTATIONAL))
-MOMENTUM_OF_CENTRE = _equal(_crossed_sum(CENTRE, CENTRE_VELOCITY), MOMENTUM_CENTRE)
-TWICE_ENERGY_BODY = _twice_energy(MOMENTUM_BODY, BODY.omega)
-TWICE_ENERGY = _twice_energy(MOMENTUM_ROTATION, SPACE.omega)
+_HALF_SUM, _ARMS = r"\tfrac{1}{2} #1\,|#2|^2", r"#1\,#2\times#3"  # ½ Σ mᵢ |v|², Σ mᵢ x × v
+TRANSLATION_OF_PARTICLES = formula(f"{_HALF_SUM} = #3", _SUM, CENTRE_VELOCITY, TRANSLATIONAL)
+BOTH_FORMS = formula("#1 = #2", half_product(SPACE.omega, _ROTATED), ROTATIONAL)
+ROTATION_OF_PARTICLES = formula(f"{_HALF_SUM} = #3", _SUM, _PARTICLE_VELOCITY, ROTATIONAL)
+ENERGY_SPLITS = formula(f"{_HALF_SUM} = #3 + #4", _SUM, _VELOCITY, TRANSLATIONAL, ROTATIONAL)
+MOMENTUM_OF_CENTRE = formula(f"{_ARMS} = #4", _SUM, CENTRE, CENTRE_VELOCITY, MOMENTUM_CENTRE)
+TWICE_ENERGY_BODY = formula(r"#1\cdot#2 = 2 #3", MOMENTUM_BODY, BODY.omega, ROTATIONAL)
+TWICE_ENERGY = formula(r"#1\cdot#2 = 2 #3", MOMENTUM_ROTATION, SPACE.omega, ROTATIONAL)
 MOMENTUM_TURNS = formula(r"#1\,#2 = #3\,#4", INERTIA_SPACE, SPACE.omega, ROTATION, MOMENTUM_BODY)
-MOMENTUM_OF_PARTICLES = _equal(_crossed_sum(_PARTICLE, _PARTICLE_VELOCITY), MOMENTUM_ROTATION)
-MOMENTUM_SPLITS = _equal(
-    _crossed_sum(_POSITION, _VELOCITY), _sum(MOMENTUM_CENTRE, MOMENTUM_ROTATION)
+MOMENTUM_OF_PARTICLES = formula(
+    f"{_ARMS} = #4", _SUM, _PARTICLE, _PARTICLE_VELOCITY, MOMENTUM_ROTATION
+)
+MOMENTUM_SPLITS = formula(
+    f"{_ARMS} = #4 + #5", _SUM, _POSITION, _VELOCITY, MOMENTUM_CENTRE, MOMENTUM_ROTATION
 )

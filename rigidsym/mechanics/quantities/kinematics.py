@@ -28,18 +28,6 @@ def _product(matrix: Formula, vector: Formula) -> Formula:
     return formula("#1#2", matrix, vector)
 
 
-def _vector_of(skew: Formula) -> Formula:
-    return formula(r"\mathbf{C}^{-1}(#1)", skew)
-
-
-def _operator(sign: str, vector: Formula) -> Formula:
-    return formula(rf"{sign}\mathbf{{C}}(#1)", vector)
-
-
-def _jacobian(omega: Formula) -> Formula:
-    return formula(r"\frac{\partial #1}{\partial #2}", omega, RATES)
-
-
 class Frame(NamedTuple):
     """The symbols of the angular velocity and its rate matrix in one frame."""
 
@@ -97,14 +85,17 @@ _ACTIVE = read_table(
     {
         "rotation_matrix": (ROTATION,),
         "rotation_rate": (Rate(ROTATION),),
-        "spin_matrix": (spin_of(ROTATION), _operator("", SPACE.omega)),
-        "angular_velocity_space": (SPACE.omega, _vector_of(spin_of(ROTATION))),
+        "spin_matrix": (spin_of(ROTATION), formula(r"\mathbf{C}(#1)", SPACE.omega)),
+        "angular_velocity_space": (SPACE.omega, formula(r"\mathbf{C}^{-1}(#1)", spin_of(ROTATION))),
         "angular_velocity_body": (BODY.omega, _product(transpose_of(ROTATION), SPACE.omega)),
         **{
-            name: formula
+            name: formulas
             for frame in (SPACE, BODY)
-            for name, formula in {
-                f"rate_matrix_{frame.name}": (frame.matrix, _jacobian(frame.omega)),
+            for name, formulas in {
+                f"rate_matrix_{frame.name}": (
+                    frame.matrix,
+                    formula(r"\frac{\partial #1}{\partial #2}", frame.omega, RATES),
+                ),
                 f"inverse_rate_matrix_{frame.name}": (frame.inverse,),
                 f"rates_from_angular_velocity_{frame.name}": (
                     RATES,
@@ -135,10 +126,10 @@ _PASSIVE = read_table(
     {
         "rotation_matrix": (COSINES, transpose_of(ROTATION)),
         "rotation_rate": (Rate(COSINES),),
-        "spin_matrix": (spin_of(COSINES), _operator("-", BODY.omega)),
+        "spin_matrix": (spin_of(COSINES), formula(r"-\mathbf{C}(#1)", BODY.omega)),
         "angular_velocity_space": (
             SPACE.omega,
-            _vector_of(formula(r"#1\,#2", Rate(transpose_of(COSINES)), COSINES)),
+            formula(r"\mathbf{C}^{-1}(#1\,#2)", Rate(transpose_of(COSINES)), COSINES),
         ),
         "angular_velocity_body": (
             BODY.omega,

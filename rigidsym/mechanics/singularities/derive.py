@@ -55,7 +55,7 @@ class _Study:
         # rank, kernel and minors are the same in every frame: between the middle ones of the turns
         # each axis has been moved by few turns, and W is shortest
         turns = self.model.turns[: len(self.model.turns) // 2]
-        frame = [values.encoded(turn.matrix) for turn in turns]
+        frame = [values.codec.matrix(turn.matrix) for turn in turns]
         self.to_space = reduce(operator.matmul, frame or [values.one])
         self.to_body = values.R.T @ self.to_space
         here = self.to_space.T @ values.rate_matrix_space
