@@ -48,7 +48,7 @@ Evaluator = Callable[[Sequence[float]], float]
 PALETTE = (BLUE, GOLD, GREY, RED, BRONZE)
 _SIZE = 0.95  # of the body drawn, from its centre of mass
 _LENGTHS = (1.0, 0.22, 0.3, 1.4, 0.6, 0.15, 0.8)  # of parameters without a value
-_TWO_LENGTHS = (0.6, 1.0)
+_FEW_LENGTHS = {2: (0.6, 1.0), 3: (1.0, 0.55, 0.8)}
 _MOST_TRIES = 500
 # the functions that Python's math has not, or names otherwise
 _FUNCTIONS = {"Abs": math.fabs, "cot": lambda angle: 1 / math.tan(angle)}
@@ -77,7 +77,7 @@ def lengths_of(
     """The parameters with their values, or a suitable length if they have none."""
     known = {symbol: value for symbol, value in values.items() if value is not None}
     missing = [s for s in sorted(values, key=str) if s not in known and _holds(what, s)]
-    lengths = _TWO_LENGTHS if len(missing) == 2 else _LENGTHS[: len(missing)]
+    lengths = _FEW_LENGTHS.get(len(missing), _LENGTHS[: len(missing)])
     if len(missing) > len(lengths):
         return None
     for chosen in islice(permutations(lengths), _MOST_TRIES):

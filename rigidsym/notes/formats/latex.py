@@ -43,6 +43,7 @@ _DELIMITERS = {
 _SHIPPED = "fragment.tex"
 _DEFINITION = re.compile(r"(?m)^\\newcommand(\{\\(\w+)\}.*\})$")
 _LINE = 41.5  # ems: 160 mm at 11 points
+_LINE_OF_A_SOURCE = 95  # letters
 _TALL = 30  # lines of text, of about fifty on a page: more than these may part
 
 
@@ -75,6 +76,7 @@ def rendered(template: str, document: Document) -> str:
             sections=sections,
             last=(),  # for templates of users from the time when sections followed the sources
             metadata=metadata(document),
+            source_lines=_lines_of_sources(document),
             sources=[
                 {"key": printer.key(place), "text": escape(printer.said(source))}
                 for place, source in enumerate(document.sources, start=1)
@@ -83,6 +85,11 @@ def rendered(template: str, document: Document) -> str:
     )
     first = str(sections[0]["body"]) if sections else ""
     return text.replace(first, "".join((*_lacked(text), first)), 1)
+
+
+def _lines_of_sources(document: Document) -> int:
+    """About how many lines stay on one page: the list, if it is not long, and its heading."""
+    return min(30, 4 + sum(1 + len(source) // _LINE_OF_A_SOURCE for source in document.sources))
 
 
 def _least_lines(section: Section) -> int:

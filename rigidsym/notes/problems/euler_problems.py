@@ -37,14 +37,15 @@ def which_convention(rng: Random) -> Exercise:
     product = row(*(turn(each, letters) for each in found.model.turns))
     middle = "xyz"[_PLACES[right[1]]]
     first, last = "xyz"[i - 1], "xyz"[j - 1]
-    outer = f"the first axis is the {first}-axis, the last one the {last}-axis"
+    outer = f"the first axis is the ${first}$-axis, the last one the ${last}$-axis"
     if right[0] == right[2]:
-        outer = f"both outer turns are about the {first}-axis"
+        outer = f"both outer turns are about the ${first}$-axis"
         why = (
-            f"For $\\phi = \\psi = 0$ the turn by $\\theta$ is left, which keeps the {middle}-axis."
+            "For $\\phi = \\psi = 0$ the turn by $\\theta$ is left, which keeps the "
+            f"${middle}$-axis."
         )
     else:
-        why = f"The axis of the middle turn is then the third one, the {middle}-axis."
+        why = f"The axis of the middle turn is then the third one, the ${middle}$-axis."
     return Exercise(
         title="Which convention?",
         question=(

@@ -46,8 +46,8 @@ class Asked:
             return (self.choices[0],)
         assert self.symbol is not None
         shown = equal(self.symbol, numeral(self.value))
-        space = "" if self.unit == "°" else "\u00a0"
-        return (shown, f"{space}{self.unit}") if self.unit else (shown,)
+        unit = self.unit if self.unit == "°" else f" {self.unit}"
+        return (shown, unit.replace(" ", "\u00a0")) if unit.strip() else (shown,)
 
     @property
     def cloze(self) -> str:

@@ -19,6 +19,7 @@ from rigidsym.notes.document.document import (
     Equation,
     Figure,
     NoteBlock,
+    Paragraph,
     Section,
     Text,
     listed,
@@ -64,8 +65,10 @@ class BodyComposer(Composer):
         yield from blocks_of_body(self.derivation, self.letters)
         yield from self._steps(_FIRST)
         if self.moments:
-            yield said("Here")
-            yield from self.fitter.whole(definitions(self.moments, self.letters))
+            blocks = list(self.fitter.whole(definitions(self.moments, self.letters)))
+            if not isinstance(blocks[0], Paragraph):  # nor abbreviations first
+                yield said("Here")
+            yield from blocks
         if any(step.expression.has(*OFFSET) for step in self.derivation.steps):
             yield said("Let {} be the vector from the centre of mass to a point P.", OFFSET_IS)
         yield from self._steps([name for name in INERTIA_QUANTITIES if name not in _FIRST])

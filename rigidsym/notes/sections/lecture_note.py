@@ -11,7 +11,7 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import equal
 from rigidsym.mechanics.derivation import Statement, Step, claims_of
 from rigidsym.mechanics.quantities.kinematics import ROTATION
-from rigidsym.models.rotation import Citation, lecture
+from rigidsym.models.rotation import lecture
 from rigidsym.notes.document.document import (
     Cited,
     Equation,
@@ -19,10 +19,12 @@ from rigidsym.notes.document.document import (
     NoteTable,
     Paragraph,
     Section,
+    Text,
     said,
 )
 from rigidsym.notes.formula.summands import sums
 from rigidsym.notes.prose.turn_words import PROPER, names_of_angles
+from rigidsym.notes.prose.words import with_symbols
 from rigidsym.notes.sections.body_note import BodyComposer
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import Claim, claims_in_a_table
@@ -127,10 +129,9 @@ class LectureComposer(BodyComposer):
         apart = replace(equation, number=None, label="", is_result=False)
         return equation if is_apart else apart
 
-    def _source(self, step: Step) -> Citation | None:
-        """None where the number of the equation says it."""
-        source = super()._source(step)
-        return None if source and source.equation == str(step.number) else source
+    def _lead(self, step: Step) -> Text:
+        """How the quantity follows; what the theory has derived needs no other source."""
+        return with_symbols(step.because, self.symbols)
 
     def _label(self, step: Step) -> str:
         return _WHERE_SHOWN.get(step.quantity.name, step.quantity.name)
