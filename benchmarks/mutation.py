@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import redirect_stderr, redirect_stdout
 from copy import deepcopy
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from random import Random
 from types import CodeType, FunctionType
@@ -40,6 +40,7 @@ PROOFS = (
     "tests/mechanics/test_exactness_of_prover.py",
     "tests/house/test_one_door_for_proofs.py",
 )
+LOWERING = ("tests/kernels/test_lowering.py",)
 FORMULAS = ("tests/notes/test_pens.py", "tests/notes/test_formula.py")
 TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the quickest first
     "rigidsym.algebra.ring": RING,
@@ -57,6 +58,10 @@ TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the 
     "rigidsym.formula.unicode_pen": FORMULAS,
     "rigidsym.formula.sheet_pen": FORMULAS,
     "rigidsym.formula.letters": FORMULAS,
+    "rigidsym.kernels.lowering.cse": LOWERING,
+    "rigidsym.kernels.lowering.schedule": LOWERING,
+    "rigidsym.kernels.lowering.guard": ("tests/kernels/test_guard.py", *LOWERING),
+    "rigidsym.kernels.lowering.trigonometry": ("tests/kernels/test_trigonometry.py",),
     "rigidsym.kernels.targets.text.infix": ("tests/kernels/test_infix.py",),
 }
 PRINTERS = ("rigidsym.formula.", "rigidsym.kernels.")
@@ -134,14 +139,15 @@ def mutants(module: str) -> list[Mutant]:
     """All mutants of the functions of a module and of its classes."""
     path = ROOT / f"{module.replace('.', '/')}.py"
     source = path.read_text(encoding="utf-8")
-    tree, lines = ast.parse(source), source.splitlines()
+    lines = source.splitlines()
     return [
         Mutant(module, name, node.lineno, change, lines[node.lineno - 1].strip(), code)
-        for name, function in _functions(tree)
+        for name, function in _functions(ast.parse(source))
+        for ignored in [{id(node) for part in _ignored(function) for node in ast.walk(part)}]
         for place, node in enumerate(ast.walk(function))
-        if hasattr(node, "lineno")
+        if hasattr(node, "lineno") and id(node) not in ignored
         for change, apply in _changes(node)
-        if (code := _compiled(tree, path, name, place, apply)) is not None
+        for code in [_compiled(function, path, name, place, apply)]
     ]
 
 
@@ -181,17 +187,17 @@ def _changes(node: ast.AST) -> Iterator[tuple[str, Callable[[Any], None]]]:
 
 
 def _compiled(
-    tree: ast.Module, path: Path, name: str, place: int, apply: Callable[[Any], None]
-) -> CodeType | None:
-    """The code of a function with one node changed; None if only an annotation or a message is."""
-    changed = deepcopy(tree)
-    function = dict(_functions(changed))[name]
-    node = list(ast.walk(function))[place]
-    if any(node in ast.walk(part) for part in _ignored(function)):
-        return None
-    apply(node)
-    whole = compile(ast.fix_missing_locations(changed), str(path), "exec")
-    return _code_of(whole, name.split("."))
+    function: ast.FunctionDef, path: Path, name: str, place: int, apply: Callable[[Any], None]
+) -> CodeType:
+    """The code of a function with one node changed."""
+    changed = deepcopy(function)
+    apply(list(ast.walk(changed))[place])
+    *classes, _ = parts = name.split(".")
+    within: ast.stmt = changed
+    for each in classes:
+        within = ast.ClassDef(each, bases=[], keywords=[], body=[within], decorator_list=[])
+    module = ast.fix_missing_locations(ast.Module([within], type_ignores=[]))
+    return _code_of(compile(module, str(path), "exec"), parts)
 
 
 def _ignored(function: ast.FunctionDef) -> Iterator[ast.AST]:
@@ -226,10 +232,12 @@ def is_noticed(mutant: Mutant | None, session: pytest.Session, seconds: int) -> 
 
 def _in_child(mutant: Mutant | None, session: pytest.Session, seconds: int) -> int:
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    gc.disable()
     try:
         if mutant is not None:
             mutant.install()
-        _forget()
+        for cache in _caches():  # nothing that was worked out before the change may hide it
+            cache.cache_clear()
         for item, following in zip(session.items, [*session.items[1:], None], strict=True):
             item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
             if session.testsfailed:
@@ -239,12 +247,15 @@ def _in_child(mutant: Mutant | None, session: pytest.Session, seconds: int) -> i
     return 0
 
 
-def _forget() -> None:
-    """Nothing that was worked out before the change may hide it."""
-    for found in gc.get_objects():
-        is_ours = str(getattr(found, "__module__", "")).startswith("rigidsym")
-        if is_ours and type(found).__name__ == "_lru_cache_wrapper":
-            found.cache_clear()
+@cache
+def _caches() -> list[Any]:
+    """The caches of the package; found once, since a child that looks copies the whole heap."""
+    return [
+        found
+        for found in gc.get_objects()
+        if type(found).__name__ == "_lru_cache_wrapper"
+        and str(getattr(found, "__module__", "")).startswith("rigidsym")
+    ]
 
 
 def _of_children() -> float:
@@ -266,6 +277,7 @@ class Trial:
     def run(self) -> Self:
         """Raises RuntimeError if the tests fail without a change."""
         fixed = ("-q", "-n", "0", "-s", "-p", "no:cacheprovider", "-k", _SKIPPED)
+        fixed += ("--tb=no", "--assert=plain")  # that it fails is enough
         with redirect_stdout(io.StringIO()), redirect_stderr(io.StringIO()):
             status = pytest.main([*fixed, *self.tests], plugins=[self])
         if status or not self.tried:
@@ -274,6 +286,8 @@ class Trial:
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """In place of the tests: each mutant in a process of its own."""
+        _caches()
+        gc.freeze()  # what is here already is shared by all children
         before = _of_children()
         if is_noticed(None, session, SECONDS):
             raise pytest.UsageError("the tests fail")

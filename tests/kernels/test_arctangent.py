@@ -48,25 +48,6 @@ def error(found: np.ndarray, y: np.ndarray, x: np.ndarray) -> float:
     return float(max(misses) / mp.mpf(float(np.finfo(found.dtype).eps)))
 
 
-@pytest.mark.parametrize("digits", [53, 24])
-def test_the_polynomial_is_as_near_as_it_says(digits):
-    numbers = arctangent(digits)
-    for k in range(1, 400):
-        t = (mp.sqrt(2) - 1) * k / 399
-        z = t * t
-        powers = (
-            mp.mpf(c.numerator) / c.denominator * z**n for n, c in enumerate(numbers.coefficients)
-        )
-        assert (
-            abs(1 + z * sum(powers) - mp.atan(t) / t)
-            <= mp.mpf(float(numbers.error)) * mp.atan(t) / t
-        )
-    assert float(numbers.error) < 2.0 ** (-digits - 2)
-    high, low = numbers.eighth
-    assert all(float(k * high) / k == high for k in (2, 3, 4))
-    assert abs(mp.mpf(high) + mp.mpf(low) - mp.pi / 4) < mp.mpf(2) ** (-digits - 40)
-
-
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")
 @pytest.mark.parametrize("optimised", ["-O0", "-O3"])
 @pytest.mark.parametrize("name", ["double", "float"])

@@ -157,6 +157,85 @@ def test_parts_of_sums_are_shared_up_to_a_number():
     )
 
 
+def test_a_sum_that_does_not_hold_the_common_part_is_left_alone():
+    assert lowered(A + 2 * B + C, 3 * A + 6 * B + D, A + B, C - D, 2 * C + 2 * D, C + D) == (
+        ["x0 = a + 2.0 * b", "x1 = c + d"],
+        ["c + x0", "d + 3.0 * x0", "a + b", "c - d", "2.0 * x1", "x1"],
+    )
+
+
+def test_the_sign_of_most_terms_is_taken_out_of_a_sum():
+    assert lowered(D * (C - A - B), A + B - C) == (["x0 = a + b - c"], ["-d * x0", "x0"])
+    less = A / 2 + B / 4 - C
+    assert lowered(D * less, less) == (["x0 = 0.5 * a + 0.25 * b - c"], ["d * x0", "x0"])
+    assert lowered(D * (B - A), A * (B - A)) == (["x0 = a - b"], ["-d * x0", "-a * x0"])
+
+
+def test_of_pairs_that_occur_equally_often_one_that_is_asked_for_is_shared():
+    assert lowered(A * B * C, A * B * D, B * C) == (
+        ["x0 = b * c"],
+        ["a * x0", "a * b * d", "x0"],
+    )
+
+
+def test_a_square_is_shared_as_any_product_is():
+    assert lowered(A**2 * B, A**2 * C, A * D) == (
+        ["x0 = a * a"],
+        ["b * x0", "c * x0", "a * d"],
+    )
+
+
+def test_a_tangent_and_the_quotient_of_sine_and_cosine_are_one_thing():
+    quotient = sp.sin(A) / sp.cos(A)
+    assert lowered(sp.tan(A) + quotient, sp.tan(A) - quotient, sp.tan(A) - quotient + B) == (
+        ["sin_a = sin(a)", "cos_a = cos(a)"],
+        ["2.0 * sin_a / cos_a", "0.0", "b"],
+    )
+
+
+def held(values, *outputs):
+    """Assignments and outputs where values are to be assigned in their order by their names."""
+    reader = Reader("test", INPUTS)
+    for name, value in values.items():
+        reader.hold(sp.Symbol(name), sp.sympify(value))
+    weighted = [reader.weighted(output) for output in outputs]
+    assignments, found = write(reader.graph, weighted, Names(INPUTS.values()))
+    return (
+        [f"{a.name} = {infix(a.value, SAME)}" for a in assignments],
+        [infix(output, SAME) for output in found],
+    )
+
+
+def test_a_value_with_a_name_is_assigned_as_it_is():
+    total, part, small = sp.symbols("total part small")
+    assert held({"total": A + B, "part": C * total}, part - total, total * D) == (
+        ["total = a + b", "part = c * total"],
+        ["part - total", "d * total"],
+    )
+    assert held({"total": 2 * A + 2 * B, "small": -total / 4}, small) == (
+        ["total = 2.0 * (a + b)"],
+        ["-0.25 * total"],  # a multiple is as good as the value
+    )
+    assert held({"small": A * B, "total": A + B}, small + total) == (
+        ["small = a * b", "total = a + b"],
+        ["small + total"],
+    )
+
+
+def test_a_call_with_a_name_is_assigned_once_and_its_multiple_again():
+    root, twice = sp.symbols("root twice")
+    assert held({"root": sp.sqrt(A), "twice": 2 * sp.sin(A)}, root + twice) == (
+        ["sin_a = sin(a)", "root = sqrt(a)", "twice = 2.0 * sin_a"],
+        ["root + twice"],
+    )
+
+
+def test_a_number_an_input_and_a_name_that_is_held_need_no_other_name():
+    one, same, total, again = sp.symbols("one same total again")
+    values = {"one": sp.S.One, "same": A, "total": A + B, "again": total}
+    assert held(values, one + same * again) == (["total = a + b"], ["1.0 + a * total"])
+
+
 def test_a_product_that_is_part_of_another_is_its_own_common_part():
     assert lowered(A * B * C, A * B * C * D, A * B) == (
         ["x0 = a * b", "x1 = c * x0"],

@@ -20,9 +20,7 @@ from helpers.command import call
 from helpers.target_modules import STRICT
 from helpers.witness import mp
 from rigidsym.errors import CheckError, MissingTool
-from rigidsym.kernels.lowering.trigonometry import reduction, two_over_pi
 from rigidsym.kernels.targets.c import compiling as c_build
-from rigidsym.kernels.targets.text.precision import PRECISIONS
 
 REQUIRED = os.environ.get("RIGIDSYM_REQUIRE_COMPILERS") == "1"  # then they fail, not skip
 COMPILERS = [
@@ -321,32 +319,6 @@ def test_a_missing_file_or_compiler_is_named(tmp_path, monkeypatch):
     monkeypatch.delenv("CC", raising=False)
     with pytest.raises(MissingTool, match="apt install gcc"):
         c_build.compiler()
-
-
-@pytest.mark.parametrize("precision", PRECISIONS, ids=lambda p: p.real)
-def test_the_reduction_and_its_polynomials_keep_their_bounds(precision):
-    found = reduction(precision.digits)
-    with mp.workdps(60):
-        total = sum(mp.mpf(p.numerator) / p.denominator for p in found.parts)
-        assert abs(total - mp.pi / 2) < mp.mpf(2) ** -(3 * found.turns + precision.digits // 2)
-        for part in found.parts[:-1]:
-            assert part.numerator.bit_length() + found.turns <= precision.digits
-        for r in np.linspace(0.01, 0.78, 60):
-            x = mp.mpf(float(r))
-            z = x * x
-            sine, cosine = (
-                sum(mp.mpf(a.numerator) / a.denominator * z**k for k, a in enumerate(terms))
-                for terms in (found.sine, found.cosine)
-            )
-            bound = mp.mpf(found.error.numerator) / found.error.denominator
-            assert abs((x + x * z * sine) / mp.sin(x) - 1) < bound
-            assert abs((1 - z / 2 + z * z * cosine) / mp.cos(x) - 1) < bound
-
-
-def test_two_over_pi_is_right_to_the_last_bit():
-    with mp.workdps(420):
-        value = sum(mp.mpf(2) ** (32 * (1 - k)) * word for k, word in enumerate(two_over_pi()))
-        assert 0 <= 2 / mp.pi - value < mp.mpf(2) ** (-32 * 38)
 
 
 MODES = """

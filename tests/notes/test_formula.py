@@ -19,7 +19,7 @@ from rigidsym.formula.mathml_pen import MathmlPen
 from rigidsym.formula.pen import Segment, break_lines
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import factored
-from rigidsym.formula.tree import Big, Symbol
+from rigidsym.formula.tree import Big, Rate, Symbol
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 from rigidsym.mechanics.quantities.arguments import arguments_of
 from rigidsym.models.euler_angles import EulerAngles
@@ -163,6 +163,7 @@ def test_names_come_from_the_notation():
         (half * heading, r"\frac{1}{2}\,\frac{d\,\mathit{heading}}{dt}", "½ d heading/dt"),
     ):
         assert (latex(rate, letters), text(rate, letters)) == (as_latex, as_text)
+    assert UnicodePen().write(Rate(Symbol("az"))).text == "d az/dt"
 
 
 def test_a_formula_without_any_letters_uses_the_names_of_its_symbols():
@@ -318,6 +319,9 @@ def test_a_divisor_is_broken_where_nothing_else_can_be():
     assert [line.text for line in lines_of(quotient, 16, 0)] == ["4(a", "+ b)/(1 + n²)²"]
     quotient = r"\frac{4 a}{1 + n^2}"
     assert [line.text for line in lines_of(quotient, 8, 0)] == ["4a/(1", "+ n²)"]
+    for below in ("1 + n^2", "(1 + n^2)^2"):  # one bracket is open, written or not
+        lines = lines_of(rf"\frac{{4 a}}{{{below}}}", 8, 0)
+        assert [line.level for line in lines] == [0, 1], below
 
 
 def test_fractions_and_stretched_brackets_are_never_broken_in_a_note():

@@ -19,7 +19,17 @@ from rigidsym.formula.pen import Height
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import factored, formula_of, listed_entries
 from rigidsym.formula.sheet_pen import Aligned, SheetPen
-from rigidsym.formula.tree import Bracket, Formula, Fraction, Power, Rate, Sign, Symbol, row
+from rigidsym.formula.tree import (
+    Bracket,
+    Formula,
+    Fraction,
+    Matrix,
+    Power,
+    Rate,
+    Sign,
+    Symbol,
+    row,
+)
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.mechanics.quantities.arguments import arguments_of
 from rigidsym.models.euler_angles import EulerAngles
@@ -200,6 +210,25 @@ def test_lines_below_one_another_are_aligned_at_their_signs(golden):
         )
     ]
     golden("notes/rows.txt", "\n".join(texts))
+
+
+def test_rows_of_a_matrix_are_as_far_apart_as_their_heights_need():
+    letter, fraction, root = formula("a"), formula(r"\frac{a}{b}"), formula(r"\sqrt{\frac{a}{b}}")
+    rate = Rate(formula(r"\varphi"))
+    for above, below, points in (
+        (letter, letter, 2),
+        (rate, letter, 5),
+        (letter, rate, 5),
+        (rate, rate, 5),
+        (letter, fraction, 7),
+        (fraction, letter, 10),
+        (fraction, rate, 10),
+        (rate, fraction, 10),
+        (fraction, root, 13),
+        (root, letter, 13),
+    ):
+        text = LatexPen().write(Matrix(((above,), (below,)))).text
+        assert f"\\\\[{points}pt]" in text, text
 
 
 def test_a_formula_among_words_is_cut_only_if_it_is_too_wide():

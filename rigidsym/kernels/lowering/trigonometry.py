@@ -22,12 +22,14 @@ from mpmath.libmp import pi_fixed
 
 _TERMS = 16  # of the power series of sine and cosine: the next is below 1e-35
 _MARGIN = Fraction(51, 50)  # on |r| ≤ π/4: n is rounded from a rounded x
+_RATIO = Fraction(28, 25)  # over r/sin r there
 _WORD = 32
 _ZEROS = 2  # words before the point, so that every angle finds its bits behind some
 _WORDS = 40  # enough for the largest double
 
 _ARCTANGENT_TERMS = 40  # of its power series: the next is below 1e-32
 _TOP = Fraction(17158, 100000)  # over tan² π/8
+_ARCTANGENT_RATIO = Fraction(53, 50)  # over tan π/8 / (π/8)
 _EDGE = Fraction(41421, 100000)  # under tan π/8, where both quotients have this size
 
 _QUARTER_OF_PI = Fraction(pi_fixed(200), 4 << 200)
@@ -60,7 +62,8 @@ def reduction(digits: int) -> Reduction:
         parts=_parts(digits - turns, parts, digits),
         sine=sine,
         cosine=cosine,
-        error=top * Fraction(2, factorial(2 * terms + 3)) * (top / 4) ** terms,  # more than C's
+        # more than the cosine's
+        error=_RATIO * top * Fraction(2, factorial(2 * terms + 3)) * (top / 4) ** terms,
     )
 
 
@@ -84,7 +87,7 @@ def arctangent(digits: int) -> Arctangent:
         edge=float(_EDGE),
         coefficients=_interpolated(_arctangent_series, terms, _TOP),
         eighth=(float(first), float(_QUARTER_OF_PI - first)),
-        error=_TOP * Fraction(2, 2 * terms + 3) * (_TOP / 4) ** terms,
+        error=_ARCTANGENT_RATIO * _TOP * Fraction(2, 2 * terms + 3) * (_TOP / 4) ** terms,
     )
 
 
@@ -102,8 +105,9 @@ def _parts(short: int, count: int, digits: int) -> tuple[Fraction, ...]:
     rest = Fraction(pi_fixed(300), 2 << 300)
     found = []
     for bits in (*[short] * count, digits):
-        size = rest.numerator.bit_length() - rest.denominator.bit_length()  # or one more
-        scale = Fraction(2) ** (bits - size - (rest >= Fraction(2) ** size))
+        # rest is a binary fraction: 2**size is its highest bit
+        size = rest.numerator.bit_length() - rest.denominator.bit_length()
+        scale = Fraction(2) ** (bits - 1 - size)
         found.append(Fraction(int(rest * scale)) / scale)
         rest -= found[-1]
     return tuple(found)
