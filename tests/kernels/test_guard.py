@@ -81,6 +81,7 @@ def test_squares_of_inputs_vanish_only_where_they_underflow(divisor, assigned):
         (A**2 - B, ["x1 = abs(b)", "x2 = 4.0 * (x1 + a * a)"]),
         (A**2 - 1, ["x1 = 4.0 * (1.0 + a * a)"]),
         (A * B + 1, ["x1 = a * b", "x2 = abs(x1)", "x3 = 4.0 * (1.0 + x2)"]),
+        (2 * A * B + 1, ["x1 = 2.0 * a * b", "x2 = abs(x1)", "x3 = 4.0 * (1.0 + x2)"]),
         (A**3 + 1, ["x1 = a * a * a", "x2 = abs(x1)", "x3 = 4.0 * (1.0 + x2)"]),
     ],
     ids=str,

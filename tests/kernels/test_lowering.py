@@ -168,6 +168,7 @@ def test_the_sign_of_most_terms_is_taken_out_of_a_sum():
     assert lowered(D * (C - A - B), A + B - C) == (["x0 = a + b - c"], ["-d * x0", "x0"])
     less = A / 2 + B / 4 - C
     assert lowered(D * less, less) == (["x0 = 0.5 * a + 0.25 * b - c"], ["d * x0", "x0"])
+    assert lowered(D * (A / 2 - B), A / 2 - B) == (["x0 = 0.5 * a - b"], ["d * x0", "x0"])
     assert lowered(D * (B - A), A * (B - A)) == (["x0 = a - b"], ["-d * x0", "-a * x0"])
 
 
@@ -176,6 +177,33 @@ def test_of_pairs_that_occur_equally_often_one_that_is_asked_for_is_shared():
         ["x0 = b * c"],
         ["a * x0", "a * b * d", "x0"],
     )
+
+
+def test_a_minus_turns_one_sum_of_a_product_around():
+    assert lowered(-(A - B) * (C - D) * C, 2 + A, sp.Integer(2)) == (
+        [],
+        ["c * (b - a) * (c - d)", "2.0 + a", "2.0"],
+    )
+
+
+def test_functions_of_inputs_come_first_and_a_sine_before_its_cosine():
+    assert lowered(sp.cos(A + B), sp.sin(A + B) + sp.sin(2 * C), sp.cos(D))[0] == [
+        "cos_d = cos(d)",
+        "x0 = a + b",
+        "sin_x0 = sin(x0)",
+        "cos_x0 = cos(x0)",
+        "x1 = 2.0 * c",
+        "sin_x1 = sin(x1)",
+    ]
+    assert lowered(sp.atan2(A, B + C), sp.sin(D))[0] == [
+        "sin_d = sin(d)",
+        "x0 = b + c",
+        "atan2_0 = atan2(a, x0)",
+    ]
+
+
+def test_a_sine_that_goes_away_is_not_taken():
+    assert lowered(sp.sin(A) * sp.cot(A)) == (["cos_a = cos(a)"], ["cos_a"])
 
 
 def test_a_square_is_shared_as_any_product_is():
@@ -216,10 +244,8 @@ def test_a_value_with_a_name_is_assigned_as_it_is():
         ["total = 2.0 * (a + b)"],
         ["-0.25 * total"],  # a multiple is as good as the value
     )
-    assert held({"small": A * B, "total": A + B}, small + total) == (
-        ["small = a * b", "total = a + b"],
-        ["small + total"],
-    )
+    values = {"small": A * B, "total": A + B, "part": C * D}  # which nothing asks for
+    assert held(values, total, small) == (["small = a * b", "total = a + b"], ["total", "small"])
 
 
 def test_a_call_with_a_name_is_assigned_once_and_its_multiple_again():

@@ -11,6 +11,7 @@ from sympy.physics.vector import dynamicsymbols
 
 from helpers.reading import Formula as Reader, latex_of
 from helpers.witness import mp, number
+from rigidsym.formula import widths
 from rigidsym.formula.latex_pen import LatexPen, MarkdownPen
 from rigidsym.formula.letters import Letters, VectorLength
 from rigidsym.formula.mathml_pen import MathmlPen, math
@@ -23,6 +24,7 @@ from rigidsym.formula.tree import (
     Bracket,
     Formula,
     Fraction,
+    Indexed,
     Matrix,
     Power,
     Rate,
@@ -310,4 +312,40 @@ def test_widths_add_up(pen):
     one, two = (width(rf"\begin{{pmatrix}} {row} \end{{pmatrix}}") for row in ("a", "a & a"))
     assert two > one + width("a")  # with a gap
     assert one > width("a")
+    assert width("12") == 2 * width("1")
+    assert width("a'") == pytest.approx(width("a") + widths.PRIME)
+    assert width("a_b") == pytest.approx(width("a") + widths.SCRIPT * width("b"))
+    assert width("a^b") == pytest.approx(width("a") + widths.SCRIPT * width("b"))
+    assert width(r"\sin^2 a") == pytest.approx(width(r"\sin a") + widths.SCRIPT * width("2"))
+    for quotient in (r"\frac{a + b}{c}", r"\frac{c}{a + b}"):
+        assert width(quotient) == pytest.approx(width("a + b") + widths.FRACTION)
+    assert width("(a)") == pytest.approx(width("a") + 2 * widths.BRACKET)
+    assert width("(a)^2") == pytest.approx(width("(a)") + widths.SCRIPT * width("2"))
+
+
+@pytest.mark.parametrize("pen", PENS.values(), ids=list(PENS))
+def test_widths_of_rates_and_what_stands_around_them_add_up(pen):
+    rate, letter = Rate(formula(r"\varphi")), Symbol("a")
+    alone, small = pen.write(rate).width, pen.but(small=True).write(rate).width
+    assert small == pytest.approx(widths.SCRIPT * alone)
+    assert pen.write(Matrix(((rate,),))).width == pytest.approx(small + widths.TALL_BRACKETS)
+    sides = 2 * (widths.BRACKET + widths.LARGE["large"])
+    assert pen.write(Bracket(rate)).width == pytest.approx(alone + sides)
+    indexed, a = Indexed(letter, letter), pen.write(letter).width
+    assert pen.write(indexed).width == pytest.approx(a + widths.SCRIPT * a)
+    superscript = Symbol("a", prime="ᴮ")
+    assert pen.write(superscript).width == pytest.approx(a + widths.SCRIPT)
+
+
+def test_a_formula_in_latex_is_tall_if_it_is_higher_than_its_letters():
+    flat, tall = formula("a + b"), formula(r"\frac{a}{b}")
+    found = LatexPen().inline([flat, tall])
+    assert (found[flat].is_tall, found[tall].is_tall) == (False, True)
+
+
+@pytest.mark.parametrize("pen", PENS.values(), ids=list(PENS))
+def test_a_wider_formula_has_more_width(pen):
+    def width(markup: str) -> float:
+        return pen.write(formula(markup)).width
+
     assert width("a") < width("a^{b}") < width("a^{b+c}") < width("a b+c")
