@@ -337,6 +337,13 @@ def _figures(trials: Sequence[Trial]) -> Iterator[Figure]:
         )
 
 
+_EMPTY = "node 0 is the empty product, which is no factor"
+_NEVER_ZERO = "no coefficient of a sum is zero"
+_MINUSES = "minuses = sum(c < 0 for c in coefficients) - sum(c > 0 for c in coefficients)"
+_FLAT = (
+    "flat = tuple(sorted(n if k > 0 else ~n for n, k in counted.items() for _ in range(abs(k))))"
+)
+_PARTLY_DIVIDED = "divided = Counter(f for factors in products for f in set(factors) if f < 0)"
 _POWERS = "powers = (p for p in angle.atoms(sp.Pow) if not (p.exp.is_Integer and p.exp > 0))"
 _POINTS = "which points are tried first"
 _EXPONENT = "base = self if exponent >= 0 else self.inverse()"
@@ -447,4 +454,52 @@ EQUIVALENT: Mapping[tuple[str, str, str], str] = {  # function, change, line: wh
         "Add -> Sub",
         "tuple(tuple((-1) ** (i + j) * self._minor(j, i).det() for j in places) for i in places),",
     ): "i + j and i - j are both even or both odd",
+    **{
+        (function, change, line): _EMPTY
+        for function, line, changes in (
+            ("Graph.product", "if len(flat) == 1 and flat[0] >= 0:", ("GtE -> Gt", "0 -> 1")),
+            (
+                "Graph.product",
+                "counted[max(factor, ~factor)] += 1 if factor >= 0 else -1",
+                ("GtE -> Gt", "0 -> 1"),
+            ),
+            ("Graph._take_reciprocals", _PARTLY_DIVIDED, ("Lt -> LtE", "0 -> 1")),
+            ("_Writer._product", "if factor < 0:", ("Lt -> LtE", "0 -> 1")),
+        )
+        for change in changes
+    },
+    (
+        "Graph.product",
+        "Gt -> GtE",
+        _FLAT,
+    ): "a node that is counted no time is not written",
+    ("_common_scale", "Lt -> LtE", _MINUSES): _NEVER_ZERO,
+    ("_common_scale", "Gt -> GtE", _MINUSES): _NEVER_ZERO,
+    (
+        "_common_scale",
+        "Lt -> LtE",
+        "is_minus = minuses > 0 or (minuses == 0 and coefficients[0] < 0)",
+    ): _NEVER_ZERO,
+    (
+        "_factor_pairs",
+        "Gt -> GtE",
+        "squares = {(a, a): times // 2 for a, times in counted.items() if times > 1}",
+    ): "a pair that occurs no time",
+    (
+        "_Writer.weighted",
+        "Lt -> LtE",
+        "return self._negated(expression) if coefficient < 0 else expression",
+    ): "zero is written before",
+    ("_Writer._rank", "0 -> 1", "return ((_SUM, 0),)"): "all sums have one rank",
+    ("_Writer._rank", "0 -> 1", "return ((_NUMBER, 0),)"): "a product has one number",
+    (
+        "_interpolated",
+        "Add -> Sub",
+        "points = [top * (1 + Fraction(cos(angle))) / 2 for angle in angles]",
+    ): "the same points, the last first",
+    (
+        "_Guard._is_positive",
+        "Gt -> GtE",
+        "factor.value > 0 if isinstance(factor, Number) else factors.count(factor) % 2 == 0",
+    ): "no factor is zero",
 }

@@ -21,6 +21,7 @@ from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.operations import Operations, count
 from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.python_layout import assignment_lines, bracketed
+from rigidsym.mechanics.conversions.function import Where
 
 A, B, C, D = sp.symbols("a b c d")
 INPUTS = {symbol: symbol.name for symbol in (A, B, C, D)}
@@ -157,6 +158,13 @@ def test_parts_of_sums_are_shared_up_to_a_number():
     )
 
 
+def test_a_sum_that_is_a_multiple_of_the_common_part_is_a_product():
+    assert lowered(A + 2 * B, 3 * A + 6 * B, C + A + 2 * B) == (
+        ["x0 = a + 2.0 * b"],
+        ["x0", "3.0 * x0", "c + x0"],
+    )
+
+
 def test_a_sum_that_does_not_hold_the_common_part_is_left_alone():
     assert lowered(A + 2 * B + C, 3 * A + 6 * B + D, A + B, C - D, 2 * C + 2 * D, C + D) == (
         ["x0 = a + 2.0 * b", "x1 = c + d"],
@@ -200,6 +208,25 @@ def test_functions_of_inputs_come_first_and_a_sine_before_its_cosine():
         "x0 = b + c",
         "atan2_0 = atan2(a, x0)",
     ]
+
+
+@pytest.mark.parametrize(("length", "name"), [(20, f"sin_{'a' * 20}"), (21, "sin_0")])
+def test_a_sine_has_the_name_of_its_argument_unless_that_is_long(length, name):
+    angle = sp.Symbol("a" * length)
+    reader = Reader("test", {angle: angle.name})
+    (call,), _ = write(reader.graph, [reader.weighted(sp.sin(angle))], Names([angle.name]))
+    assert call.name == name
+
+
+def test_a_sum_within_a_sum_is_taken_apart_if_nothing_else_uses_it():
+    reader = Reader("test", INPUTS, {sp.Symbol("e"): A - B})
+    weighted = [reader.weighted(C - 3 * sp.Symbol("e"))]
+    _, (output,) = write(reader.graph, weighted, Names(INPUTS.values()))
+    assert infix(output, SAME) == "3.0 * b + c - 3.0 * a"
+
+
+def test_a_choice_is_assigned():
+    assert lowered(Where(A < B, C, D)) == (["x0 = c if a < b else d"], ["x0"])
 
 
 def test_a_sine_that_goes_away_is_not_taken():

@@ -164,6 +164,7 @@ def test_names_come_from_the_notation():
     ):
         assert (latex(rate, letters), text(rate, letters)) == (as_latex, as_text)
     assert UnicodePen().write(Rate(Symbol("az"))).text == "d az/dt"
+    assert LatexPen().write(Rate(Symbol("az"))).text == r"\frac{d\,\mathit{az}}{dt}"
 
 
 def test_a_formula_without_any_letters_uses_the_names_of_its_symbols():
@@ -307,6 +308,7 @@ def lines_of(typed: str, width: float, indent: float = 2) -> list[Segment]:
 def test_lines_break_before_signs_in_the_outermost_bracket(width, lines):
     broken = lines_of(LONG, width)
     assert [line.text for line in broken] == lines
+    assert [line.width for line in broken] == list(map(columns, lines))
     assert all(columns(line) <= width for line in lines)
 
 

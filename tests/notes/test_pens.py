@@ -24,6 +24,7 @@ from rigidsym.formula.tree import (
     Bracket,
     Formula,
     Fraction,
+    Gap,
     Indexed,
     Matrix,
     Power,
@@ -310,8 +311,10 @@ def test_widths_add_up(pen):
     assert both == pytest.approx(upper + width("a+b+c") - width("a"))
     assert both == pytest.approx(lower + width("b+c") - width("d"))
     one, two = (width(rf"\begin{{pmatrix}} {row} \end{{pmatrix}}") for row in ("a", "a & a"))
-    assert two > one + width("a")  # with a gap
-    assert one > width("a")
+    assert one == pytest.approx(width("a") + widths.TALL_BRACKETS)
+    assert two == pytest.approx(one + width("a") + widths.COLUMN_GAP)
+    assert width(r"\sqrt{a}") == pytest.approx(width("a") + widths.ROOT)
+    assert pen.write(Gap()).width == 2 * widths.QUAD  # \qquad
     assert width("12") == 2 * width("1")
     assert width("a'") == pytest.approx(width("a") + widths.PRIME)
     assert width("a_b") == pytest.approx(width("a") + widths.SCRIPT * width("b"))
@@ -335,6 +338,28 @@ def test_widths_of_rates_and_what_stands_around_them_add_up(pen):
     assert pen.write(indexed).width == pytest.approx(a + widths.SCRIPT * a)
     superscript = Symbol("a", prime="ᴮ")
     assert pen.write(superscript).width == pytest.approx(a + widths.SCRIPT)
+
+
+def test_a_quotient_on_one_line_is_bracketed_beside_another_factor_and_nowhere_else():
+    quotient, a = formula(r"\frac{b}{c}"), formula("a")
+    for parts, text in (
+        ((quotient,), "b/c"),
+        ((a, quotient), "a (b/c)"),
+        ((quotient, a), "(b/c) a"),
+        ((a, quotient, a), "a (b/c) a"),
+        ((a, Sign("+"), quotient), "a + b/c"),
+        ((quotient, Sign("+"), a), "b/c + a"),
+        ((a, Sign("·"), quotient), "a·(b/c)"),
+    ):
+        assert UnicodePen().write(row(*parts)).text == text
+
+
+def test_a_pen_keeps_its_settings_but_for_those_that_are_asked_for():
+    for name in ("loose", "short", "small"):
+        pen = LatexPen(**{name: True})
+        assert getattr(pen.but(), name)
+        assert getattr(LatexPen().but(**{name: True}), name)
+        assert not getattr(LatexPen().but(), name)
 
 
 def test_a_formula_in_latex_is_tall_if_it_is_higher_than_its_letters():

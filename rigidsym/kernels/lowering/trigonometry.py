@@ -117,7 +117,8 @@ def _interpolated(
     function: Callable[[Fraction], Fraction], terms: int, top: Fraction
 ) -> tuple[Fraction, ...]:
     """The polynomial through a function in Chebyshev's points of (0, top), lowest power first."""
-    points = [top * (1 + Fraction(cos(pi * (2 * k + 1) / (2 * terms)))) / 2 for k in range(terms)]
+    angles = (pi * (2 * k + 1) / (2 * terms) for k in range(terms))
+    points = [top * (1 + Fraction(cos(angle))) / 2 for angle in angles]
     table = list(map(function, points))
     for width in range(1, terms):  # Newton's divided differences
         for k in range(terms - 1, width - 1, -1):
