@@ -312,6 +312,21 @@ def test_lines_break_before_signs_in_the_outermost_bracket(width, lines):
     assert all(columns(line) <= width for line in lines)
 
 
+@pytest.mark.parametrize(
+    ("width", "lines"),
+    [
+        (13, ["a + b (c + d)"]),
+        (12, ["a", "+ b (c + d)"]),
+        (11, ["a", "+ b (c + d)"]),
+        (10, ["a", "+ b (c", "+ d)"]),
+    ],
+)
+def test_a_line_may_be_as_wide_as_there_is_room(width, lines):
+    assert [line.text for line in lines_of(r"a + b\,(c + d)", width, 0)] == lines
+    longer = [line.text for line in lines_of("a + b + c", 5, 0)]
+    assert longer == ["a + b", "+ c"]
+
+
 def test_a_line_inside_a_bracket_knows_how_deep_it_is():
     assert [line.level for line in lines_of(LONG, 30)] == [0, 1, 0, 0]
 
