@@ -20,6 +20,7 @@ from rigidsym.formula.tree import Formula, Symbol
 Place = tuple[int, int]  # order of the time derivative, index of the component
 
 TIME = sp.Symbol("t")
+_NO_RATE: Place = (0, 0)
 _MASS = re.compile(r"[mM](_?\d+)?")  # written before other constants: m g l, m R²
 _CONSTANTS: Mapping[sp.Expr, Formula] = {sp.pi: Symbol("π")}
 
@@ -55,8 +56,6 @@ class VectorLength(NamedTuple):
 @lru_cache(maxsize=4096)
 def _shortened(node: sp.Expr, length: VectorLength) -> sp.Expr:
     if not node.args or not node.has(*length.components):
-        return node
-    if node.is_Derivative or node in length.components:
         return node
     whole = node.func(*(_shortened(argument, length) for argument in node.args))
     if not whole.is_Add:
@@ -158,26 +157,24 @@ def _factor_key(factor: sp.Expr, letters: Letters) -> Key:
     if base.is_Add:
         return (Rank.SUM, len(base.args), base.sort_key())
     if base.is_Number:
-        return (Rank.NUMBER, 1, base.sort_key())
+        return (Rank.NUMBER, base.sort_key())
     if not exponent.is_Integer:
-        return (Rank.ROOT, 0, base.sort_key())
+        return (Rank.ROOT, base.sort_key())
     return (*_base_key(base, letters), exponent)
 
 
 def _base_key(base: sp.Expr, letters: Letters) -> Key:
-    if base.is_Number:
-        return (Rank.NUMBER, 0, base.sort_key())
     if base.is_NumberSymbol:
-        return (Rank.UNIVERSAL, 0, base.sort_key())
+        return (Rank.UNIVERSAL, base.sort_key())
     if base.func in FUNCTIONS:
         return (Rank.FUNCTION, _angle_key(base.args[0], letters), _FUNCTION_ORDER[base.func])
     if is_application(base):
         return (Rank.FUNCTION, _angle_key(base.args[0], letters), len(FUNCTIONS))
     place = letters.places.get(base)
     if place is None:
-        return (Rank.CONSTANT, 0 if _MASS.fullmatch(str(base)) else 1, base.sort_key())
+        return (Rank.CONSTANT, not _MASS.fullmatch(str(base)), base.sort_key())
     order, index = place
-    return (Rank.RATE if order else Rank.COORDINATE, (-order, index), 0)
+    return (Rank.RATE if order else Rank.COORDINATE, -order, index)
 
 
 def _angle_key(angle: sp.Expr, letters: Letters) -> Key:
@@ -201,7 +198,7 @@ def _rates(term: sp.Expr, letters: Letters) -> list[Place]:
     found: list[Place] = []
     for factor in sp.Mul.make_args(term):
         base, exponent = power_of(factor)
-        order, index = letters.places.get(base, (0, 0))
+        order, index = letters.places.get(base, _NO_RATE)
         if order:
             found += [(-order, index)] * int(abs(exponent))
         elif base.is_Add:

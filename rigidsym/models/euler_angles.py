@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sympy.printing.pretty.pretty_symbology import pretty_symbol
-
 from rigidsym.errors import ModelError
 from rigidsym.models.rotation import DIEBEL, RotationModel, Turn, book, product_of
 from rigidsym.models.so3 import AXES, time_functions
+from rigidsym.text.names import lettered
 
 AXIS_SEQUENCES = tuple(
     first + second + third
@@ -83,7 +82,7 @@ def _what_is_wrong(text: str) -> str:
 
 def _order_in_words(manner: str, turns: Sequence[Turn]) -> str:
     """The turns in the order in which the body makes them."""
-    angles = [pretty_symbol(turn.angle.func.__name__) for turn in turns]
+    angles = [lettered(turn.angle.func.__name__) for turn in turns]
     axes = [f"the {'fixed' if manner == 'extrinsic' else 'turned'} {turn.axis}" for turn in turns]
     axes[0] = axes[0].replace("the turned ", "")
     about = [f"{angle} about {axis}" for angle, axis in zip(angles, axes, strict=True)]

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
-from sympy.printing.pretty.pretty_symbology import pretty_symbol
 
 from rigidsym.algebra.adjoin import rate_of
 from rigidsym.algebra.angles import reduced
 from rigidsym.algebra.codec import codec_for
 from rigidsym.errors import ModelError
 from rigidsym.models.so3 import AXES, TIME, elementary, rodrigues, symbolic
+from rigidsym.text.names import lettered
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _NUMBERS = (sp.NumberSymbol, type(sp.I))
@@ -101,7 +101,7 @@ class Turn:
         """The angle in plain text."""
         names = {f: sp.Symbol(f.func.__name__) for f in self.angle.atoms(AppliedUndef)}
         plain = self.angle.xreplace(names)
-        return pretty_symbol(plain.name) if plain.is_Symbol else str(plain)
+        return lettered(plain.name) if plain.is_Symbol else str(plain)
 
     def __str__(self) -> str:
         return f"R{self.axis}({self.angle_text})"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import sympy as sp
+from sympy.printing.pretty.pretty_symbology import pretty_symbol, pretty_use_unicode
 
 from rigidsym.errors import ExpressionError
 from rigidsym.text.bounds import FUNCTIONS
@@ -34,6 +35,15 @@ _ANGULAR_VELOCITY = re.compile(r"Omega_(?:body_)?[123]|omega_(?:space|body)(?:_[
 def spelled(text: str) -> str:
     """The name in Latin letters: `phi_1` for `φ_1`."""
     return text.translate(_SPELLING)
+
+
+def lettered(name: str) -> str:
+    """The name as it is read, `φ₁` for `phi_1`, also where a terminal knows no such letters."""
+    before = pretty_use_unicode(True)
+    try:
+        return str(pretty_symbol(name))
+    finally:
+        pretty_use_unicode(before)
 
 
 def check_name(text: str | sp.Symbol) -> str:

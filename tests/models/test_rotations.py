@@ -11,6 +11,7 @@ import dataclasses
 import pytest
 import sympy as sp
 from sympy import cos, cosh, pi, sech, sin, sinh, sqrt, tanh
+from sympy.printing.pretty.pretty_symbology import pretty_use_unicode
 
 from helpers.samples import (
     NORM,
@@ -38,6 +39,7 @@ from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.errors import AlgebraError, DerivationError, ModelError, NotARotation
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
+from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.so3 import elementary, time_function
 
 DERIVED: dict[str, Derivation] = {}
@@ -249,3 +251,14 @@ class TestSingularAngles:
         found = self.singular(("z", phi), ("x", theta), ("z", theta * psi))
         assert not found.is_solved
         assert found.determinant.has(theta)
+
+
+def test_a_convention_is_said_in_greek_letters_whatever_the_terminal_shows():
+    before = pretty_use_unicode(False)  # as SymPy decides where standard output is ASCII
+    try:
+        model = EulerAngles("ZXZ", ("phi_1", "theta", "psi"))
+        assert model.product == "Rz(φ₁) Rx(θ) Rz(ψ)"
+        assert "first φ₁ about z, then θ about the turned x" in " ".join(model.convention)
+        assert not pretty_use_unicode(False)  # which stays as it was
+    finally:
+        pretty_use_unicode(before)

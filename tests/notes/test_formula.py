@@ -105,6 +105,24 @@ FORMS = [
 ]
 
 
+def test_terms_with_brackets_follow_the_rates_in_them():
+    """As A φ̇ stands before m φ̇², so does A (φ̇ + ψ̇) before m (φ̇ + ψ̇)²; a root counts once."""
+    total = phi_dot + psi_dot
+    for expression, shown in (
+        (m * phi_dot**2 + A * phi_dot, "A φ̇ + m₁ φ̇²"),
+        (m * total**2 + A * total, "A (φ̇ + ψ̇) + m₁ (φ̇ + ψ̇)²"),
+        (m * sp.sqrt(total) + A * (1 + theta), "A (1 + θ) + m₁ √(φ̇ + ψ̇)"),
+        (m * sp.sqrt(total) + A * total, "m₁ √(φ̇ + ψ̇) + A (φ̇ + ψ̇)"),
+    ):
+        assert text(expression, LETTERS) == shown
+
+
+def test_sums_of_negative_terms_give_their_signs_to_the_product():
+    first, second, third = -A - m, -theta_dot - phi_dot, -1 - theta
+    assert text(first * second, LETTERS) == "(m₁ + A)(φ̇ + θ̇)"
+    assert text(first * second * third, LETTERS) == "−(m₁ + A)(1 + θ)(φ̇ + θ̇)"
+
+
 @pytest.mark.parametrize(("expression", "as_latex", "as_text"), FORMS, ids=lambda x: str(x)[:40])
 def test_exact_forms(expression, as_latex, as_text):
     assert (latex(expression, LETTERS), text(expression, LETTERS)) == (as_latex, as_text)
@@ -329,6 +347,17 @@ def test_a_line_may_be_as_wide_as_there_is_room(width, lines):
 
 def test_a_line_inside_a_bracket_knows_how_deep_it_is():
     assert [line.level for line in lines_of(LONG, 30)] == [0, 1, 0, 0]
+
+
+def test_lines_lose_their_indent_for_each_bracket_that_is_open():
+    for inside, indent, lines in (
+        (r"c\,(d + e + f + g)", 0, ["a (b", "+ c (d + e + f", "+ g))"]),
+        (r"c\,(d + e + f + g)", 2, ["a (b", "+ c (d + e", "+ f + g))"]),
+        (r"\mathit{ccc}\,(d + e + f)", 2, ["a (b", "+ ccc (d + e", "+ f))"]),
+        (r"\mathit{ccc}\,(d + e + f)", 3, ["a (b", "+ ccc (d", "+ e + f))"]),
+    ):
+        found = lines_of(rf"a\,(b + {inside})", 14, indent)
+        assert [line.text for line in found] == lines
 
 
 def test_a_divisor_is_broken_where_nothing_else_can_be():

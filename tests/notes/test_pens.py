@@ -265,10 +265,25 @@ def test_a_common_factor_stands_before_the_matrix():
         ([-a * b, a], a),
         ([sp.Rational(1, 2), a / 3], sp.Rational(1, 6)),
         ([a * b, sp.sqrt(a) * b], b),
+        ([1 - 2 * a / c, b / c], 1 / c),
+        ([1 + a / b, 2 + c / b], 1),  # two sums of which each is as short as it can be
     ):
         found, rest = factored(sp.ImmutableMatrix(entries))
         assert found == factor, entries
         assert (found * rest - sp.ImmutableMatrix(entries)).expand() == sp.zeros(len(entries), 1)
+
+
+def test_entries_over_a_common_divisor_are_written_without_it():
+    """As (1 − 2 y²/d, 2 x y/d) is (d − 2 y², 2 x y)/d."""
+    x, y, d = sp.symbols("x y d")
+    for entries, factor, rest in (
+        ([1 - 2 * y**2 / d, 2 * x * y / d], 1 / d, [d - 2 * y**2, 2 * x * y]),
+        ([(x + y) / d, x / d], 1 / d, [x + y, x]),
+        ([x / d + y, x, y], 1, [x / d + y, x, y]),
+        ([x + y, x * y], 1, [x + y, x * y]),
+        ([x / d, 1 + y / x, y], 1, [x / d, 1 + y / x, y]),
+    ):
+        assert factored(sp.ImmutableMatrix(entries)) == (factor, sp.ImmutableMatrix(rest))
 
 
 def test_entries_that_are_equal_by_symmetry_are_listed_once():

@@ -1,0 +1,109 @@
+"""What the kernels of a derivation take, give and say, before any target prints them."""
+
+from __future__ import annotations
+
+import pytest
+
+import rigidsym as rs
+from helpers.motions import derived
+from rigidsym.kernels import ir
+from rigidsym.kernels.lowering.lower import MARGIN, lower
+from rigidsym.kernels.targets.text.infix import infix
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.motion import derive
+
+SKEW = "z(phi) x(theta) [1,1,0](psi)"
+FREE = "z(phi) [a,b,c](beta)"
+
+
+def kernel(program: ir.Program, name: str) -> ir.Kernel:
+    return next(kernel for kernel in program.kernels if kernel.name == name)
+
+
+def units(program: ir.Program) -> dict[str, str]:
+    return {
+        name: unit
+        for argument in program.arguments
+        for name, unit in zip(argument.components, argument.units, strict=True)
+    }
+
+
+def test_quantities_come_in_the_order_of_their_equations_and_the_margin_last():
+    program = lower(derived("ZXZ"))
+    assert (program.name, program.units) == ("euler_zxz_intrinsic", "radians")
+    assert [k.equation for k in program.kernels] == [*range(1, 14), None]
+    assert [k.name for k in program.kernels][-1] == MARGIN
+    matrix = kernel(program, "rotation_matrix")
+    assert (matrix.shape, matrix.symbol, matrix.unit) == ((3, 3), "R", "")
+    assert [a.name for a in matrix.arguments] == ["q"]
+    assert program.arguments[0].components == ("phi", "theta", "psi")
+
+
+def test_arguments_that_no_kernel_takes_are_not_in_the_program():
+    chosen = lower(derive(FREE, only=["rotation_matrix"]))
+    assert [a.name for a in chosen.arguments] == ["q", "parameters"]
+    assert not any(a.is_scalar for a in chosen.arguments)
+
+
+def test_in_degrees_only_angles_have_other_names_and_units():
+    program = lower(derived("ZXZ"), degrees=True)
+    assert (program.name, program.units) == ("euler_zxz_intrinsic_deg", "degrees")
+    assert program.convention[0].startswith("Angles are in degrees")
+    found = units(program)
+    assert (found["phi_deg"], found["phi_dot_deg"]) == ("deg", "deg/s")
+    assert found["phi_ddot_deg"] == "deg/s^2"
+    assert kernel(program, "angular_velocity_body").unit == "deg/s"
+    assert not any(name.endswith("_deg") for name in units(lower(derived("ZXZ"))))
+    about_an_axis = derive(rotation_from("axis_angle"), only=["rotation_matrix"])
+    found = units(lower(about_an_axis, degrees=True))
+    assert sorted(unit for unit in found.values() if unit) == ["deg"]
+
+
+@pytest.mark.parametrize(
+    ("rotation", "product", "presented", "bound"),
+    [
+        ("ZXZ", "R = Rz(φ) Rx(θ) Rz(ψ).", "Active", []),
+        (rs.EulerAngles("zyx", passive=True), "R = Rx(ψ) Ry(θ) Rz(φ).", "Passive", []),
+        (
+            FREE,
+            "R = Rz(φ) R[a,b,c](β).",
+            "Active",
+            ["R is a rotation where a**2 + b**2 + c**2 = 1."],
+        ),
+        (
+            "unit_quaternion",
+            "",
+            "Active",
+            ["R is a rotation where w**2 + x**2 + y**2 + z**2 = 1."],
+        ),
+    ],
+    ids=["active", "passive", "chain", "quaternion"],
+)
+def test_the_convention_is_said_in_sentences(rotation, product, presented, bound):
+    said = lower(derive(rotation, only=["rotation_matrix"])).convention
+    assert [line for line in said if line.startswith("R = ")] == ([product] if product else [])
+    assert [line.split(":")[0] for line in said if ": R" in line or ": rot" in line] == [presented]
+    assert [line for line in said if line.startswith("R is a rotation where")] == bound
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "symbol", "end"),
+    [
+        ("ZYX", "abs_cos_theta", "|det W|", "; 1 at most, 0 at one"),
+        ("ZXZ", "abs_sin_theta", "|det W|", "; 1 at most, 0 at one"),
+        ("rotation_vector", "2.0 * abs_c2_x0", "|det W|", "; 1 at most, 0 at one"),
+        (SKEW, "0.5 * abs_x0", "|det W|", "; 0 at one"),
+    ],
+)
+def test_the_margin_is_scaled_to_one_if_its_largest_value_is_known(name, value, symbol, end):
+    motion = derive(rotation_from(name), only=["inverse_rate_matrix_space"])
+    found = kernel(lower(motion), MARGIN)
+    assert (found.symbol, found.shape, infix(found.outputs[0])) == (symbol, (), value)
+    assert found.about == f"how far the coordinates are from a singular orientation{end}"
+    assert [a.name for a in found.arguments] == ["q"]
+
+
+def test_the_words_of_a_target_are_no_names():
+    motion = derive(rs.EulerAngles("ZXZ", ("a", "b", "c")), only=["rotation_matrix"])
+    (names,) = lower(motion, reserved=["b"]).arguments
+    assert names.components == ("a", "b_", "c")
