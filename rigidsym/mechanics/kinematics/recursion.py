@@ -16,7 +16,7 @@ so that the proofs are linear in n as well.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from itertools import product
 from typing import NamedTuple, TypeAlias
@@ -76,10 +76,10 @@ class Recursion:
         self._groups.setdefault(group or name, {})[symbol] = value
         return symbol
 
-    def opened(self, matrix: sp.MatrixBase, group: str) -> sp.ImmutableMatrix:
-        """The matrix with the entries that were named in one group as they are defined."""
+    def opened(self, entries: Iterable[sp.Expr], group: str) -> list[sp.Expr]:
+        """The entries, those that were named in one group as they are defined."""
         own = self._groups.get(group, {})
-        return sp.ImmutableMatrix(*matrix.shape, [own.get(entry, entry) for entry in matrix])
+        return [own.get(entry, entry) for entry in entries]
 
     # The recursions, from the first turn to the last or the other way round
 

@@ -18,6 +18,7 @@ from rigidsym.mechanics.kinematics.recursion import OrthogonalRows, Recursion
 from rigidsym.models.so3 import TIME
 
 Encoded = tuple[Codec, RingMatrix]
+Equal = tuple[Iterable[sp.Expr], Iterable[sp.Expr]]  # entries that are to be equal, one by one
 
 _FREE = sp.ImmutableMatrix(sp.symbols("free_1:4"))  # what the other turns contribute
 
@@ -28,7 +29,10 @@ def residuals(recursion: Recursion, law: str) -> Iterator[Encoded]:
         if law == "turns":
             yield from _of_turn(recursion, k)
         else:
-            yield _encoded([entry for entry in _LAWS[law](recursion, k) if entry != 0], recursion)
+            pairs = (
+                pair for sides in _LAWS[law](recursion, k) for pair in zip(*sides, strict=True)
+            )
+            yield _encoded([left - right for left, right in pairs if left != right], recursion)
 
 
 def _of_turn(r: Recursion, k: int) -> Iterator[Encoded]:
@@ -80,47 +84,53 @@ def _encoded(entries: list[sp.Expr], recursion: Recursion) -> Encoded:
     return codec, codec.column(entries or [sp.S.Zero])
 
 
-def _speed(r: Recursion, k: int) -> sp.Expr:
-    """θ̇ − Σ ∂θ/∂q q̇, and what stands for θ̇."""
-    angle, (speed,) = r.angles[k], r.opened(sp.Matrix([r.speeds[k]]), f"dtheta{k + 1}")
+def _speed(r: Recursion, k: int) -> Equal:
+    """What stands for θ̇, and Σ ∂θ/∂q q̇."""
+    angle = r.angles[k]
     rates = (sp.diff(angle, q) * sp.diff(q, TIME) for q in angle.atoms(AppliedUndef))
-    return speed - sp.Add(*rates)
+    return r.opened([r.speeds[k]], f"dtheta{k + 1}"), [sp.Add(*rates)]
 
 
-_LAWS: dict[str, Callable[[Recursion, int], Iterable[sp.Expr]]] = {
+_LAWS: dict[str, Callable[[Recursion, int], Iterable[Equal]]] = {
     "product": lambda r, k: (
-        *(r.opened(r.turns[k], f"T{k + 1}") - r.plain[k]),
-        *(r.opened(r.partial[k + 1], f"P{k + 1}") - r.partial[k] * r.turns[k]),
+        (r.opened(r.turns[k], f"T{k + 1}"), r.plain[k]),
+        (r.opened(r.partial[k + 1], f"P{k + 1}"), r.partial[k] * r.turns[k]),
     ),
     "omega_space": lambda r, k: (
-        r.opened(r.omega_space[k], f"u{k + 1}")
-        - r.axes[k] * r.speeds[k]
-        - r.turns[k] * r.omega_space[k + 1]
+        (
+            r.opened(r.omega_space[k], f"u{k + 1}"),
+            r.axes[k] * r.speeds[k] + r.turns[k] * r.omega_space[k + 1],
+        ),
     ),
     "omega_body": lambda r, k: (
-        r.opened(r.omega_body[k + 1], f"w{k + 1}")
-        - r.axes[k] * r.speeds[k]
-        - r.turns[k].T * r.omega_body[k]
+        (
+            r.opened(r.omega_body[k + 1], f"w{k + 1}"),
+            r.axes[k] * r.speeds[k] + r.turns[k].T * r.omega_body[k],
+        ),
     ),
     "alpha_space": lambda r, k: (
-        r.opened(r.alpha_space[k], f"du{k + 1}")
-        - r.axes[k] * r.spins[k]
-        - r.axes[k].cross(r.omega_space[k]) * r.speeds[k]
-        - r.turns[k] * r.alpha_space[k + 1]
+        (
+            r.opened(r.alpha_space[k], f"du{k + 1}"),
+            r.axes[k] * r.spins[k]
+            + r.axes[k].cross(r.omega_space[k]) * r.speeds[k]
+            + r.turns[k] * r.alpha_space[k + 1],
+        ),
     ),
     "alpha_body": lambda r, k: (
-        r.opened(r.alpha_body[k + 1], f"dw{k + 1}")
-        - r.axes[k] * r.spins[k]
-        + r.axes[k].cross(r.omega_body[k + 1]) * r.speeds[k]
-        - r.turns[k].T * r.alpha_body[k]
+        (
+            r.opened(r.alpha_body[k + 1], f"dw{k + 1}"),
+            r.axes[k] * r.spins[k]
+            + r.axes[k].cross(-r.omega_body[k + 1]) * r.speeds[k]
+            + r.turns[k].T * r.alpha_body[k],
+        ),
     ),
     "axes_space": lambda r, k: (
-        *(r.opened(r.axes_space[k], f"n{k + 1}") - r.partial[k] * r.axes[k]),
+        (r.opened(r.axes_space[k], f"n{k + 1}"), r.partial[k] * r.axes[k]),
         _speed(r, k),
     ),
     "axes_body": lambda r, k: (
-        *(r.opened(r.remaining[k], f"B{k + 1}") - r.turns[k] * r.remaining[k + 1]),
-        *(r.opened(r.axes_body[k], f"m{k + 1}") - r.remaining[k + 1].T * r.axes[k]),
+        (r.opened(r.remaining[k], f"B{k + 1}"), r.turns[k] * r.remaining[k + 1]),
+        (r.opened(r.axes_body[k], f"m{k + 1}"), r.remaining[k + 1].T * r.axes[k]),
         _speed(r, k),
     ),
 }
