@@ -17,6 +17,8 @@ import rigidsym as rs
 from rigidsym import errors
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.commands.cli import commands
+from rigidsym.kernels.targets.c import compiling
+from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.mechanics.mass import derive as mass
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.system import cluster
@@ -111,6 +113,27 @@ def bad_data(_: pytest.MonkeyPatch) -> None:
 def no_record(_: pytest.MonkeyPatch) -> None:
     Path("empty").mkdir()
     said("check", "empty")
+
+
+def test_a_step_without_its_motion_cannot_print_itself():
+    (step,) = derivation_of(rs.rotation_from("z(a)"), ("rotation_matrix",)).steps
+    assert repr(step) == "<Step rotation_matrix, proved>"
+    with pytest.raises(errors.DerivationError, match="only a step of"):
+        step.text()
+
+
+@pytest.mark.parametrize(
+    ("program", "said"), [("echo no >&2; exit 1", "it says:\nno"), ("sleep 9", "after 0.2 seconds")]
+)
+def test_a_compiler_that_fails_is_quoted(program, said, tmp_path, monkeypatch):
+    for name in ("cc", "gcc", "clang"):
+        (tmp_path / name).write_text(f"#!/bin/sh\n{program}\n")
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:/bin:/usr/bin")
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr(compiling, "TIMEOUT", 0.2 if "sleep" in program else 9)
+    with pytest.raises(errors.ToolFailed, match=said):
+        compiling.compile_library([tmp_path / "none.c"], str(tmp_path / "none.so"))
 
 
 def test_a_package_without_its_files_says_where_it_looked(monkeypatch, tmp_path):

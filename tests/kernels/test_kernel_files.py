@@ -68,7 +68,7 @@ value = kernels.angular_velocity_body([0.1, 0.2, 0.3], [[1, 2, 3]])
 assert value.shape == (1, 3)
 assert pickle.loads(pickle.dumps(kernels.rotation_matrix)) is kernels.rotation_matrix
 third_party = {name.partition(".")[0] for name in sys.modules} - set(sys.stdlib_module_names)
-print(sorted(n for n in third_party if sys.modules[n] and getattr(sys.modules[n], "__file__", "")))
+print(sorted(n for n in third_party if getattr(sys.modules.get(n), "__file__", "")))
 """
 
 

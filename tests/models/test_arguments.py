@@ -26,6 +26,15 @@ TURNED = {"rotation": "z(psi)", "principal_moments": [1, 1, 1]}
 q = dynamicsymbols("q")
 
 
+MANY_TURNS = sp.rot_axis3(q) * sp.rot_axis1(500 * q / 7)
+POINT, NEEDLE = (rs.principal_moments(k, k, 0, allow=True) for k in (0, 1))
+CORNERS = [[0, 0, 0], [1, 0, 0], [1, 1, 1], [0, 1, 0], [0, 0, 9]]
+BENT = {
+    "vertices": tuple(map(sp.ImmutableMatrix, CORNERS)),
+    "faces": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+}
+
+
 def body(**changes: object) -> RigidBody:
     given = {"name": "own", "mass": sp.Integer(1), "inertia": sp.eye(3), "parameters": []}
     given |= {"centre": sp.zeros(3, 1), "title": "A body"} | changes
@@ -33,8 +42,8 @@ def body(**changes: object) -> RigidBody:
     return RigidBody(**given | fixed | {"parameters": tuple(given["parameters"])})
 
 
-def dynamics(**acting: object) -> rs.Motion:
-    return rs.derive("z(theta)", body=rs.principal_moments(1, 1, 1), **acting)
+def dynamics(rotation: str = "z(theta)", **acting: object) -> rs.Motion:
+    return rs.derive(rotation, **{"body": rs.principal_moments(1, 1, 1), "potential": 0} | acting)
 
 
 @pytest.mark.parametrize(
@@ -45,6 +54,8 @@ def dynamics(**acting: object) -> rs.Motion:
         (lambda: rs.solid("hollow_cylinder", inner_radius=2, outer_radius=1), "less than inner"),
         (lambda: rs.solid("sphere", radius="r"), "expected a SymPy expression, got 'r'"),
         (lambda: rs.solid(3), "no shape 3"),
+        (lambda: rs.solid("box", sides=[1, 2]), "box: expected a, b, c, got 2 lengths"),
+        (lambda: rs.body_of(Polyhedron(**BENT, mass=sp.Integer(1))), "is not in its plane"),
         (lambda: rs.Turn(axis="u", angle=a), "'u' is not an axis: expected x, y, z"),
         (lambda: rs.Turn(axis="z", angle="a"), "angle of a turn: expected a SymPy expression"),
         (lambda: rs.EulerAngles(3), "expected a sequence such as 'ZXZ', got 3"),
@@ -101,6 +112,10 @@ def dynamics(**acting: object) -> rs.Motion:
         (lambda: body(mass=a * b, parameters=[M]), "own: b is not among the parameters"),
         (lambda: body(inertia=sp.diag(a, 1, 1), parameters=[NO_NUMBER]), "holds NaN or infinity"),
         (lambda: Polyhedron(vertices=(), faces=()), "expected either the mass or the density"),
+        (lambda: rs.derive(rs.given(MANY_TURNS, name="mine")), "multiples up to 100 are expanded"),
+        (lambda: dynamics(body=NEEDLE), "the mass matrix has no inverse; expected coordinates"),
+        (lambda: dynamics("ZXZ", body=POINT, method="euler"), "the inertia tensor has no inverse"),
+        (lambda: dynamics("z(a) x(b)", method="euler"), "rates that follow from the angular velo"),
         (lambda: dynamics(forces={"x": 1}), "a force on x, which is none of theta"),
         (lambda: dynamics(torque=[1]), "torque: expected three components, got 1"),
         (lambda: dynamics(method="newton"), "no method 'newton'"),

@@ -206,6 +206,12 @@ def test_a_forgotten_operator_is_named_with_its_neighbours():
         read_formula("Rz(q1) Ry(q2)")
     assert "operator such as * between 'Rz(q1)' and 'Ry'" in str(caught.value)
     assert caught.value.column == 8
+    with pytest.raises(ExpressionError, match="unknown name 'x'; known: y"):
+        read_formula("x + 1", {"y": sp.Symbol("y")})
+    with pytest.raises(ExpressionError, match="BoolOp is not allowed"):
+        read_formula("a or b")
+    with pytest.raises(ExpressionError, match="operations are nested too deeply"):
+        read_formula("-" * 3000 + "a")
     with pytest.raises(ExpressionError, match="unexpected"):
         read_formula("phi + * psi")
 

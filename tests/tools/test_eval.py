@@ -112,6 +112,7 @@ def test_constants_are_given_as_numbers(table, tmp_path):
         ("phi,theta,psi\n1,2,3\n", "no column phi_dot, theta_dot, psi_dot among phi, theta, psi"),
         ("1,2,3\n", "3 columns without names: expected 6"),
         ("\n\n", "no rows"),
+        ('phi,"theta" x,psi\n1,2,3\n', "line 1: quotes that do not end where the field does"),
     ],
 )
 def test_what_is_wrong_with_a_text_is_said(motion, tmp_path, text, message):
