@@ -13,7 +13,7 @@ from rigidsym.formula.display import Equation
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import break_lines
 from rigidsym.formula.scalars import formula_of, listed_entries, matrix_of
-from rigidsym.formula.tree import Formula, Matrix, indexed
+from rigidsym.formula.tree import Formula, Matrix
 from rigidsym.formula.unicode_pen import UnicodePen, columns
 
 INDENT = "  "
@@ -123,8 +123,7 @@ class _Console:
         for lines in _forms(self._heads(sides), self._texts(rows)):
             if max(map(columns, lines)) <= self.width:
                 return lines
-        names = equation.entries or indexed(sides[0], matrix.shape)
-        return self._listing(*zip(*listed_entries(names, matrix), strict=True))
+        return self._listing(*zip(*listed_entries(equation.names, matrix), strict=True))
 
     def _scalar(self, sides: Sequence[Formula], value: Formula | sp.Expr) -> list[str]:
         """The value behind its sides, or below them, where a long one is broken."""

@@ -18,7 +18,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Segment, break_lines
 from rigidsym.formula.scalars import factored, formula_of, listed_entries, matrix_of
 from rigidsym.formula.sheet_pen import Aligned, SheetPen
-from rigidsym.formula.tree import EQUALS, Formula, Matrix, equal, row
+from rigidsym.formula.tree import EQUALS, Formula, Matrix, equal, indexed, row
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.formula.widths import EQUAL, QUAD
 
@@ -37,13 +37,21 @@ class Equation:
     sides: tuple[Formula, ...]
     matrix: sp.ImmutableMatrix | None = None
     scalar: sp.Expr | None = None
-    entries: tuple[Formula, ...] = ()  # a name an entry, row by row, for a listing
+    entries: tuple[Formula, ...] = ()  # a name an entry, if these are not those of the first side
     number: int | None = None
     label: str = ""
     function: str = ""  # of the kernel module, as it is called
     proved: tuple[Formula, ...] = ()
     unproved: tuple[Formula, ...] = ()
     is_result: bool = False  # what a reader looks up stands in a box
+
+    @property
+    def names(self) -> tuple[Formula, ...]:
+        """A name for each entry of the matrix, row by row, for a listing."""
+        assert self.matrix is not None
+        rows, columns = self.matrix.shape
+        shape = (rows,) if columns == 1 else (rows, columns)
+        return self.entries or indexed(self.sides[0], shape)
 
 
 class Rows(NamedTuple):
@@ -79,20 +87,12 @@ class Display(NamedTuple):
     width: float  # ems; it may be more than was asked for, where there is no place to break
     done: Done = ""
     rows: Rows | None = None
+    is_broken: bool = False  # whether a value of the equation, or an entry, fits on no line
 
     @property
     def lines(self) -> int:
         """Of a listing."""
         return len(self.rows.lines) if self.rows else 1
-
-    def breaks(self, equation: Equation, width: float) -> bool:
-        """Whether a value of the equation, or an entry, fits on no line."""
-        if equation.matrix is None and equation.scalar is None:
-            return False
-        lines = min(len(equation.sides), 2)
-        if equation.matrix is not None:
-            lines = len(listed_entries(equation.entries, equation.matrix))
-        return self.lines > lines or self.width > width
 
 
 def display(
@@ -113,9 +113,20 @@ def _displayed(
 ) -> Display:
     setter = _Setter(letters, pen(letters.notation))
     if not equation.is_result:
-        return setter.display(equation, width)
-    inside = setter.display(equation, width - BOX)
-    return inside._replace(text=setter.pen.boxed(inside.text), width=inside.width + BOX)
+        shown = setter.display(equation, width)
+    else:
+        inside = setter.display(equation, width - BOX)
+        shown = inside._replace(text=setter.pen.boxed(inside.text), width=inside.width + BOX)
+    return shown._replace(is_broken=_is_broken(shown, equation, width))
+
+
+def _is_broken(shown: Display, equation: Equation, width: float) -> bool:
+    if equation.matrix is None and equation.scalar is None:
+        return False
+    lines = min(len(equation.sides), 2)
+    if equation.matrix is not None:
+        lines = len(listed_entries(equation.names, equation.matrix))
+    return shown.lines > lines or shown.width > width
 
 
 @lru_cache(maxsize=512)
@@ -196,7 +207,7 @@ class _Setter:
             for form in self._forms(sides, full, self.pen.but(short=True)):
                 if form.width <= width:
                     return form._replace(done="abbreviated")
-        listed = listed_entries(equation.entries, equation.matrix)
+        listed = listed_entries(equation.names, equation.matrix)
         values = [formula_of(value, self.letters) for _, value in listed]
         lines, needed = self._listing([name for name, _ in listed], values, width)
         return self._below(Rows(tuple(lines)), needed, "listed")

@@ -51,12 +51,6 @@ class Proof:
         return self.status == "exact"
 
 
-def claims_of(proofs: Sequence[Proof]) -> tuple[tuple[Formula, ...], tuple[Formula, ...]]:
-    """The claims that are proved, and those that are not."""
-    proved = tuple(proof.claim for proof in proofs if proof.is_exact)
-    return proved, tuple(proof.claim for proof in proofs if not proof.is_exact)
-
-
 Shape = Literal["scalar", "vector", "matrix"]  # (), (n,) and (m, n) in kernels and JSON
 
 

@@ -26,7 +26,7 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.formats.latex import render as print_latex
 from rigidsym.notes.formats.pdf import typeset
-from rigidsym.notes.formula.derivation_letters import entry_names, length_of, letters_of
+from rigidsym.notes.formula.derivation_letters import length_of, letters_of
 from rigidsym.notes.formula.vector_rates import rates_of_form
 from rigidsym.notes.prose.vector_words import (
     by_half_angle,
@@ -34,6 +34,7 @@ from rigidsym.notes.prose.vector_words import (
     sign_outside,
     sum_of_vectors,
 )
+from rigidsym.notes.sections.compose import equation_of
 
 TURNS = (
     "z(phi)",
@@ -359,7 +360,7 @@ def test_of_a_symmetric_tensor_six_entries_are_listed_with_both_names():
     motion = rs.derive("ZXZ", ("inertia_tensor_space",), body=rs.general_inertia())
     (step,) = motion.steps
     assert step.expression == step.expression.T
-    listed = listed_entries(entry_names(step, motion.arguments), step.expression)
+    listed = listed_entries(equation_of(step, motion.arguments).names, step.expression)
     assert [name.text for name, _ in listed] == [
         "I₁₁", "I₁₂ = I₂₁", "I₁₃ = I₃₁", "I₂₂", "I₂₃ = I₃₂", "I₃₃",
     ]  # fmt: skip

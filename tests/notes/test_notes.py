@@ -31,12 +31,12 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.terminal import show
-from rigidsym.notes.formula.derivation_letters import entry_names
 from rigidsym.notes.note import Note, note
 from rigidsym.notes.prose.singular_words import determined
 from rigidsym.notes.prose.turn_words import GOLDSTEIN
 from rigidsym.notes.prose.words import unit_in_words, with_symbols
 from rigidsym.notes.sections.boxed import RESULTS
+from rigidsym.notes.sections.compose import equation_of
 
 ZXZ = "euler_zxz_intrinsic"
 
@@ -299,7 +299,7 @@ def test_the_entries_of_a_listed_symbol_are_what_it_lists():
 
 def test_names_of_entries():
     motion = derived("ZXZ")
-    names = {step.quantity.name: entry_names(step, motion.arguments) for step in motion.steps}
+    names = {step.quantity.name: equation_of(step, motion.arguments).names for step in motion.steps}
     assert names["rotation_matrix"][1] == formula("R_{12}")
     assert names["rotation_rate"][8] == formula(r"\dot{R}_{33}")
     assert names["rate_matrix_body"][0] == formula("W'_{11}")

@@ -150,6 +150,13 @@ class Document:
         return (block for block in blocks if isinstance(block, Equation) and block.number)
 
     @cached_property
+    def displays(self) -> tuple[Equation, ...]:
+        """All equations, in order, also those that share a line."""
+        blocks = chain.from_iterable(section.blocks for section in self.sections)
+        shown = (b.equations if isinstance(b, EquationRow) else (b,) for b in blocks)
+        return tuple(e for e in chain.from_iterable(shown) if isinstance(e, Equation))
+
+    @cached_property
     def figures(self) -> tuple[Figure, ...]:
         """The figures, in order; their numbers are their places."""
         blocks = (block for section in self.sections for block in section.blocks)

@@ -58,11 +58,12 @@ def _elements(drawing: Drawing) -> Iterator[str]:
     for arc in drawing.sectors:
         yield f'<polygon class="area turn" points="{_points((arc.centre, *arc.points))}"/>'
     yield from _strokes(drawing.strokes)
-    for label in drawing.labels:
+    symbols = [label.symbol.text for label in drawing.labels]
+    for label, symbol in zip(drawing.labels, symbols, strict=True):
         x, y = label.place
         yield (
             f'<text class="{label.kind}" x="{_number(x * _SCALE)}" y="{_number(-y * _SCALE)}" '
-            f'dy=".32em">{escape(as_in_formulas(label.symbol.text))}</text>'
+            f'dy=".32em">{escape(as_in_formulas(symbol))}</text>'
         )
 
 

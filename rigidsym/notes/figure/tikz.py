@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from math import degrees
 from unicodedata import normalize
 
@@ -24,35 +24,38 @@ _STYLES = (
 
 def tikz(drawing: Drawing) -> str:
     """The drawing in TikZ; it needs the library arrows.meta."""
+    symbols = [label.symbol.latex for label in drawing.labels]
+    lines = (*drawing.strokes, *drawing.behind)
+    texts = {stroke.name: stroke.name.text for stroke in lines if stroke.name is not None}
+    ends = {name: _end(text) for name, text in texts.items()}
     options = f"scale={_UNIT:.3f}, >={{Latex[length=2mm]}}, line join=round, line cap=round"
     return "\n".join(
         [
             rf"\begin{{tikzpicture}}[{options}, {_STYLES}]",
-            *_coordinates((*drawing.strokes, *drawing.behind)),
-            *_strokes(drawing.behind),
+            *_coordinates(lines, ends),
+            *_strokes(drawing.behind, ends),
             *_facets(drawing.facets),
             *_sectors(drawing.sectors),
-            *_strokes(drawing.strokes),
+            *_strokes(drawing.strokes, ends),
             *(
-                rf"\node[{label.kind}, inner sep=0pt] at {_point(label.place)} "
-                f"{{${label.symbol.latex}$}};"
-                for label in drawing.labels
+                rf"\node[{label.kind}, inner sep=0pt] at {_point(label.place)} {{${latex}$}};"
+                for label, latex in zip(drawing.labels, symbols, strict=True)
             ),
             r"\end{tikzpicture}",
         ]
     )
 
 
-def _coordinates(strokes: Iterable[Stroke]) -> Iterator[str]:
+def _coordinates(strokes: Iterable[Stroke], ends: Mapping[Formula, str]) -> Iterator[str]:
     yield r"\coordinate (O) at (0,0);"
     for stroke in strokes:
         if stroke.name is not None:
-            yield rf"\coordinate {_named(stroke.name)} at {_point(stroke.points[-1])};"
+            yield rf"\coordinate {ends[stroke.name]} at {_point(stroke.points[-1])};"
 
 
-def _named(axis: Formula) -> str:
+def _end(names: str) -> str:
     """The end of an axis by the first of its names: (z') for z′ = z″, (N1) for N₁."""
-    first = normalize("NFKD", axis.text.split(" = ")[0]).replace("′", "'")
+    first = normalize("NFKD", names.split(" = ")[0]).replace("′", "'")
     return "(" + re.sub(r"[^A-Za-z0-9']", "", first) + ")"
 
 
@@ -69,7 +72,7 @@ def _facets(facets: Iterable[Facet]) -> Iterator[str]:
         yield rf"\filldraw[line width=.4pt, color={color}] {outline} -- cycle;"
 
 
-def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:
+def _strokes(strokes: Iterable[Stroke], ends: Mapping[Formula, str]) -> Iterator[str]:
     for stroke in strokes:
         options: list[str] = [stroke.kind]
         options += ["thin"] if stroke.is_thin else []
@@ -79,7 +82,7 @@ def _strokes(strokes: Iterable[Stroke]) -> Iterator[str]:
             yield rf"\draw[{', '.join([*options, _plane(stroke.arc)])}] {_turned(stroke.arc)};"
         else:
             *line, end = map(_point, stroke.points)
-            tip = end if stroke.name is None else _named(stroke.name)
+            tip = end if stroke.name is None else ends[stroke.name]
             yield rf"\draw[{', '.join(options)}] {' -- '.join([*line, tip])};"
 
 

@@ -54,10 +54,6 @@ def rendered(template: str, printer: HtmlPrinter, **more: object) -> str:
         .get_template(template)
         .render(
             language=document.language.code,
-            words=lambda english: escape(printer.said(english)),
-            title=escape(document.title),
-            subtitle=escape(document.subtitle),
-            byline=escape(" · ".join(document.byline)),
             sections=[
                 {
                     "title": escape(section.title),
@@ -66,10 +62,7 @@ def rendered(template: str, printer: HtmlPrinter, **more: object) -> str:
                 }
                 for place, section in enumerate(document.sections, start=1)
             ],
-            sources=[
-                {"key": f"source-{place}", "text": escape(printer.said(source))}
-                for place, source in enumerate(document.sources, start=1)
-            ],
+            **printer.placed(),
             **more,
         )
     )
@@ -81,9 +74,17 @@ def escape(words: str) -> str:
 
 
 class HtmlPrinter(NotePrinter):
+    width = _PAGE
+    words = staticmethod(escape)
+    key = staticmethod("source-{}".format)
+
     def __init__(self, document: Document) -> None:
         self.notation = document.letters.notation
         super().__init__(document, MathmlPen(self.notation))
+        self._math = {
+            equation: math(shown.text, spoken(equation, document.letters), is_display=True)
+            for equation, shown in self.shown.items()
+        }
 
     def body(self, section: Section) -> str:
         blocks = list(map(self.block, section.blocks))
@@ -122,9 +123,8 @@ class HtmlPrinter(NotePrinter):
 
     def forms(self, equation: Equation) -> str:
         """The display, which scrolls sideways on a phone if it is too wide."""
-        shown = display(equation, self.document.letters, _PAGE, self.pen)
-        formula = math(shown.text, spoken(equation, self.document.letters), is_display=True)
-        inside = self._lead(equation, shown) + self._fitted(formula, shown)
+        shown = self.shown[equation]
+        inside = self._lead(equation, shown) + self._fitted(self._math[equation], shown)
         return f'<div class="display">{inside}</div>'
 
     def tools(self, equation: Equation) -> str:  # noqa: ARG002  (a page has some)
@@ -198,9 +198,6 @@ class HtmlPrinter(NotePrinter):
             else:
                 written.append(self.span(span))
         return "".join(written)
-
-    def words(self, words: str) -> str:
-        return escape(words)
 
     def formula_of(self, inline: Inline) -> str:
         return " ".join(inline.parts)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from rigidsym.formula.display import PAGE, Rows, display, pack
+from rigidsym.formula.display import PAGE, Rows, pack
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.sheet_pen import Inline
 from rigidsym.formula.tree import Formula
@@ -21,7 +21,6 @@ from rigidsym.notes.document.document import (
     Section,
     Span,
     Text,
-    plain,
 )
 from rigidsym.notes.figure.tikz import tikz
 from rigidsym.notes.formats.escape import escape
@@ -69,18 +68,11 @@ def rendered(template: str, document: Document) -> str:
         .get_template(template)
         .render(
             babel=document.language.babel,
-            words=lambda english: escape(printer.said(english)),
-            title=escape(document.title),
-            subtitle=escape(document.subtitle),
-            byline=escape(" · ".join(document.byline)),
             sections=sections,
             last=(),  # for templates of users from the time when sections followed the sources
             metadata=metadata(document),
             source_lines=_lines_of_sources(document),
-            sources=[
-                {"key": printer.key(place), "text": escape(printer.said(source))}
-                for place, source in enumerate(document.sources, start=1)
-            ],
+            **printer.placed(),
         )
     )
     first = str(sections[0]["body"]) if sections else ""
@@ -126,6 +118,8 @@ class _LatexPrinter(NotePrinter):
     pen: LatexPen
     heading = ""  # of the section; a table need not repeat it as its caption
     words = staticmethod(escape)
+    width = _LINE
+    beside_number = PAGE
 
     def __init__(self, document: Document) -> None:
         super().__init__(document, LatexPen(document.letters.notation))
@@ -145,8 +139,7 @@ class _LatexPrinter(NotePrinter):
         return f"{{\\keep\n\\begin{{verbatim}}\n{block.code}\n\\end{{verbatim}}\n}}"
 
     def equation(self, equation: Equation) -> str:
-        width = PAGE if equation.number else _LINE
-        shown = display(equation, self.document.letters, width, self.pen)
+        shown = self.shown[equation]
         announced = self.announced(equation, shown.done)
         lines = [announced] if announced else []
         if shown.rows is not None and shown.rows.height > _TALL:
@@ -246,7 +239,8 @@ class _LatexPrinter(NotePrinter):
     def _width_of_span(self, span: Span) -> float:
         if isinstance(span, Formula):
             return self.inline(span).width
-        return _LETTER * (4 if isinstance(span, EquationReference) else len(plain((span,))))
+        words = span if isinstance(span, str) else span.text
+        return _LETTER * (4 if isinstance(span, EquationReference) else len(words))
 
     def _cell(self, text: Text) -> str:
         written = "".join(self._tall(s) if isinstance(s, Formula) else self.span(s) for s in text)

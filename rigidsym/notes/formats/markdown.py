@@ -11,7 +11,7 @@ import re
 from base64 import b64encode
 from collections.abc import Iterator, Sequence
 
-from rigidsym.formula.display import display, pack
+from rigidsym.formula.display import pack
 from rigidsym.formula.latex_pen import MarkdownPen
 from rigidsym.formula.sheet_pen import Inline
 from rigidsym.notes.document.document import (
@@ -70,7 +70,19 @@ def _unlisted(start: re.Match[str]) -> str:
     return f"{blank}\\{mark}" if mark else f"{blank}{number}\\{point}"
 
 
+def _inside(text: str) -> str:
+    """Text within a line: blanks at its ends part it from what is beside it.
+
+    Escaped dollar signs are mathematics to Jupyter after Markdown has taken the escapes away;
+    inside code they never are.
+    """
+    return _DOLLARS.sub(r"`\g<0>`", _SPECIAL.sub(r"\\\1", cleaned(text)))
+
+
 class _MarkdownPrinter(NotePrinter):
+    width = _WIDTH
+    words = staticmethod(_inside)
+
     def __init__(self, document: Document, *, has_pictures: bool) -> None:
         super().__init__(document, MarkdownPen(document.letters.notation))
         self.has_pictures = has_pictures
@@ -96,7 +108,7 @@ class _MarkdownPrinter(NotePrinter):
         return _LINE_START.sub(_unlisted, self.text(block.text).lstrip())
 
     def equation(self, equation: Equation) -> str:
-        shown = display(equation, self.document.letters, _WIDTH, self.pen)
+        shown = self.shown[equation]
         announced = self.announced(equation, shown.done)
         tag = f"\n\\tag{{{equation.number}}}" if equation.number else ""
         function = [_code(equation.function)] if equation.function else []
@@ -121,9 +133,6 @@ class _MarkdownPrinter(NotePrinter):
     def _row(self, cells: Sequence[Text]) -> str:
         return f"| {' | '.join(map(self.text, cells))} |"
 
-    def words(self, words: str) -> str:
-        return _inside(words)
-
     def formula_of(self, inline: Inline) -> str:
         return f"${inline.parts[0]}$"
 
@@ -138,15 +147,6 @@ class _MarkdownPrinter(NotePrinter):
 
     def citation(self, number: int, place: str) -> str:
         return f"[{number}{f', {_inside(place)}' if place else ''}]"
-
-
-def _inside(text: str) -> str:
-    """Text within a line: blanks at its ends part it from what is beside it.
-
-    Escaped dollar signs are mathematics to Jupyter after Markdown has taken the escapes away;
-    inside code they never are.
-    """
-    return _DOLLARS.sub(r"`\g<0>`", _SPECIAL.sub(r"\\\1", cleaned(text)))
 
 
 def _display(latex: str) -> str:

@@ -6,9 +6,9 @@ A subclass has a method for each kind of block and of span, named after it, and 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from rigidsym.formula.display import Done
+from rigidsym.formula.display import Done, display
 from rigidsym.formula.sheet_pen import Inline, SheetPen
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import (
@@ -32,18 +32,42 @@ class NotePrinter:
     """Blocks and spans of one document in one format."""
 
     separator: ClassVar[str] = "\n"  # between two blocks
+    width: ClassVar[float]  # ems of a display
+    beside_number: ClassVar[float | None] = None  # the same beside a number, if that takes room
     words: Callable[[str], str]
     formula_of: Callable[[Inline], str]  # among words
     code: Callable[[str], str]
     strong: Callable[[str], str]
     reference: Callable[[str], str]  # to an equation, by its label
     citation: Callable[[int, str], str]  # of a source, by its number, and a place in it
+    key: Callable[[int], str]  # of a source, by its number
 
     def __init__(self, document: Document, pen: SheetPen) -> None:
         self.document = document
         self.language = document.language
         self.pen = pen
         self._inlines = pen.inline(document.formulas)
+        beside = self.beside_number or self.width
+        self.shown = {
+            equation: display(
+                equation, document.letters, beside if equation.number else self.width, pen
+            )
+            for equation in document.displays
+        }
+
+    def placed(self) -> dict[str, Any]:
+        """What every template places beside the sections."""
+        document = self.document
+        return {
+            "words": lambda english: self.words(self.said(english)),
+            "title": self.words(document.title),
+            "subtitle": self.words(document.subtitle),
+            "byline": self.words(" · ".join(document.byline)),
+            "sources": [
+                {"key": self.key(place), "text": self.words(self.said(source))}
+                for place, source in enumerate(document.sources, start=1)
+            ],
+        }
 
     def body(self, section: Section) -> str:
         return self.separator.join(map(self.block, section.blocks))

@@ -11,7 +11,7 @@ import sympy as sp
 from rigidsym.formula.letters import Letters, VectorLength
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula, indexed
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Argument, Step
 from rigidsym.mechanics.kinematics.vector_forms import LENGTH
 from rigidsym.models.rotation import RotationModel
@@ -76,15 +76,9 @@ def length_of(model: RotationModel) -> VectorLength | None:
     return None
 
 
-def entry_names(step: Step, arguments: Iterable[Argument]) -> tuple[Formula, ...]:
-    """A name for each entry, row by row.
-
-    Vectors that are arguments of other quantities, such as the rates, have the names of those.
-    """
-    quantity = step.quantity
-    if quantity.shape == "scalar":
-        return (quantity.symbol,)
-    is_rates = quantity.name.startswith("rates_from_")
-    used_as = "q_dot" if is_rates else quantity.name.replace("angular_velocity_", "omega_")
-    known = {argument.name: argument.notation for argument in arguments}
-    return known.get(used_as) or indexed(quantity.symbol, step.shape)
+def entries_of(step: Step, arguments: Iterable[Argument]) -> tuple[Formula, ...]:
+    """The names of a vector's components that are arguments of other quantities, as the rates."""
+    name = step.quantity.name
+    is_rates = name.startswith("rates_from_")
+    used_as = "q_dot" if is_rates else name.replace("angular_velocity_", "omega_")
+    return next((a.notation for a in arguments if a.name == used_as), ())

@@ -16,7 +16,6 @@ from rigidsym.formula.tree import (
     Symbol,
     bracketed,
     equal,
-    indexed,
     joined,
     row,
 )
@@ -152,4 +151,4 @@ def _written(
     axes: Sequence[Formula], directions: Iterator[sp.ImmutableMatrix]
 ) -> Iterator[Equation]:
     for axis, direction in zip(axes, directions, strict=True):
-        yield Equation(sides=(axis,), matrix=direction, entries=indexed(axis, (3,)))
+        yield Equation(sides=(axis,), matrix=direction)

@@ -12,7 +12,7 @@ from rigidsym.data.mass.properties import MassProperties
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import NOTHING, Big, Differential, Formula, bracketed, indexed, row
+from rigidsym.formula.tree import NOTHING, Big, Differential, Formula, bracketed, row
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.mass.moments import moments_of
 from rigidsym.mechanics.mass.numbers import in_numbers
@@ -99,7 +99,7 @@ def _called(told: Sequence[Parameter], letters: Letters) -> Iterator[Text]:
 def _solid(solid: Solid, letters: Letters, label: str = "") -> Iterator[NoteBlock]:
     """The map, its bounds, the element and the integrals of a solid."""
     yield said(f"The points of the {label or solid.title.lower()} are")
-    yield Equation(sides=(PLACE,), matrix=solid.place, entries=indexed(PLACE, (3,)))
+    yield Equation(sides=(PLACE,), matrix=solid.place)
     bounds = [
         _between(u, pair, letters) for u, pair in zip(solid.coordinates, solid.bounds, strict=True)
     ]

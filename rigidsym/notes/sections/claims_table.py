@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from rigidsym.formula.tree import indexed
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.notes.document.document import (
     Equation,
@@ -45,8 +44,4 @@ def _left_over(proof: Proof) -> Iterator[NoteBlock]:
     """What remains of a claim that could not be decided."""
     yield Paragraph((Strong("Unproved:"), " ", proof.claim, ". The difference of its two sides is"))
     if proof.residual is not None:
-        yield Equation(
-            sides=(RESIDUAL,),
-            matrix=proof.residual,
-            entries=indexed(RESIDUAL, proof.residual.shape),
-        )
+        yield Equation(sides=(RESIDUAL,), matrix=proof.residual)

@@ -5,17 +5,19 @@ Equations carry the numbers of the steps; what is only recalled has none.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from itertools import chain
 from typing import TYPE_CHECKING
 
 import sympy as sp
 
+from rigidsym.formula.display import PAGE, Display, display
 from rigidsym.formula.notation import DEFAULT, Notation
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import NOTHING, equal, indexed, row
-from rigidsym.mechanics.derivation import Argument, Derivation, Step, claims_of
+from rigidsym.formula.tree import NOTHING, Formula, equal, row
+from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, EULER_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE
@@ -35,7 +37,7 @@ from rigidsym.notes.document.document import (
     Text,
     said,
 )
-from rigidsym.notes.formula.derivation_letters import entry_names, letters_of
+from rigidsym.notes.formula.derivation_letters import entries_of, letters_of
 from rigidsym.notes.prose.algebra_words import is_told, rates_in_words, rotation_in_words
 from rigidsym.notes.prose.figure_words import figure_of
 from rigidsym.notes.prose.prose import motion, turn
@@ -50,7 +52,7 @@ from rigidsym.notes.prose.turn_words import angles_in_words, sum_in_words
 from rigidsym.notes.prose.words import convention, symbols_of, with_source, with_symbols
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
-from rigidsym.notes.sections.fitting import Fitter
+from rigidsym.notes.sections.fitting import Fitter, as_vectors
 from rigidsym.notes.sections.motion_section import what_follows, what_is_constant, what_moves
 from rigidsym.notes.sections.summary import summary
 from rigidsym.notes.sections.symbol_tables import functions, program, symbols
@@ -238,9 +240,7 @@ class Composer:
 
     def _elementary(self, any_turn: Turn) -> Equation:
         side = turn(any_turn, self.letters)
-        return Equation(
-            sides=(side,), matrix=any_turn.matrix, entries=indexed(side, any_turn.matrix.shape)
-        )
+        return Equation(sides=(side,), matrix=any_turn.matrix)
 
     def _angular_velocity(self) -> Iterator[NoteBlock]:
         yield from sum_in_words(self.model, self.letters)
@@ -276,10 +276,19 @@ class Composer:
         zeros, *points = failures(self.derivation, found)
         yield from map(Paragraph, (zeros, *geometry(self.derivation), *points))
 
+    @cached_property
+    def _displayed(self) -> Mapping[str, tuple[Equation, Display]]:
+        """The equations of all steps, with vectors if they have such a form, as they fit."""
+        found = {
+            s.quantity.name: as_vectors(self._equation(s), s, self.letters)
+            for s in self.derivation.steps
+        }
+        return {name: (e, display(e, self.letters, PAGE)) for name, e in found.items()}
+
     def _steps(self, names: Sequence[str]) -> Iterator[NoteBlock]:
         for step in self.derivation.steps:
             if step.quantity.name in names:
-                first, *others = self.fitter.fitted(self._equation(step), step)
+                first, *others = self.fitter.fitted(*self._displayed[step.quantity.name], step)
                 lead = self._lead(step)
                 if isinstance(first, Paragraph):  # on abbreviations
                     *said, end = lead
@@ -323,6 +332,15 @@ class Composer:
             yield from functions(self.derivation, self.module, self.functions)
 
 
+def claims_of(proofs: Iterable[Proof]) -> tuple[tuple[Formula, ...], tuple[Formula, ...]]:
+    """The claims that are proved, and those that are not."""
+    proofs = list(proofs)
+    return (
+        tuple([proof.claim for proof in proofs if proof.status == "exact"]),
+        tuple([proof.claim for proof in proofs if proof.status != "exact"]),
+    )
+
+
 def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
     """The numbered equation of a step."""
     quantity = step.quantity
@@ -336,7 +354,7 @@ def equation_of(step: Step, arguments: Iterable[Argument]) -> Equation:
         else (quantity.symbol, *definition),
         matrix=step.expression if is_matrix else None,
         scalar=step.expression[0] if is_scalar else None,
-        entries=entry_names(step, arguments),
+        entries=entries_of(step, arguments) if is_matrix else (),
         number=step.number,
         label=quantity.name,
         proved=proved,

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import sympy as sp
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import indexed
 from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.mechanics.conversions.unit_quaternions import SHEPPERD, outer_product
 from rigidsym.notes.document.document import (
@@ -60,8 +59,5 @@ def _matrix(found: Conversions) -> Iterator[NoteBlock]:
     yield said(text, found.from_matrix.claim, Cited(SHEPPERD))
     matrix = columns_of_matrix()
     sides = (formula(rf"4\,p_{name}\,\mathbf{{p}}") for name in "0123")
-    columns = (
-        Equation(sides=(side,), matrix=matrix[:, k], entries=indexed(side, (4,)))
-        for k, side in enumerate(sides)
-    )
+    columns = (Equation(sides=(side,), matrix=matrix[:, k]) for k, side in enumerate(sides))
     yield EquationRow(tuple(columns))

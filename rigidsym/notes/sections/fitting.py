@@ -19,7 +19,7 @@ from typing import NamedTuple
 import sympy as sp
 
 from rigidsym.formula.abbreviations import Namer, Part
-from rigidsym.formula.display import PAGE, display
+from rigidsym.formula.display import PAGE, Display, display
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula
@@ -69,18 +69,15 @@ class Fitter:
         self._namer = Namer(letters)
         self._explained_at: dict[sp.Symbol, str] = {}  # name of a part: label of its equation
 
-    def fitted(self, equation: Equation, step: Step) -> Iterator[NoteBlock]:
+    def fitted(self, equation: Equation, shown: Display, step: Step) -> Iterator[NoteBlock]:
         """An equation; where it would be long, in short, or its parts with their names first."""
-        equation = as_vectors(equation, step, self.letters)
-        shown = display(equation, self.letters, PAGE)
-        breaks = shown.breaks(equation, PAGE)
         is_vector = bool(self.derivation.model.vector) and _is_of_motion(step)
-        is_long = breaks or (is_vector and bool(shown.done))
+        is_long = shown.is_broken or (is_vector and bool(shown.done))
         short = in_short(step, self.derivation, self.letters) if is_long else None
         if short is not None and is_vector:
             yield _without_entries(equation, short)
             return
-        form = self._shortest(equation)
+        form = self._shortest(equation, shown)
         if form.parts and step.quantity.name in _RATHER_SHORT:
             self._namer.forget()
             yield _without_entries(equation, in_short(step, self.derivation, self.letters) or ())
@@ -101,7 +98,8 @@ class Fitter:
 
     def whole(self, equation: Equation) -> Iterator[NoteBlock]:
         """An equation that belongs to no quantity, with the names of its parts."""
-        yield from self._blocks(self._shortest(equation))
+        shown = display(equation, self.letters, PAGE)
+        yield from self._blocks(self._shortest(equation, shown))
 
     def _give(self, step: Step) -> None:
         """Use Ω′₁, Ω′₂, Ω′₃ from here on for the components of the angular velocity."""
@@ -110,15 +108,13 @@ class Fitter:
             self._namer.give(zip(names, step.expression, strict=True))
             self._explained_at |= dict.fromkeys(names, step.quantity.name)
 
-    def _shortest(self, equation: Equation) -> _Form:
+    def _shortest(self, equation: Equation, shown: Display) -> _Form:
         """With names for its parts, where that is better than without."""
         plain = _Form(equation)
-        shown = display(equation, self.letters, PAGE)
-        breaks = shown.breaks(equation, PAGE)
-        if not breaks and not shown.done:
+        if not shown.is_broken and not shown.done:
             return plain
         named = self._named(equation)
-        is_better = self._is_shorter if breaks else self._is_more_of_a_matrix
+        is_better = self._is_shorter if shown.is_broken else self._is_more_of_a_matrix
         if named.parts and is_better(named, plain):
             return named
         self._namer.forget()
@@ -141,7 +137,7 @@ class Fitter:
         before = self._lines(plain.equation)
         if shown.done == "abbreviated":  # names and shorthand are much to ask of a reader
             return 2 * lines < before
-        return lines < before + (0 if shown.breaks(named.equation, PAGE) else 2)
+        return lines < before + (0 if shown.is_broken else 2)
 
     def _is_more_of_a_matrix(self, named: _Form, plain: _Form) -> bool:
         """Whether a matrix that is too wide for one fits with names for its parts."""

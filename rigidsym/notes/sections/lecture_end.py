@@ -63,10 +63,10 @@ def symbols_of_the_lecture(
 
     table = symbols(derivation, letters)
     theory = list(_rows(_OF_THE_THEORY))
-    known = {str(row[0]) for row in theory}
-    others = [row for row in table.rows if str(row[0]) not in known]
-    held = {str(span) for row in others for span in row[0]}
-    theory += [row for row in _rows(_OF_A_BODY) if str(row[0][0]) not in held]
+    known = {row[0] for row in theory}
+    others = [row for row in table.rows if row[0] not in known]
+    held = {span for row in others for span in row[0]}
+    theory += [row for row in _rows(_OF_A_BODY) if row[0][0] not in held]
     rows = (tuple(tuple(map(placed, cell)) for cell in row) for row in others)
     return table._replace(rows=(*theory, *rows))
 

@@ -9,7 +9,7 @@ from itertools import chain, groupby
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import equal
-from rigidsym.mechanics.derivation import Statement, Step, claims_of
+from rigidsym.mechanics.derivation import Statement, Step
 from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.models.rotation import lecture
 from rigidsym.notes.document.document import (
@@ -28,6 +28,7 @@ from rigidsym.notes.prose.words import with_symbols
 from rigidsym.notes.sections.body_note import BodyComposer
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import Claim, claims_in_a_table
+from rigidsym.notes.sections.compose import claims_of
 from rigidsym.notes.sections.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to

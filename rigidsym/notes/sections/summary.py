@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from rigidsym.formula.display import PAGE, display, height
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
-from rigidsym.mechanics.derivation import Derivation
+from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.notes.document.document import (
     Equation,
@@ -62,12 +62,13 @@ def _blocks(
     on_vectors = tuple(vector_in_words(derivation, letters.notation))
     yield from map(Paragraph, (*said, *on_vectors))
     room -= _SENTENCE * len(on_vectors)
+    steps = {step.quantity.name: step for step in derivation.steps}
     for title, labels in _GROUPS:
         there = [equations[label] for label in labels if label in equations]
         if not there:
             continue
-        results = {e: _result(e, derivation) for e in there if _is_whole(e, derivation)}
-        short = {e: result for e, result in results.items() if _fits(result, letters)}
+        whole = [e for e in there if _is_whole(e, steps[e.label])]
+        short = _fitting({e: _result(e, steps[e.label]) for e in whole}, letters)
         needed = row_height(list(short.values()), letters)
         if short and needed <= room:
             room -= needed
@@ -89,14 +90,14 @@ def _numbers(equations: Sequence[Equation]) -> Text:
     return listed([(EquationReference(equation.label),) for equation in equations])
 
 
-def _result(equation: Equation, derivation: Derivation) -> Equation:
+def _result(equation: Equation, step: Step) -> Equation:
     """The symbol and what it comes to, without the steps between and what was proved of it.
 
     Vectors say it without components.
     """
     has_value = equation.matrix is not None or equation.scalar is not None
     ends = (equation.sides[0], equation.sides[-1])
-    if derivation.step(equation.label).vector_form is not None:
+    if step.vector_form is not None:
         return Equation(sides=ends)
     sides = equation.sides[:1] if has_value else ends
     return Equation(
@@ -104,17 +105,18 @@ def _result(equation: Equation, derivation: Derivation) -> Equation:
     )
 
 
-def _is_whole(equation: Equation, derivation: Derivation) -> bool:
+def _is_whole(equation: Equation, step: Step) -> bool:
     """Whether it needs no abbreviations that were explained beside it."""
-    value = derivation.step(equation.label).expression
+    value = step.expression
     if equation.scalar is not None:
         return bool(equation.scalar == value[0])
     return equation.matrix is None or equation.matrix == value
 
 
-def _fits(equation: Equation, letters: Letters) -> bool:
-    shown = display(equation, letters, PAGE)
-    return not shown.done and shown.width <= PAGE
+def _fitting(results: Mapping[Equation, Equation], letters: Letters) -> Mapping[Equation, Equation]:
+    """The results, by their equations, that fit on a page as they are."""
+    shown = {e: display(result, letters, PAGE) for e, result in results.items()}
+    return {e: results[e] for e, d in shown.items() if not d.done and d.width <= PAGE}
 
 
 def _where_it_fails(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:

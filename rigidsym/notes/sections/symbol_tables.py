@@ -44,23 +44,23 @@ _CODE_WIDTH = 76  # columns of typewriter type on a page
 
 def symbols(derivation: Derivation, letters: Letters) -> NoteTable:
     """Every symbol with what it means and its unit."""
-    known: dict[str, Row] = {}
+    known: dict[Text, Row] = {}
     of_motion = (_arguments, partial(_length, letters), _points)
     of_body = (_constants, _of_the_body)
     named = of_body if is_body_alone(derivation) else (*of_motion[:1], *of_body, *of_motion[1:])
     for row in chain.from_iterable(rows(derivation) for rows in named):
-        known.setdefault(str(row[0]), row)
+        known.setdefault(row[0], row)
     found = derivation.singularities
     if found is not None and found.measure == "det [W, J]":
         bound = "rows by which the conditions bind the rates"
-        known["J"] = (WITH_CONDITIONS,), (bound,), ("1",), ()
+        known[(WITH_CONDITIONS,)] = (WITH_CONDITIONS,), (bound,), ("1",), ()
     found_symbols = symbols_of(derivation)
     for step in derivation.steps:
         quantity = step.quantity
         about = "rates of the coordinates" if quantity.symbol == RATES else quantity.about
         meaning = with_symbols(about, found_symbols)
         row = ((quantity.symbol,), meaning, (unit_in_words(quantity.unit),))
-        known.setdefault(str(row[0]), (*row, _reference(step)))
+        known.setdefault(row[0], (*row, _reference(step)))
     return NoteTable(
         caption="The symbols and their SI units",
         head=(("Symbol",), ("Meaning",), ("Unit",), ("Equation",)),
