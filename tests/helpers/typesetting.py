@@ -49,5 +49,6 @@ def sheet_of(document: Document) -> str:
     whole = print_latex(document)
     before, rest = whole.split(r"\begin{document}")
     start, end = rest.index(r"\ifcsname"), rest.index("\n\\fi\n") + len("\n\\fi\n")
-    body = rest[start:end] + rest.split(r"\end{thebibliography}")[1]
-    return f"{before}\\begin{{document}}{re.sub(r'.eqref{[^}]*}', '(99)', body)}"
+    sheet, _ = rest[rest.rindex("\\newpage\n\\section") :].split(r"{\def\refname")
+    body = re.sub(r".eqref{[^}]*}", "(99)", rest[start:end] + sheet)
+    return f"{before}\\begin{{document}}{body}\\end{{document}}"

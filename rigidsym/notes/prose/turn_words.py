@@ -127,7 +127,8 @@ def sum_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
     yield said(
         "Angular velocities about different axes add\u00a0{}. Each turn contributes its rate about "
         f"its own axis{see}:",
-        *(Cited(GOLDSTEIN), *figure),
+        Cited(GOLDSTEIN),
+        *figure,
     )
     yield Equation(sides=(sum_of_turns(model, letters),))
     if len(model.turns) > _MOST_WRITTEN or any(turn.components for turn in model.turns):

@@ -203,8 +203,8 @@ class Composer:
         kind = "a product of turns" if len(turns) > 1 else "a single turn"
         figure = list(self._figure())
         see = ", shown in Figure\u00a0{}" if figure else ""
-        spans = (Cited(self.model.source), *([FigureReference(1)] if figure else []))
-        yield said(f"The rotation is {kind}\u00a0{{}}{see}:", *spans)
+        see_it = [FigureReference(1)] if figure else []
+        yield said(f"The rotation is {kind}\u00a0{{}}{see}:", Cited(self.model.source), *see_it)
         yield Equation(sides=(ROTATION, row(*turns)))
         yield from figure
         by_axis = list(self._turns_by_axis())
