@@ -8,7 +8,7 @@ from math import prod, radians, sin
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.formula.letters import Letters
+from rigidsym.formula.letters import TIME, Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, Numeral, Symbol, equal, transpose_of
@@ -87,7 +87,7 @@ def failures(derivation: Derivation, found: Singularities) -> Iterator[Text]:
     letters = letters_of(derivation.arguments, model=derivation.model)
     yield _zeros(found, derivation, letters)
     if len(found.points) == 1 and len(found.points[0].places) > _MOST_PLACES:
-        yield ("There ", *_loss(found.points[0], derivation))
+        yield ("There ", *_loss(found.points[0], derivation, letters))
         return
     yield from (singular(point, derivation) for point in found.points[:_MOST_POINTS])
     more = len(found.points) - _MOST_POINTS
@@ -224,28 +224,27 @@ def singular(point: Singularity, derivation: Derivation) -> Text:
     """What is lost at a singular point, and what remains determined."""
     letters = letters_of(derivation.arguments, model=derivation.model)
     head = ("At ", *_at(point, letters), " ") if point.places else ("Everywhere ",)
-    return (*head, *_loss(point, derivation))
+    return (*head, *_loss(point, derivation, letters))
 
 
-def _loss(point: Singularity, derivation: Derivation) -> Text:
+def _loss(point: Singularity, derivation: Derivation, letters: Letters) -> Text:
     if not point.rank:
         return ("the body does not turn, whatever the rates are.",)
-    letters = letters_of(derivation.arguments, model=derivation.model)
     return (*_determined(point, derivation, letters), *_lost(point, letters), ".")
 
 
 def _determined(point: Singularity, derivation: Derivation, letters: Letters) -> Text:
     idle = point.null_rates
-    coordinates = derivation.argument("q").symbols
+    coordinates = derivation.model.coordinates
     if not all(entry.is_number for entry in idle):
         moved = [q for q, row in zip(coordinates, idle.tolist(), strict=True) if any(row)]
-        names = listed([(formula_of(q, letters),) for q in moved])
+        names = listed(_markups(moved, letters))
         if len(moved) < len(coordinates):
             return ("the rates of ", *names, f" are not determined: the rank is {point.rank}")
         return (f"the rate matrix has rank {point.rank}",)
-    kept = determined(point, coordinates, derivation.argument("q_dot").symbols)
+    kept = determined(point, coordinates, [q.diff(TIME) for q in coordinates])
     verb = "is" if len(kept) == 1 else "are"
-    names = listed([(formula_of(combination, letters),) for combination in kept])
+    names = listed(_markups(kept, letters))
     only: Text = ("only ", *names, f" {verb} determined: ") if kept else ()
     return (*only, *_idle(idle, coordinates, letters), " the body at rest")
 

@@ -37,7 +37,7 @@ from rigidsym.notes.document.document import (
     said,
     words,
 )
-from rigidsym.notes.prose.words import unit_in_words
+from rigidsym.notes.prose.words import unit_in_words, vector
 
 _KINDS = ("length", "area", "volume")
 _DIGITS = 6
@@ -167,7 +167,7 @@ def _parts(parts: Sequence[Part], letters: Letters) -> NoteTable:
             (
                 (_named(part),),
                 (*(("−",) if part.hole else ()), formula_of(moments_of(part.what).mass, letters)),
-                _triple(part.at, letters),
+                vector(part.at, letters),
                 ("no",) if part.turned == UPRIGHT else ("yes",),
             )
             for part in parts
@@ -191,14 +191,10 @@ def _particles(given: Particles, letters: Letters) -> NoteTable:
         caption="The particles",
         head=(("Mass",), ("Position",)),
         rows=tuple(
-            ((formula_of(particle.mass, letters),), _triple(particle.position, letters))
+            ((formula_of(particle.mass, letters),), vector(particle.position, letters))
             for particle in given.particles
         ),
     )
-
-
-def _triple(column: sp.MatrixBase, letters: Letters) -> Text:
-    return ("(", *listed([(formula_of(entry, letters),) for entry in column], ", "), ")")
 
 
 def _numbers(body: RigidBody, letters: Letters) -> Iterator[NoteBlock]:
