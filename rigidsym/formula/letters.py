@@ -20,7 +20,7 @@ from rigidsym.formula.tree import Formula, Symbol
 Place = tuple[int, int]  # order of the time derivative, index of the component
 
 TIME = sp.Symbol("t")
-_NO_RATE: Place = (0, 0)
+NO_RATE: Place = (0, 0)  # of what is neither coordinate nor rate
 _MASS = re.compile(r"[mM](_?\d+)?")  # written before other constants: m g l, m R²
 _CONSTANTS: Mapping[sp.Expr, Formula] = {sp.pi: Symbol("π")}
 
@@ -198,7 +198,7 @@ def _rates(term: sp.Expr, letters: Letters) -> list[Place]:
     found: list[Place] = []
     for factor in sp.Mul.make_args(term):
         base, exponent = power_of(factor)
-        order, index = letters.places.get(base, _NO_RATE)
+        order, index = letters.places.get(base, NO_RATE)
         if order:
             found += [(-order, index)] * int(abs(exponent))
         elif base.is_Add:

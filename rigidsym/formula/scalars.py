@@ -15,6 +15,7 @@ import sympy as sp
 from rigidsym.formula import tree
 from rigidsym.formula.letters import (
     FUNCTIONS,
+    NO_RATE,
     Letters,
     is_application,
     is_negative,
@@ -189,7 +190,7 @@ class _ScalarWalk:
         """Whether θ/2 and √2/2 are written so; ½ dθ/dt and ½ sin θ are not."""
         is_name = _is_name(factor) and isinstance(self.expression(factor), tree.Symbol)
         is_dotted = self.letters.notation.rates == "fraction" and bool(
-            self.letters.places.get(factor, (0, 0))[0]
+            self.letters.places.get(factor, NO_RATE)[0]
         )
         return (is_name and not is_dotted) or _is_root(factor)
 

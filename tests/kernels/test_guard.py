@@ -102,6 +102,13 @@ def test_a_sum_of_squares_of_sines_is_told_from_zero_by_the_squares_of_its_angle
     ]
 
 
+def test_a_square_of_an_input_times_a_sine_is_a_rounded_one():
+    below = B**2 * sp.sin(A) ** 2 + C**2
+    *_, size, bound, reach, last = guards(1 / below)[0]
+    assert (size, bound) == ("x2 = abs(a)", "x3 = 4.0 * (1.0 + x2)")
+    assert (reach, last) == ("x4 = x3 * x3", "x1_or_nan = or_nan(x1, x4, 2)")
+
+
 def test_stumpff_functions_are_zero_up_to_the_rounding_of_their_argument():
     assert guards(*(C / Stumpff(k, A) for k in range(3)))[0] == [
         "c0_a = c0(a)",

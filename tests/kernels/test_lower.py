@@ -7,6 +7,7 @@ import pytest
 import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.kernels import ir
+from rigidsym.kernels.lowering.derivatives import derivatives_of, read_requests
 from rigidsym.kernels.lowering.lower import MARGIN, lower
 from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.models.rotation_text import rotation_from
@@ -107,3 +108,23 @@ def test_the_words_of_a_target_are_no_names():
     motion = derive(rs.EulerAngles("ZXZ", ("a", "b", "c")), only=["rotation_matrix"])
     (names,) = lower(motion, reserved=["b"]).arguments
     assert names.components == ("a", "b_", "c")
+
+
+@pytest.mark.parametrize("degrees", [False, True])
+def test_weights_of_a_matrix_are_a_matrix_and_what_multiplies_is_not_scaled(degrees):
+    motion = derive("ZXZ", only=["rotation_matrix", "angular_velocity_body"])
+    asked = [
+        "rotation_matrix by q vjp",
+        "rotation_matrix by q jvp",
+        "angular_velocity_body by q_dot vjp",
+    ]
+    derivatives = derivatives_of(motion, read_requests(asked))
+    arguments = lower(motion, derivatives=derivatives, degrees=degrees).arguments
+    assert {a.name: a.matrix for a in arguments if a.may_be_flat} == {
+        "rotation_matrix_weights": (3, 3)
+    }
+    assert {a.name for a in arguments if not a.matrix} == {
+        *("q", "q_dot", "q_tangent", "angular_velocity_body_weights")
+    }
+    (tangent,) = (a for a in arguments if a.name == "q_tangent")
+    assert tangent.components == ("phi_tangent", "theta_tangent", "psi_tangent")
