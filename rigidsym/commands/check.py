@@ -15,6 +15,7 @@ from rigidsym.commands.output_folder import content_of
 from rigidsym.errors import CheckError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
 from rigidsym.pipeline import output_of, read_record
+from rigidsym.tools.certificate.certificate import printed_names
 from rigidsym.tools.certificate.checker import BROKEN, verify
 
 
@@ -89,9 +90,7 @@ def _certified(path: Path, record: Path) -> Finding:
         proved = verify(content, content_of(path))
     except BROKEN as error:
         return Finding(path=path, problem=f"refused: {error}")
-    names = [quantity["name"] for quantity in content["quantities"]]
-    names += [f"constant {integral['name']}" for integral in content["first_integrals"]]
-    rest = [name for name in names if name not in proved]
+    rest = [name for name in printed_names(content) if name not in proved]
     note = f"\n  proved: {', '.join(proved)}\n  not covered: {', '.join(rest) or 'nothing'}"
     return Finding(path=path, note=note)
 

@@ -23,6 +23,7 @@ from rigidsym.mechanics.derivation import (
     Step,
     VectorForm,
 )
+from rigidsym.mechanics.dynamics.lagrange import is_bound
 from rigidsym.version import OWNERSHIP, __version__
 
 if TYPE_CHECKING:
@@ -133,6 +134,8 @@ def _motion(derivation: Derivation) -> dict[str, Any]:
         return {}
     if acting.depend_on_time or any(acting.torque) or acting.parts or acting.frame_rate:
         return {}
+    if is_bound(derivation.model) or "torque_body" in (s.quantity.name for s in derivation.steps):
+        return {}  # Euler's equations, or those of coordinates that depend on one another
     coordinates = derivation.model.coordinates
     forces = [sp.sympify(acting.generalised.get(q, 0)) for q in coordinates]
     return {"motion": {"potential": acting.potential, "forces": forces}}

@@ -104,18 +104,26 @@ def _claims(record: Mapping[str, Any]) -> tuple[Language, dict[str, list[Equatio
     parts: dict[str, int] = {}
     for name, denominator in re.findall(r"(\w+)/(\d+)", json.dumps(record["rotation"])):
         parts[name] = math.lcm(parts.get(name, 1), int(denominator))
-    names = [quantity["name"] for quantity in record["quantities"]]
-    if not _are_stated(record, parts, names):
-        names = [name for name in names if _are_stated(record, parts, [name])]
+    asked = printed_names(record)
+    names = [*asked]
+    while (missing := _missing(record, parts, names)) in names:
+        names.remove(missing)
+    if missing:
+        names = [name for name in names if not _missing(record, parts, [name])]
     known = Language(record, parts)
-    found = stated(record, known, names)
-    rest = [q["name"] for q in record["quantities"] if q["name"] not in names]
-    return known, found, rest + [f"constant {each['name']}" for each in record["first_integrals"]]
+    return known, stated(record, known, names), [name for name in asked if name not in names]
 
 
-def _are_stated(record: Mapping[str, Any], parts: Mapping[str, int], names: Sequence[str]) -> bool:
+def printed_names(record: Mapping[str, Any]) -> list[str]:
+    """The quantities of a record, and its first integrals as the checker names them."""
+    constants = [f"constant {integral['name']}" for integral in record["first_integrals"]]
+    return [quantity["name"] for quantity in record["quantities"]] + constants
+
+
+def _missing(record: Mapping[str, Any], parts: Mapping[str, int], names: Sequence[str]) -> str:
+    """What keeps the checker from stating all claims: one of the names, if it does not know it."""
     try:
         stated(record, Language(record, parts), names)
-    except BROKEN:
-        return False
-    return True
+    except BROKEN as error:
+        return str(error.args[0] if error.args else error) or "unreadable"
+    return ""

@@ -1,9 +1,8 @@
 """Checks certificates without the program that wrote them: `python checker.py FOLDER...`
 
-A record NAME.json holds printed expressions, NAME.cert.json cofactors. Claims are built here from
-definitions: R from its turns, d/dt by the chain rule, Ω from C(Ω) = dR/dt Rᵀ, and so on. Each must
-be a sum of cofactors times relations: cos² + sin² = 1, the square of a root, a divisor times its
-inverse, conditions. At a point modulo PRIME all hold: none contradict, and no divisor is zero.
+A claim about what NAME.json prints is built from definitions. NAME.cert.json makes it a sum of
+cofactors times relations: cos² + sin² = 1, squares of roots, divisors times inverses, conditions.
+At a point modulo PRIME all of them hold: none contradict, and no divisor is zero.
 """
 
 from __future__ import annotations
@@ -208,22 +207,20 @@ class Language:
 
 def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> dict[str, Any]:
     """What each of the printed quantities x must satisfy: x = B, A x = B or x q̇ = B, by entries."""
-    R, d, slope = known.rotation(record["rotation"]), known.d, known.slope
+    R, d, slope, read = known.rotation(record["rotation"]), known.d, known.slope, known.matrix
     shown = R.T if record["presentation"] == "passive" else R
     B = {"rotation_matrix": shown, "rotation_rate": d(shown), "spin_matrix": d(shown) * shown.T}
-    A: dict[str, Array] = {}
-    for frame, spin in ("space", d(R) * R.T), ("body", R.T * d(R)):  # C(Ω), C(Ω′)
+    for f, spin in ("space", d(R) * R.T), ("body", R.T * d(R)):  # C(Ω), C(Ω′)
         w = Array([[spin.rows[2][1]], [spin.rows[0][2]], [spin.rows[1][0]]])
-        B[f"angular_velocity_{frame}"], B[f"angular_acceleration_{frame}"] = w, d(w)
-        B[f"rate_matrix_{frame}"], B[f"inverse_rate_matrix_{frame}"] = w, UNITS
-        given = known.matrix([f"omega_{frame}_{k}" for k in (1, 2, 3)])
-        B[f"rates_from_angular_velocity_{frame}"] = given
-        A |= {f"{kind}_{frame}": slope(w) for kind in RATES[1:]}
+        B[f"angular_velocity_{f}"], B[f"angular_acceleration_{f}"] = w, d(w)
+        B[f"rate_matrix_{f}"], B[f"inverse_rate_matrix_{f}"] = w, UNITS
+        B[f"rates_from_angular_velocity_{f}"] = given = read([f"omega_{f}_{k}" for k in "123"])
+    A = {f"{k}_{f}": slope(B[f"rate_matrix_{f}"]) for k in RATES[1:] for f in ("space", "body")}
     if "body" in record:  # w and given are those of the body
-        m, at, tensor = (known.matrix(record["body"][g]) for g in ("mass", "centre", "inertia"))
-        texts = "X Y Z", "X_dot Y_dot Z_dot", "n_x n_y n_z", "p_x p_y p_z"
-        r, v, n, p = (known.matrix(text.split()) for text in texts)
-        arm, torque = hat(p + at * -1), known.matrix([f"torque_{k}" for k in (1, 2, 3)])
+        m, at, tensor = (read(record["body"][g]) for g in ("mass", "centre", "inertia"))
+        letters = "X Y Z", "X_dot Y_dot Z_dot", "n_x n_y n_z", "p_x p_y p_z"
+        r, v, n, p = (read(each.split()) for each in letters)
+        arm, torque = hat(p + at * -1), read([f"torque_{k}" for k in (1, 2, 3)])
         B["mass"], B["centre_of_mass"], B["inertia_tensor"] = m, at, tensor
         B["inertia_tensor_point"] = about = tensor + arm.T * arm * m.entries[0]
         B["inertia_tensor_space"], B["moment_of_inertia"] = R * tensor * R.T, n.T * about * n
@@ -236,24 +233,32 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
         A["angular_acceleration_from_torque"] = tensor
         B["angular_acceleration_from_torque"] = torque + hat(given) * tensor * given * -1
     if "motion" in record:  # Lagrange's equations are 2 dp/dt − ∂(dL/dt)/∂q̇ = M q̈ + h = Q
-        potential, forces = (known.matrix(record["motion"][g]) for g in ("potential", "forces"))
+        potential, forces = (read(record["motion"][g]) for g in ("potential", "forces"))
         B["potential_energy"], B["energy"] = potential, turning + potential
         B["lagrangian"] = free = turning + potential * -1
         B["generalised_momenta"] = p = slope(turning).T
         B["mass_matrix"] = A["accelerations"] = mass = slope(p)
-        B["bias_vector"] = d(p) * 2 + (slope(d(free)).T + mass * known.matrix(known.second)) * -1
-        B["accelerations"] = forces + B["bias_vector"] * -1
+        lacking = d(p) * 2 + (slope(d(free)).T + forces) * -1  # M q̈ + h − Q, zero along a motion
+        B["accelerations"] = mass * read(known.second) + lacking * -1
+        B["bias_vector"] = forces + B["accelerations"] * -1
+        B["coriolis_matrix"] = (d(mass) + slope(d(p)) + slope(d(p)).T * -1) * Fraction(1, 2)
+        B["constant energy"] = read([known.rates]) * lacking
+        for q, row in zip(known.groups["q"], lacking.rows, strict=True):
+            B[f"constant momentum_{q}"] = Array([row])
     volume = Array([R.rows[0]]) * hat(Array([R.rows[1]])) * Array([R.rows[2]]).T
     lengths = zip((R * R.T).entries, UNITS.entries, strict=True)
     found = {"R is a rotation": [*lengths, (volume.entries[0], ONE)]}
     steady = {"sqrt", "cos", "sin", "tan", "cot", *known.flow} - {*known.rates}
-    for name, text in ((q["name"], q["expression"]) for q in record["quantities"]):
+    texts = [(q["name"], q["expression"]) for q in record["quantities"]]
+    texts += [("constant " + f["name"], f["expression"]) for f in record["first_integrals"]]
+    for name, text in texts:
         if name in names:
-            x, (kind, _, frame) = known.matrix(text), name.rpartition("_")
+            x, (kind, _, frame) = read(text), name.rpartition("_")
+            x = d(x) if name.startswith("constant ") else x
             used = {getattr(n, "id", "pi") for n in ast.walk(ast.parse(str(text).replace("'", "")))}
             if kind in RATES and (left := used - steady - {f"omega_{frame}_{k}" for k in "123"}):
                 raise ValueError(f"{name} holds {min(left)}")
-            x = x * known.matrix(known.rates) if kind == RATES[0] else x
+            x = x * read(known.rates) if kind == RATES[0] else x
             x = A[name] * x if name in A else x
             found[name] = [*found.get(name, ()), *zip(x.entries, B[name].entries, strict=True)]
     return found
@@ -282,19 +287,14 @@ def verify(record: Mapping[str, Any], certificate: Mapping[str, Any]) -> list[st
     return [*found]
 
 
-def main(folders: Sequence[str]) -> int:
-    """The exit code: 1 if any certificate is refused."""
-    problems = 0
-    for path in sorted(path for folder in folders for path in Path(folder).rglob("*.cert.json")):
+if __name__ == "__main__":
+    refused = 0
+    for path in sorted(p for folder in sys.argv[1:] for p in Path(folder).rglob("*.cert.json")):
         try:
             record = json.loads(path.with_name(path.name.replace(".cert", "")).read_text("utf-8"))
             certificate = json.loads(path.read_text("utf-8"))
             print(f"{path}: proved for R by {record['rotation']}: {verify(record, certificate)}")
         except (*BROKEN, OSError) as error:
-            problems += 1
+            refused = 1
             print(f"{path}: REFUSED: {error}")
-    return int(problems > 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(refused)
