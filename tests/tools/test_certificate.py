@@ -384,10 +384,7 @@ def test_a_wrong_equation_of_motion_is_refused(top, quantity, before, after):
         checker.verify(found, certificate)
 
 
-@pytest.mark.parametrize(
-    ("before", "after"), [("cos(theta)", "sin(theta)"), ("g*l*m", "2*g*l*m"), ("A", "C")]
-)
-def test_the_energy_is_proved_constant_and_a_wrong_one_is_refused(before, after):
+def test_the_energy_is_proved_constant_and_a_wrong_one_is_refused():
     A, C = sp.symbols("A C", positive=True)
     motion = rs.derive(
         "ZXZ", ["energy"], body=rs.principal_moments(A, A, C), potential="m*g*l*cos(theta)"
@@ -396,9 +393,11 @@ def test_the_energy_is_proved_constant_and_a_wrong_one_is_refused(before, after)
     certificate = json.loads(certificate_of(found).json)
     constants = {"constant energy", "constant momentum_phi", "constant momentum_psi"}
     assert {*checker.verify(found, certificate)} == {"R is a rotation", "energy", *constants}
-    spoil(found, "constant energy", before, after)
-    with pytest.raises(ValueError, match="constant energy: its cofactors do not prove"):
-        checker.verify(found, certificate)
+    for before, after in ("cos(theta)", "sin(theta)"), ("g*l*m", "2*g*l*m"), ("A", "C"):
+        wrong = copy.deepcopy(found)
+        spoil(wrong, "constant energy", before, after)
+        with pytest.raises(ValueError, match="constant energy: its cofactors do not prove"):
+            checker.verify(wrong, certificate)
 
 
 @pytest.mark.parametrize("expression", ["0", "1", "A", "momentum", "phi", "energy"])
@@ -505,11 +504,12 @@ RATES = ("rotation_matrix", "rate_matrix_body")
 
 
 def test_coq_accepts_the_lagrangian_and_the_mass_matrix(tmp_path):
-    # the bias vector takes Coq half a minute, the accelerations take minutes
+    # a constant momentum takes Coq six seconds, the bias vector half a minute, q̈ minutes
     names = ("lagrangian", "mass_matrix")
     body = rs.principal_moments(*sp.symbols("A A C", positive=True))
     motion = rs.derive("ZXZ", names, body=body, potential="m*g*l*cos(theta)")
-    certificate = certificate_of(json.loads(json.dumps(record(motion, {}))))
+    found = json.loads(json.dumps(record(motion, {}))) | {"first_integrals": []}
+    certificate = certificate_of(found)
     assert certificate.claims.keys() == {"R is a rotation", *names}
     assert run_coq(tmp_path, coq(certificate)) == 0
 
