@@ -50,7 +50,10 @@ def half_of_squares(
     """½ times a weight times the sum of the squares of some elements, in the shortest form."""
     kept = squares_kept([present.element(element) for element in elements])
     total = present.ring.dot((element, element) for element in elements)
-    number, squares = min([kept, *_multiplied_out(present, total)], key=_length_of_scaled)
+    number, squares = min(
+        [kept, *_multiplied_out(present, total)],
+        key=lambda scaled: _length(scaled[1]) + (scaled[0] != 1),
+    )
     return sp.Mul(_HALF * number, present.element(weight), squares)
 
 
@@ -152,11 +155,6 @@ def _without(element: PolyElement, place: int) -> PolyElement:
 def _ratio(ground: PolyElement) -> tuple[int, int]:
     number = ground.LC
     return number.numerator, number.denominator
-
-
-def _length_of_scaled(scaled: Scaled) -> int:
-    number, expression = scaled
-    return _length(expression) + (number != 1)
 
 
 def _length(expression: sp.Expr) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -48,6 +48,7 @@ def chain(
             f"{' '.join(map(str, turns))} does not move: expected an angle that is a function "
             "of time"
         )
+    units = (sum(part**2 for part in turn.direction) - 1 for turn in turns)
     letters = "".join(turn.axis if turn.axis in AXES else "u" for turn in turns)
     product = " ".join(map(str, turns))
     return RotationModel(
@@ -57,16 +58,10 @@ def chain(
         coordinates=coordinates,
         matrix=product_of(tuple(turns)),
         turns=tuple(turns),
-        constraints=_unit_axes(turns),
+        constraints=tuple(dict.fromkeys(c for c in units if not is_identically_zero(c))),
         source=source,
         passive=passive,
     )
-
-
-def _unit_axes(turns: Iterable[Turn]) -> tuple[sp.Expr, ...]:
-    """x² + y² + z² − 1 for each axis that is not already known to be a unit vector."""
-    conditions = (sum(part**2 for part in turn.direction) - 1 for turn in turns)
-    return tuple(dict.fromkeys(c for c in conditions if not is_identically_zero(c)))
 
 
 def _in_words(turns: Sequence[Turn]) -> str:

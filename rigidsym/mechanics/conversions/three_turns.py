@@ -76,7 +76,12 @@ def angles_of_three(
     plus, minus, far, near = _halves(values, parts, axes[0], axes[2])
     by_sum, by_difference = _halves_between(axes, plus, 1), _halves_between(axes, minus, -1)
     swing = values.let("swing", 2 * sp.atan2(near, far))
-    middle, base, beyond = _middle_of_triangle(values, axes, swing, is_across=is_across)
+    # The middle angle by the three sides, in the interval that ends at the flat triangle and holds
+    # 0; the other one is twice the flat angle less it. Two sides of π/2 leave the third as the
+    # angle between them.
+    base = flat_angle(values, *axes)
+    bend, beyond = (swing, sp.S.Zero) if is_across else _bend(values, axes, swing)
+    middle = values.let("middle", base + Where(base > 0, -bend, bend))
     if not has_two_sets:
         fixed, free = (by_difference, by_sum) if mirror > 0 else (by_sum, by_difference)
         length = far if mirror > 0 else near
@@ -264,20 +269,6 @@ def flat_angle(values: NamedValues, first: Vector, middle: Vector, last: Vector)
         return nearest(sp.atan2(nearest(across), nearest(along)))
     sine, cosine = values.each(("across", "along"), map(rounded, (across, along)))
     return values.let("base", sp.atan2(sine, cosine))
-
-
-def _middle_of_triangle(
-    values: NamedValues, axes: Sequence[Vector], swing: sp.Expr, *, is_across: bool
-) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    """The middle angle by the three sides, where the triangle is flat, and how far from one.
-
-    The other middle angle is twice the flat one, less the first. The angle returned is in the
-    interval that ends at the flat triangle and holds 0. Two sides of π/2 leave the third as the
-    angle between them.
-    """
-    base = flat_angle(values, *axes)
-    bend, beyond = (swing, sp.S.Zero) if is_across else _bend(values, axes, swing)
-    return values.let("middle", base + Where(base > 0, -bend, bend)), base, beyond
 
 
 def _bend(values: NamedValues, axes: Sequence[Vector], swing: sp.Expr) -> tuple[sp.Expr, sp.Expr]:

@@ -195,11 +195,17 @@ def turn_chain(model: RotationModel) -> TurnChain | str:
     moving = [place for place, turn in enumerate(turns) if turn.angle.has(*model.coordinates)]
     if not moving:
         return "its turns undo one another"
-    linear = {place: _linear(model, turns[place].angle) for place in moving}
-    if any(row is None for row in linear.values()):
+    linear = {  # the multiples of the coordinates in each angle, (1, n)
+        place: sp.ImmutableMatrix([[sp.diff(turns[place].angle, q) for q in model.coordinates]])
+        for place in moving
+    }
+    if not all(entry.is_Rational for row in linear.values() for entry in row):
         return "an angle is not a sum of multiples of the coordinates by numbers"
+    count = min(_MOST, len(moving))  # neighbours among the moving turns that a rotation determines
     found = [
-        rule for window in _windows(moving) for rule in _solutions(model, turns, window, linear)
+        rule
+        for start in range(len(moving) - count + 1)
+        for rule in _solutions(model, turns, moving[start : start + count], linear)
     ]
     if not found:
         return "a coordinate stands in several turns, whose angles do not determine it one by one"
@@ -221,18 +227,6 @@ def _merged(turns: Sequence[Turn]) -> tuple[Turn, ...]:
         else:
             merged.append(turn)
     return tuple(merged)
-
-
-def _linear(model: RotationModel, angle: sp.Expr) -> sp.ImmutableMatrix | None:
-    """The multiples of the coordinates in an angle, (1, n); None where they are not numbers."""
-    row = [sp.diff(angle, coordinate) for coordinate in model.coordinates]
-    return sp.ImmutableMatrix([row]) if all(entry.is_Rational for entry in row) else None
-
-
-def _windows(moving: Sequence[int]) -> list[Sequence[int]]:
-    """Neighbours among the moving turns, as many as a rotation determines."""
-    count = min(_MOST, len(moving))
-    return [moving[start : start + count] for start in range(len(moving) - count + 1)]
 
 
 def _solutions(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import partial
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -72,10 +73,6 @@ def _shortest(
 
     Where constraints bind the coordinates, b Ω may be equal and the ring unable to tell.
     """
-    known = [form for form in forms if _is_known(present, form, momentum)]
-    return shortest_of(known)
-
-
-def _is_known(present: Presenter, form: list[sp.Expr], momentum: RingMatrix) -> bool:
-    pairs = zip(form, momentum.entries, strict=True)
-    return all(agrees(present, entry, value) for entry, value in pairs)
+    return shortest_of(
+        [form for form in forms if all(map(partial(agrees, present), form, momentum.entries))]
+    )

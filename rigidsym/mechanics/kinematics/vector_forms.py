@@ -94,10 +94,6 @@ def matrix_form(
     return found and found._replace(last=term)
 
 
-def _length_of_form(terms: Sequence[VectorTerm]) -> int:
-    return sum(int(sp.count_ops(term.coefficient)) + 1 for term in terms)
-
-
 def _one_fraction(coefficient: sp.Expr) -> sp.Expr:
     """A coefficient over one denominator if that is shorter: (n − sin n)/n³."""
     together = sp.together(coefficient)
@@ -179,8 +175,10 @@ class Vectors:
         equal = [form for form in forms if self._is_equal(form, whole)]
         if not equal:
             return None
-        printed = [(self.terms(form, below), form) for form in equal]
-        terms, form = min(printed, key=lambda pair: _length_of_form(pair[0]))
+        terms, form = min(
+            ((self.terms(form, below), form) for form in equal),
+            key=lambda pair: sum(int(sp.count_ops(term.coefficient)) + 1 for term in pair[0]),
+        )
         vectors = [vector for coefficient, _, vector in form if coefficient]
         return VectorForm(
             terms=terms,

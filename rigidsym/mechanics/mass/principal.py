@@ -41,9 +41,9 @@ def _found(inertia: sp.ImmutableMatrix) -> Principal | None:
     for alone in (2, 1, 0):
         others = [k for k in range(3) if k != alone]
         if all(inertia[alone, k] == 0 for k in others):
-            root = _root_apart(inertia, alone)
-            if _has_root(root):
-                return _one_axis_apart(inertia, alone, root)
+            found = _one_axis_apart(inertia, alone)
+            if found is not None:
+                return found
     return _factored(inertia)
 
 
@@ -63,17 +63,6 @@ def _diagonal(inertia: sp.ImmutableMatrix) -> Principal:
     )
 
 
-def _root_apart(inertia: sp.ImmutableMatrix, alone: int) -> sp.Expr:
-    """A root of (p − q)² + 4 r² for the two moments across one axis, without square factors.
-
-    Its sign does not matter: the other one swaps the two moments with their axes.
-    """
-    i, j = (alone + 1) % 3, (alone + 2) % 3
-    p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
-    square = (p - q) ** 2 + 4 * r**2
-    return sp.sqrt(square) if all(e.is_Symbol for e in (p, q, r)) else _square_root(square)
-
-
 def _square_root(expression: sp.Expr) -> sp.Expr:
     """The root, with the squares among the factors taken out of it."""
     above, below = sp.fraction(sp.together(expression))
@@ -89,10 +78,18 @@ def _root_of_polynomial(expression: sp.Expr) -> sp.Expr:
     return outside * sp.sqrt(inside)
 
 
-def _one_axis_apart(inertia: sp.ImmutableMatrix, alone: int, root: sp.Expr) -> Principal:
-    """One coordinate axis is principal; the other two are turned about it."""
+def _one_axis_apart(inertia: sp.ImmutableMatrix, alone: int) -> Principal | None:
+    """One coordinate axis is principal; the other two are turned about it.
+
+    None if the root of (p − q)² + 4 r², for the two moments across the axis, is rational. Its sign
+    does not matter: the other one swaps the two moments with their axes.
+    """
     i, j = (alone + 1) % 3, (alone + 2) % 3
     p, q, r = inertia[i, i], inertia[j, j], inertia[i, j]
+    square = (p - q) ** 2 + 4 * r**2
+    root = sp.sqrt(square) if all(e.is_Symbol for e in (p, q, r)) else _square_root(square)
+    if not _has_root(root):
+        return None
     field = Rationals([p, q])
     half = field.write(field.read((p + q) / 2))
     apart = field.write(field.read(p - q))

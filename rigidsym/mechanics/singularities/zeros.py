@@ -171,7 +171,11 @@ class Solver:
         (angle,) = used
         for quarters, element in self._simple(angle):
             if factor.monic() == element:
-                return [root for turn in quarters for root in self._at_quarter(angle, turn)]
+                return [
+                    root
+                    for turn in quarters
+                    for root in self._rooted(angle, sp.Rational(turn, 2) * sp.pi, _QUARTERS[turn])
+                ]
         return self._of_sum(factor, angle) or self._never(factor, angle)
 
     def _simple(self, angle: _Angle) -> Iterator[tuple[tuple[int, ...], PolyElement]]:
@@ -230,8 +234,12 @@ class Solver:
         except AlgebraError:
             self.missing.add(root)
             return None
-        pairs = ((sine, cosine), (-sine, -cosine))
-        return [root for s, c in pairs for root in self._at_value(angle, s, c)]
+        value = self._codec.decode
+        return [
+            root
+            for s, c in ((sine, cosine), (-sine, -cosine))
+            for root in self._rooted(angle, angle_of(value(s), value(c)), (s, c))
+        ]
 
     def _weights(
         self, factor: PolyElement, angle: _Angle
@@ -246,19 +254,11 @@ class Solver:
             sums[moving[0]] += factor.ring.term_new(rest, coefficient)
         return sums[angle.cosine], sums[angle.sine]
 
-    def _at_quarter(self, angle: _Angle, turn: int) -> Iterator[Root]:
-        """Where the angle is so many quarter turns, in (−π, π] for each whole turn of it."""
-        becomes = tuple(zip((angle.sine, angle.cosine), _QUARTERS[turn], strict=True))
-        yield from self._rooted(angle, sp.Rational(turn, 2) * sp.pi, becomes)
-
-    def _at_value(self, angle: _Angle, sine: PolyElement, cosine: PolyElement) -> Iterator[Root]:
-        value = angle_of(self._codec.decode(sine), self._codec.decode(cosine))
-        yield from self._rooted(angle, value, ((angle.sine, sine), (angle.cosine, cosine)))
-
     def _rooted(
-        self, angle: _Angle, value: sp.Expr, becomes: tuple[tuple[int, Any], ...]
+        self, angle: _Angle, value: sp.Expr, sine_and_cosine: tuple[Any, Any]
     ) -> Iterator[Root]:
         """The coordinates within one period whose multiple is the value, up to whole turns."""
+        becomes = tuple(zip((angle.sine, angle.cosine), sine_and_cosine, strict=True))
         turns, times = int(angle.fraction.q), int(angle.fraction.p)
         period = 2 * sp.pi * turns
         for k in range(times):

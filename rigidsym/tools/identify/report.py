@@ -8,6 +8,7 @@ from math import degrees
 from textwrap import indent
 from typing import Any
 
+from rigidsym.data.columns import counted
 from rigidsym.tools.identify.fit import Answer
 from rigidsym.tools.identify.readings import Reading
 from rigidsym.tools.identify.separate import FurtherSample, Separation
@@ -86,7 +87,7 @@ def _single(found: Identification, answer: Answer) -> Iterator[str]:
     yield ""
     kind = "matrix =" if answer.reading.scalar_last is None else "quaternion of"
     yield f"{kind} {answer.reading.product(found.names)}"
-    yield f"fits {_samples(found.samples)}: {_residual(answer)}"
+    yield f"fits {counted(found.samples, 'sample')}: {_residual(answer)}"
     yield f"tolerance {_tolerance(found)}"
     if found.converted:
         yield f"converted to {answer.reading.unit}: {', '.join(found.converted)}"
@@ -111,7 +112,7 @@ def _several(found: Identification, *, everything: bool) -> Iterator[str]:
     count = len(found.answers)
     shown = found.answers if everything else found.answers[:_MOST_SHOWN]
     common = _common([answer.reading for answer in found.answers])
-    yield f"{count} conventions fit {_samples(found.samples)}" + (
+    yield f"{count} conventions fit {counted(found.samples, 'sample')}" + (
         f", all {common}" if common else ""
     )
     yield f"tolerance {_tolerance(found)}"
@@ -146,7 +147,7 @@ def _further(found: Identification, further: Separation | None) -> Iterator[str]
         return
     if not _differ_in_orientation(found):
         yield "They differ only in Ω; no sample at rest tells them apart."
-    count = "a sample" if len(further.samples) == 1 else f"{len(further.samples)} samples"
+    count = "a sample" if len(further.samples) == 1 else counted(len(further.samples), "sample")
     yield f"To tell them apart, add {count} with these values in the columns:"
     for sample in further.samples:
         yield f"  {_sample(found.names, sample)}"
@@ -174,7 +175,7 @@ def _differ_in_orientation(found: Identification) -> bool:
 
 
 def _no_fit(found: Identification, nearest: Answer) -> Iterator[str]:
-    yield f"No convention fits {_samples(found.samples)}: {found.tried} were tried,"
+    yield f"No convention fits {counted(found.samples, 'sample')}: {found.tried} were tried,"
     yield "also with permuted or reversed axes and with misaligned frames."
     yield f"tolerance {_tolerance(found)}"
     yield ""
@@ -206,10 +207,6 @@ def _tolerance(found: Identification) -> str:
     if found.has_velocity:
         said += f" and {tolerance.velocity:.2g} of |Ω|"
     return f"{said}, {tolerance.because}"
-
-
-def _samples(count: int) -> str:
-    return "1 sample" if count == 1 else f"{count} samples"
 
 
 def _wrapped(words: str, head: str, width: int = 80) -> Iterator[str]:

@@ -218,12 +218,13 @@ class _Kept:
         defined = {name for step in part for name in step.defines}
         used = {name for step in part for name in step.uses} - defined
         return [
-            *(f"    {self._fetched(n, real)}" for n in self._homes if n in used),
+            *(
+                f"    const int {name} = {home} > 0;"
+                if name in self._conditions
+                else f"    const {real} {name} = {home};"
+                for name, home in self._homes.items()
+                if name in used
+            ),
             *(f"    {line}" for step in part for line in step.lines),
             *(f"    {self._homes[name]} = {name};" for name in self.stored[place]),
         ]
-
-    def _fetched(self, name: str, real: str) -> str:
-        is_condition = name in self._conditions
-        test = " > 0" if is_condition else ""
-        return f"const {'int' if is_condition else real} {name} = {self._homes[name]}{test};"
