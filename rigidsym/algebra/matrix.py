@@ -119,6 +119,10 @@ class RingMatrix:
         rows = (tuple(partial(entry, place) for place in places) for entry in self.entries)
         return RingMatrix(self.ring, tuple(rows))
 
+    def cross(self, other: RingMatrix) -> RingMatrix:
+        """The vector product of two columns, (3, 1)."""
+        return RingMatrix.column(self.ring, cross(self.ring, self.entries, other.entries))
+
     def is_zero(self) -> bool:
         """Whether each entry reduces to zero."""
         return all(self.ring.is_zero(entry) for row in self.rows for entry in row)

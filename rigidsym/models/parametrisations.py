@@ -15,7 +15,7 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.models.rotation import Citation, Pullback, RotationModel, book
-from rigidsym.models.so3 import hat, rodrigues, time_functions
+from rigidsym.models.so3 import hat, rodrigues, rotation_of, time_functions
 
 _SHUSTER = Citation(
     text="M. Shuster, A Survey of Attitude Representations, Journal of the Astronautical "
@@ -77,7 +77,7 @@ def UnitQuaternion(
         f"The quaternion is w + (x, y, z), {_SCALAR[scalar_last]}, of length one: the cosine "
         "of half the angle and the axis times the sine of half the angle.",
         (*vector, w) if scalar_last else (w, *vector),
-        _homogeneous(w, vector),
+        rotation_of((w, *vector)),
         _SHUSTER,
         passive=passive,
         constraints=(w**2 + _square(vector) - 1,),
@@ -101,7 +101,7 @@ def CayleyKlein(
         "The parameters are α = a + i b and β = c + i d, with |α|² + |β|² = 1; the unit "
         "quaternion is (w, x, y, z) = (a, d, c, b).",
         (a, b, c, d),
-        _homogeneous(a, (d, c, b)),
+        rotation_of((a, d, c, b)),
         _GOLDSTEIN,
         passive=passive,
         constraints=(_square((a, b, c, d)) - 1,),
@@ -231,12 +231,6 @@ def _coordinates(names: Sequence[str], count: int) -> tuple[sp.Expr, ...]:
 
 def _square(parts: Sequence[sp.Expr]) -> sp.Expr:
     return sum(part**2 for part in parts)
-
-
-def _homogeneous(w: sp.Expr, vector: Sequence[sp.Expr]) -> sp.Matrix:
-    """(w² − v·v) 1 + 2 v vᵀ + 2 w C(v): the rotation times the square of the length."""
-    v = sp.Matrix(vector)
-    return (w**2 - _square(vector)) * sp.eye(3) + 2 * v * v.T + 2 * w * hat(v)
 
 
 def _model(

@@ -61,6 +61,13 @@ def hat(vector: sp.MatrixBase) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
+def rotation_of(parts: Sequence[sp.Expr]) -> sp.Matrix:
+    """(w² − v·v) 1 + 2 v vᵀ + 2 w C(v): the matrix of a quaternion (w, v), times its square."""
+    w, *vector = parts
+    v = sp.Matrix(vector)
+    return (w**2 - v.dot(v)) * sp.eye(3) + 2 * v * v.T + 2 * w * hat(v)
+
+
 @lru_cache(maxsize=256)
 def elementary(axis: str, angle: sp.Expr) -> sp.ImmutableMatrix:
     """Right-handed active turn by `angle` (radians) about the coordinate axis x, y or z.

@@ -15,9 +15,10 @@ import sympy as sp
 from rigidsym.formula.sentence import Sentence, sentence
 from rigidsym.mechanics.conversions.function import NamedValues, Vector, Where, square
 from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim, in_order
-from rigidsym.mechanics.conversions.unit_quaternions import rotation_of, shepperd, short_way, unit
+from rigidsym.mechanics.conversions.unit_quaternions import shepperd, short_way, unit
 from rigidsym.models import parametrisations
 from rigidsym.models.rotation import RotationModel
+from rigidsym.models.so3 import rotation_of
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,7 +26,6 @@ from rigidsym.mechanics.conversions.unit_quaternions import (
     half_turn,
     outer_product,
     product,
-    rotation_of,
     scalar_last,
 )
 from rigidsym.mechanics.derivation import Proof, Quantity, Step
@@ -34,6 +33,7 @@ from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.parametrisations import UnitQuaternion
 from rigidsym.models.rotation import Citation, RotationModel
+from rigidsym.models.so3 import rotation_of
 
 LONGEST_CHAIN = 4  # turns whose product is written out: its terms double with each
 P = formula(r"\mathbf{p}")

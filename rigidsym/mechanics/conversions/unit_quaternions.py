@@ -10,7 +10,6 @@ from sympy.polys.rings import PolyElement
 
 from rigidsym.mechanics.conversions.function import NamedValues, Vector, Where
 from rigidsym.models.rotation import Citation
-from rigidsym.models.so3 import hat
 
 Part = TypeVar("Part", sp.Expr, PolyElement)
 
@@ -44,13 +43,6 @@ def in_halves(
     across = product(product((zero, *first), whole), (zero, *last))
     pairs = tuple(zip(whole, across, strict=True))
     return tuple((a - b) / 2 for a, b in pairs), tuple((a + b) / 2 for a, b in pairs)
-
-
-def rotation_of(parts: Sequence[sp.Expr]) -> sp.Matrix:
-    """The matrix (3, 3) of a quaternion, times the square of its length."""
-    w, *vector = parts
-    v = sp.Matrix(vector)
-    return (w**2 - v.dot(v)) * sp.eye(3) + 2 * v * v.T + 2 * w * hat(v)
 
 
 def outer_product(matrix: sp.MatrixBase) -> sp.Matrix:

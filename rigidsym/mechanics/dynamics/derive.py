@@ -85,13 +85,13 @@ class LagrangeEquations(Flow):
         return self._half(shifted=False) - self._half(moved=False) + self.work.potential
 
     def _scalar(self, expression: sp.Expr) -> RingMatrix:
-        return self.column([expression])
+        return self.codec.column([expression])
 
     @cached_property
     def _of_lagrange(self) -> RingMatrix:
         """d/dt ∂T/∂q̇ − ∂T/∂q − (M q̈ + h − ∂V/∂q); not zero if the body rolls."""
         work = self.work
-        turning = work.mass_matrix @ work.column(work.accelerations)
+        turning = work.mass_matrix @ work.codec.column(work.accelerations)
         return work.momenta.dt() - self._slopes - turning - work.gyroscopic
 
     def _along_possible(self) -> Iterator[Proof]:
@@ -101,13 +101,13 @@ class LagrangeEquations(Flow):
         """
         work = self.work
         above, below = work.solved
-        back, acting = work.possible[0].T, work.column(work.forces)
+        back, acting = work.possible[0].T, work.codec.column(work.forces)
         left = work.mass_matrix @ above + (work.bias - acting).scale(below)
         yield self.prove.vanishes(back @ left, claims.POSSIBLE_EQUATIONS, divided_by=below)
         rates = [self.rate(sp.diff(self.kinetic, rate)) for rate in work.rates]
         divisor = rates[0][1]
         changes = RingMatrix(work.ring, tuple(above.rows[0] for above, _ in rates))
-        slopes = self._slopes - work.column(work.gradient) + acting
+        slopes = self._slopes - work.codec.column(work.gradient) + acting
         left = changes - slopes.scale(divisor)
         claim = claims.possible_equations_of_lagrange(self._symbol)
         yield self.prove.vanishes(back @ left, claim, divided_by=divisor)
@@ -116,7 +116,7 @@ class LagrangeEquations(Flow):
     def _slopes(self) -> RingMatrix:
         """∂T/∂q; of T as it is written, if the coordinates depend on one another."""
         if self.work.is_bound:
-            return self.column([sp.diff(self.kinetic, q) for q in self.model.coordinates])
+            return self.codec.column([sp.diff(self.kinetic, q) for q in self.model.coordinates])
         return self.work.slopes(self.codec.encode(self.kinetic))
 
     @cached_property
@@ -162,17 +162,17 @@ class LagrangeEquations(Flow):
         """dE/dt − q̇·(M q̈ + h) − ∂V/∂t; times a divisor if the coordinates depend on one another."""
         if self.work.is_bound:
             rate, divisor = self.rate(self.whole)
-            power = self.work.q_dot.T @ self.work.column(self.work.forces)
+            power = self.work.q_dot.T @ self.work.codec.column(self.work.forces)
             return rate - (power + self.driving).scale(divisor)
         work = self.work
-        left = work.mass_matrix @ work.column(work.accelerations) + work.bias  # M q̈ + h
+        left = work.mass_matrix @ work.codec.column(work.accelerations) + work.bias  # M q̈ + h
         power = work.q_dot.T @ left
         return self._scalar(self.whole).dt() - power - self.driving
 
     def generalised_momenta(self) -> Found:
         if not self.is_holonomic:
             return _NONE
-        slopes = self.column([sp.diff(self.kinetic, rate) for rate in self.work.rates])
+        slopes = self.codec.column([sp.diff(self.kinetic, rate) for rate in self.work.rates])
         residual = slopes - self.work.momenta
         return Found(
             self.present.matrix(self.work.momenta),
@@ -255,7 +255,9 @@ class LagrangeEquations(Flow):
             )
             proofs, definition = tuple(self._along_possible()), claims.ACCELERATIONS_OF_RATES
             return Found(found, because, proofs, definition=definition)
-        residual = work.mass_matrix @ above + (work.bias - work.column(work.forces)).scale(below)
+        residual = work.mass_matrix @ above + (work.bias - work.codec.column(work.forces)).scale(
+            below
+        )
         return Found(
             found,
             "The equations of motion are solved for the accelerations.",

@@ -65,7 +65,7 @@ class EulerEquations(Flow):
 
     @cached_property
     def omega(self) -> RingMatrix:
-        return self.column(OMEGA_BODY)
+        return self.codec.column(OMEGA_BODY)
 
     @cached_property
     def inertia(self) -> RingMatrix:
@@ -74,12 +74,12 @@ class EulerEquations(Flow):
     @cached_property
     def torque(self) -> tuple[RingMatrix, sp.Expr]:
         """N′ as a numerator and its divisor."""
-        given = self.column(self._torque)
+        given = self.codec.column(self._torque)
         acting = [q - v for q, v in zip(self._forces, self._gradient, strict=True)]
         if not any(acting):
             return given, self.codec.ring.one
         below = self.codec.encode(self._divisor)
-        turning = self.codec.matrix(self._inverse).T @ self.column(acting)
+        turning = self.codec.matrix(self._inverse).T @ self.codec.column(acting)
         return given.scale(below) + turning, below
 
     @cached_property
@@ -107,8 +107,8 @@ class EulerEquations(Flow):
         """With its rate, the power of what the potential does not account for."""
         rate, divisor = self.rate(self._energy)
         below = self.codec.encode(self._divisor)
-        forced = self.codec.matrix(self._inverse).T @ self.column(self._forces)
-        power = self.omega.T @ (self.column(self._torque).scale(below) + forced)
+        forced = self.codec.matrix(self._inverse).T @ self.codec.column(self._forces)
+        power = self.omega.T @ (self.codec.column(self._torque).scale(below) + forced)
         residual = (rate - self.driving.scale(divisor)).scale(below) - power.scale(divisor)
         return Found(
             sp.ImmutableMatrix([[self._energy]]),

@@ -15,7 +15,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
-from rigidsym.algebra.matrix import RingMatrix, cross
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.tree import Formula
@@ -73,9 +73,6 @@ class Flow:
             if not only or name in only:
                 yield name, getattr(self, name)()
 
-    def column(self, entries: Sequence[sp.Expr]) -> RingMatrix:
-        return self.codec.column(entries)
-
     @property
     def blocks(self) -> tuple[StateBlock, StateBlock]:
         raise NotImplementedError
@@ -86,7 +83,7 @@ class Flow:
         parts = []
         for block in self.blocks:
             others = [other.divisor for other in self.blocks if other is not block]
-            slopes = self.column(slopes_of(value, block.symbols, self.arguments["y"].symbols))
+            slopes = self.codec.column(slopes_of(value, block.symbols, self.arguments["y"].symbols))
             parts.append((slopes.T @ block.numerators).scale(prod(others, start=ring.one)))
         divisor = prod((block.divisor for block in self.blocks), start=ring.one)
         return parts[0] + parts[1] + self.explicit_rate(value).scale(divisor), ring.reduce(divisor)
@@ -99,7 +96,7 @@ class Flow:
 
     def explicit_rate(self, value: sp.Expr) -> RingMatrix:
         """∂F/∂t, the state being held."""
-        return self.column(slopes_of(value, [TIME], [TIME, *self.arguments["y"].symbols]))
+        return self.codec.column(slopes_of(value, [TIME], [TIME, *self.arguments["y"].symbols]))
 
     @cached_property
     def driving(self) -> RingMatrix:
@@ -203,8 +200,7 @@ class Flow:
 
 def turned(tensor: RingMatrix, omega: RingMatrix) -> RingMatrix:
     """Ω′ × I′ Ω′."""
-    ring = tensor.ring
-    return RingMatrix.column(ring, cross(ring, omega.entries, (tensor @ omega).entries))
+    return omega.cross(tensor @ omega)
 
 
 def solved_euler(

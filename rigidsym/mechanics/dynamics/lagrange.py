@@ -14,7 +14,7 @@ turning frame of reference adds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import cached_property, reduce
 from operator import add
 from typing import NamedTuple
@@ -125,9 +125,6 @@ class Lagrange:
         zero = sp.ImmutableMatrix.zeros(3, 1)
         return Moving(jacobian, zero, sp.ImmutableMatrix(sp.diag(*part.inertia)), turns=False)
 
-    def column(self, entries: Sequence[sp.Expr]) -> RingMatrix:
-        return self.codec.column(entries)
-
     def slopes(self, element: PolyElement) -> RingMatrix:
         """The derivatives by q, a column, by the chain rule over the generators of the ring."""
         ring, rates = self.ring, [self.ring.index[rate] for rate in self.rates]
@@ -152,7 +149,7 @@ class Lagrange:
 
     @cached_property
     def q_dot(self) -> RingMatrix:
-        return self.column(self.rates)
+        return self.codec.column(self.rates)
 
     @cached_property
     def omega(self) -> RingMatrix:
@@ -180,12 +177,12 @@ class Lagrange:
 
     @cached_property
     def bias(self) -> RingMatrix:
-        return self.gyroscopic + self.column(self.gradient)
+        return self.gyroscopic + self.codec.column(self.gradient)
 
     @cached_property
     def driving(self) -> RingMatrix:
         """Q − ∂V/∂q."""
-        return self.column(self.forces) - self.column(self.gradient)
+        return self.codec.column(self.forces) - self.codec.column(self.gradient)
 
     @cached_property
     def solved(self) -> Inverse:
@@ -198,7 +195,7 @@ class Lagrange:
         elif len(self.terms) == 1 and len(self.rates) == 3:
             above, below = self._solved_by_euler()
         else:
-            above = self.mass_matrix.adjugate() @ (self.column(self.forces) - self.bias)
+            above = self.mass_matrix.adjugate() @ (self.codec.column(self.forces) - self.bias)
             below = self.mass_matrix.det()
         if not below:
             raise ModelError(

@@ -13,7 +13,7 @@ from functools import cached_property
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.matrix import RingMatrix, cross
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.squares import half_form, half_of_squares
 from rigidsym.mechanics import particles
 from rigidsym.mechanics.derivation import Found
@@ -97,8 +97,8 @@ class _Energy:
         )
 
     def angular_momentum_centre(self) -> Found:
-        momentum = self._crossed(self.centre, self.velocity).scale(self.mass)
-        summed = self._of_particles(self._crossed(self.centre, self.velocity))
+        momentum = self.centre.cross(self.velocity).scale(self.mass)
+        summed = self._of_particles(self.centre.cross(self.velocity))
         return Found(
             self.present.matrix(momentum),
             "The centre of mass has the angular momentum of a particle with the mass of the body.",
@@ -120,7 +120,7 @@ class _Energy:
         momentum = self._momentum
         turned = values.R @ (self.inertia @ (values.R.T @ values.omega_space))
         dotted = momentum.T @ values.omega_space - self._scalar(self._twice)
-        summed = self._of_particles(self._crossed(*self._particle))
+        summed = self._of_particles(self._particle[0].cross(self._particle[1]))
         return Found(
             momentum_forms.in_space(self.present, self.inertia, values),
             "Rotating gives the components along the axes of space.",
@@ -132,9 +132,9 @@ class _Energy:
         )
 
     def angular_momentum(self) -> Found:
-        of_centre = self._crossed(self.centre, self.velocity).scale(self.mass)
+        of_centre = self.centre.cross(self.velocity).scale(self.mass)
         place, velocity = self._particle
-        whole = self._crossed(self.centre + place, self.velocity + velocity)
+        whole = (self.centre + place).cross(self.velocity + velocity)
         residual = self._of_particles(whole) - of_centre - self._momentum
         rotation = momentum_forms.in_space(self.present, self.inertia, self.values)
         return Found(
@@ -167,6 +167,3 @@ class _Energy:
 
     def _scalar(self, element: PolyElement) -> RingMatrix:
         return self.values.column([element])
-
-    def _crossed(self, first: RingMatrix, second: RingMatrix) -> RingMatrix:
-        return self.values.column(cross(self.ring, first.entries, second.entries))

@@ -13,7 +13,7 @@ from operator import add
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.matrix import RingMatrix, cross, hat
+from rigidsym.algebra.matrix import RingMatrix, hat
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.ring import Quotient
 from rigidsym.formula.reader import formula
@@ -129,13 +129,12 @@ class Vectors:
         scalar = rest - rest.diff(rates[0]) * rates[0]
         twice = straight + along * self.special(self.square)
         v_dot, v = self.column(self.v_dot), self.column(self.v)
-        once = self._crossed(self.v_dot)
+        once = v.cross(v_dot)
         dotted = v.scale(self.ring.dot(zip(self.v, self.v_dot, strict=True)))
         around, ahead = (across, CROSS, once), (scalar, V, v)
-        crossed_twice = self._crossed(once.entries)
         return [
             self.lifted([(straight, V_DOT, v_dot), around, (along, ALONG, dotted), ahead]),
-            self.lifted([(twice, V_DOT, v_dot), around, (along, TWICE, crossed_twice), ahead]),
+            self.lifted([(twice, V_DOT, v_dot), around, (along, TWICE, v.cross(once)), ahead]),
         ]
 
     def matrix_forms(self, matrix: RingMatrix) -> list[Weighted]:
@@ -282,6 +281,3 @@ class Vectors:
 
     def column(self, parts: Sequence[PolyElement]) -> RingMatrix:
         return RingMatrix.column(self.ring, parts)
-
-    def _crossed(self, parts: Sequence[PolyElement]) -> RingMatrix:
-        return self.column(cross(self.ring, tuple(self.v), tuple(parts)))

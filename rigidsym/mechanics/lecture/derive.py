@@ -16,7 +16,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.matrix import RingMatrix, cross, hat, unhat
+from rigidsym.algebra.matrix import RingMatrix, hat, unhat
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import ModelError
 from rigidsym.formula.tree import Formula
@@ -104,7 +104,7 @@ class _Theory:
 
     def inertia(self, place: RingMatrix) -> RingMatrix:
         """m (e_j × x)·(e_k × x), the summand of equation 4."""
-        crossed = [self.cross(unit, place) for unit in self.units]
+        crossed = [unit.cross(place) for unit in self.units]
         rows = [[self.ring.reduce(self.m * self.dot(u, v)) for v in crossed] for u in crossed]
         return RingMatrix.of(self.ring, rows)
 
@@ -114,7 +114,7 @@ class _Theory:
 
     def crossed(self) -> list[RingMatrix]:
         """e_j × x for the three vectors of the basis."""
-        return [self.cross(unit, self.x) for unit in self.units]
+        return [unit.cross(self.x) for unit in self.units]
 
     def spin(self) -> RingMatrix:
         """Ω of the rotation, from the skew matrix dR/dt Rᵀ."""
@@ -127,9 +127,6 @@ class _Theory:
 
     def square(self, vector: RingMatrix) -> PolyElement:
         return self.dot(vector, vector)
-
-    def cross(self, first: RingMatrix, second: RingMatrix) -> RingMatrix:
-        return RingMatrix.column(self.ring, cross(self.ring, first.entries, second.entries))
 
     def added(self, vectors: Iterable[RingMatrix]) -> RingMatrix:
         return reduce(lambda a, b: a + b, vectors)
@@ -168,12 +165,12 @@ _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
         - t.sum.of(t.m * t.square(t.x_dot))
     ),
     "skew": lambda t: t.R_dot @ t.R.T + (t.R_dot @ t.R.T).T,
-    "turning": lambda t: t.R_dot @ t.at_rest - t.cross(t.spin(), t.R @ t.at_rest),
+    "turning": lambda t: t.R_dot @ t.at_rest - t.spin().cross(t.R @ t.at_rest),
     "in_the_basis": lambda t: (
-        t.cross(t.omega, t.x) - t.added(e.scale(t.omega[j, 0]) for j, e in enumerate(t.crossed()))
+        t.omega.cross(t.x) - t.added(e.scale(t.omega[j, 0]) for j, e in enumerate(t.crossed()))
     ),
     "coefficients": lambda t: (
-        t.square(t.cross(t.omega, t.x))
+        t.square(t.omega.cross(t.x))
         - t.ring.dot(
             (t.omega[j, 0] * t.omega[k, 0], t.dot(u, v))
             for j, u in enumerate(t.crossed())
@@ -181,7 +178,7 @@ _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
         )
     ),
     "energy_is_a_form": lambda t: (
-        t.sum.of(t.m * t.square(t.cross(t.omega, t.x))) - t.sum.of(t.form(t.inertia(t.x), t.omega))
+        t.sum.of(t.m * t.square(t.omega.cross(t.x))) - t.sum.of(t.form(t.inertia(t.x), t.omega))
     ),
     "symmetric": lambda t: t.inertia(t.x) - t.inertia(t.x).T,
     "whole_vector": lambda t: (
@@ -196,7 +193,7 @@ _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
     "tensor_turns": lambda t: t.R.T @ t.inertia(t.R @ t.at_rest) @ t.R - t.inertia(t.at_rest),
     "entries": lambda t: t.inertia(t.x) - (t.one.scale(t.square(t.x)) - t.x @ t.x.T).scale(t.m),
     "lagrange": lambda t: (
-        t.dot(t.cross(t.u, t.v), t.cross(t.w, t.omega))
+        t.dot(t.u.cross(t.v), t.w.cross(t.omega))
         - t.ring.reduce(
             t.dot(t.u, t.w) * t.dot(t.v, t.omega) - t.dot(t.u, t.omega) * t.dot(t.v, t.w)
         )
@@ -211,39 +208,39 @@ _CLAIMS: dict[str, Callable[[_Theory], Residual]] = {
         - t.ring.dot((t.I[k, k], t.omega[k, 0] ** 2) for k in range(3))
     ),
     "four_products": lambda t: (
-        t.cross(t.r + t.x, t.r_dot + t.x_dot)
-        - t.added(t.cross(a, b) for a in (t.r, t.x) for b in (t.r_dot, t.x_dot))
+        (t.r + t.x).cross(t.r_dot + t.x_dot)
+        - t.added(a.cross(b) for a in (t.r, t.x) for b in (t.r_dot, t.x_dot))
     ),
     "centre_outside": lambda t: (
-        t.sum_of_any.of_matrix(t.by_mass(t.cross(t.r, t.r_dot + t.x_dot)))
-        - t.cross(t.r, t.r_dot).scale(t.M)
-        - t.cross(t.r, t.v)
+        t.sum_of_any.of_matrix(t.by_mass(t.r.cross(t.r_dot + t.x_dot)))
+        - t.r.cross(t.r_dot).scale(t.M)
+        - t.r.cross(t.v)
     ),
     "momentum_splits": lambda t: (
-        t.sum.of_matrix(t.by_mass(t.cross(t.r + t.x, t.r_dot + t.x_dot)))
-        - t.cross(t.r, t.r_dot).scale(t.M)
-        - t.sum.of_matrix(t.by_mass(t.cross(t.x, t.x_dot)))
+        t.sum.of_matrix(t.by_mass((t.r + t.x).cross(t.r_dot + t.x_dot)))
+        - t.r.cross(t.r_dot).scale(t.M)
+        - t.sum.of_matrix(t.by_mass(t.x.cross(t.x_dot)))
     ),
     "no_mixed_momentum": lambda t: t.sum.of_matrix(
-        t.by_mass(t.cross(t.r, t.x_dot) + t.cross(t.x, t.r_dot))
+        t.by_mass(t.r.cross(t.x_dot) + t.x.cross(t.r_dot))
     ),
     "double_product": lambda t: (
-        t.cross(t.x, t.cross(t.omega, t.x))
+        t.x.cross(t.omega.cross(t.x))
         - (t.omega.scale(t.square(t.x)) - t.x.scale(t.dot(t.x, t.omega)))
     ),
     "momentum_is_linear": lambda t: t.sum.of_matrix(
-        t.by_mass(t.cross(t.x, t.cross(t.omega, t.x))) - t.inertia(t.x) @ t.omega
+        t.by_mass(t.x.cross(t.omega.cross(t.x))) - t.inertia(t.x) @ t.omega
     ),
     "components_of_momentum": lambda t: (
         t.diagonal() @ t.omega
         - RingMatrix.column(t.ring, [t.I[k, k] * t.omega[k, 0] for k in range(3)])
     ),
     "twice_the_energy": lambda t: (
-        t.sum.of(t.dot(t.by_mass(t.cross(t.x, t.cross(t.omega, t.x))), t.omega))
-        - t.sum.of(t.m * t.square(t.cross(t.omega, t.x)))
+        t.sum.of(t.dot(t.by_mass(t.x.cross(t.omega.cross(t.x))), t.omega))
+        - t.sum.of(t.m * t.square(t.omega.cross(t.x)))
     ),
     "velocity": lambda t: t.R_dot @ t.at_rest - t.R_dot @ t.R.T @ (t.R @ t.at_rest),
-    "operator": lambda t: hat(t.u) @ t.v - t.cross(t.u, t.v),
+    "operator": lambda t: hat(t.u) @ t.v - t.u.cross(t.v),
     "spin": lambda t: t.R_dot @ t.R.T - hat(t.spin()),
     "body_spin": lambda t: t.R.T @ t.R_dot - hat(t.R.T @ t.spin()),
 }
