@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, BinaryIO, Protocol
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.lib import format as npy
@@ -21,16 +21,6 @@ from rigidsym.system.files import whole_file
 ENDINGS = (".npy", ".csv", ".txt", ".parquet", ".pq")
 Kept = Sequence[NDArray[Any]]  # columns passed through, before those of the table
 _EXACT = 1 << 53  # a larger integer may not be a double
-
-
-class TableWriter(Protocol):
-    """A file that grows row by row."""
-
-    def append(self, table: Table, kept: Kept = ()) -> None:
-        """Write rows."""
-
-    def finish(self) -> None:
-        """Write what the end of the file needs."""
 
 
 def check_ending(path: Path, *others: str) -> None:
@@ -165,7 +155,8 @@ class ParquetWriter:
         self._writer.close()
 
 
-_WRITERS: dict[str, type[NpyWriter] | type[TextWriter] | type[ParquetWriter]] = {
+TableWriter = NpyWriter | TextWriter | ParquetWriter  # a file that grows row by row
+_WRITERS: dict[str, type[TableWriter]] = {
     ".npy": NpyWriter,
     ".csv": TextWriter,
     ".txt": TextWriter,

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from itertools import filterfalse
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import sympy as sp
 from sympy.polys.rings import PolyElement
@@ -23,23 +23,8 @@ from rigidsym.algebra.witness import Example, Rows, witness_for
 from rigidsym.errors import Defect, DerivationError, NotARotation
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof
-from rigidsym.models.rotation import Pullback
+from rigidsym.models.rotation import Pullback, RotationModel
 from rigidsym.models.so3 import TIME
-
-
-class Subject(Protocol):
-    """What claims are about: a RotationModel, or `Conditions`."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def coordinates(self) -> tuple[sp.Expr, ...]: ...
-    @property
-    def constraints(self) -> tuple[sp.Expr, ...]: ...
-    @property
-    def pullback(self) -> Pullback | None: ...
-    @property
-    def example(self) -> Example: ...
 
 
 class Conditions(NamedTuple):
@@ -72,7 +57,7 @@ def consequence(proofs: Sequence[Proof], claim: Formula) -> Proof:
 class Prover:
     """Decides claims about one subject in its ring."""
 
-    def __init__(self, subject: Subject, codec: Codec) -> None:
+    def __init__(self, subject: RotationModel | Conditions, codec: Codec) -> None:
         """Raises ModelError if there is no real configuration, so that nothing can be claimed."""
         self.subject = subject
         self.codec = codec

@@ -30,6 +30,7 @@ from rigidsym.models.so3 import TIME
 
 Vector: TypeAlias = sp.ImmutableMatrix  # (3, 1)
 Matrix: TypeAlias = sp.ImmutableMatrix  # (3, 3)
+_ZERO, _ONE = sp.ImmutableMatrix(sp.zeros(3, 1)), sp.ImmutableMatrix(sp.eye(3))
 
 
 class Recursion:
@@ -86,18 +87,12 @@ class Recursion:
     @cached_property
     def partial(self) -> list[Matrix]:
         """P₀ = 1, P₁, ..., Pₙ."""
-        found = [sp.ImmutableMatrix(sp.eye(3))]
-        for k, turn in enumerate(self.turns, 1):
-            found.append(self.named(f"P{k}", found[-1] * turn))
-        return found
+        return self._each("P", lambda k, before: before * self.turns[k], start=_ONE)
 
     @cached_property
     def remaining(self) -> list[Matrix]:
         """B₁, ..., Bₙ, Bₙ₊₁ = 1."""
-        found = [sp.ImmutableMatrix(sp.eye(3))]
-        for k in range(self.count, 0, -1):
-            found.append(self.named(f"B{k}", self.turns[k - 1] * found[-1]))
-        return found[::-1]
+        return self._each("B", lambda k, b: self.turns[k] * b, is_backwards=True, start=_ONE)
 
     @cached_property
     def speeds(self) -> list[sp.Expr]:
@@ -114,45 +109,52 @@ class Recursion:
     @cached_property
     def omega_space(self) -> list[Vector]:
         """u₁, ..., uₙ, uₙ₊₁ = 0."""
-        return self._backwards("u", lambda k, u: self.axes[k] * self.speeds[k] + self.turns[k] * u)
+        return self._each(
+            "u",
+            lambda k, u: self.axes[k] * self.speeds[k] + self.turns[k] * u,
+            is_backwards=True,
+        )
 
     @cached_property
     def omega_body(self) -> list[Vector]:
         """w₀ = 0, w₁, ..., wₙ."""
-        return self._forwards("w", lambda k, w: self.axes[k] * self.speeds[k] + self.turns[k].T * w)
+        return self._each("w", lambda k, w: self.axes[k] * self.speeds[k] + self.turns[k].T * w)
 
     @cached_property
     def alpha_space(self) -> list[Vector]:
         """u̇₁, ..., u̇ₙ₊₁ = 0."""
-        return self._backwards(
+        return self._each(
             "du",
             lambda k, du: self._gained(k, self.omega_space[k]) + self.turns[k] * du,
+            is_backwards=True,
         )
 
     @cached_property
     def alpha_body(self) -> list[Vector]:
         """ẇ₀ = 0, ..., ẇₙ."""
-        return self._forwards(
+        return self._each(
             "dw",
             lambda k, dw: self._gained(k, -self.omega_body[k + 1]) + self.turns[k].T * dw,
         )
+
+    def _each(
+        self,
+        name: str,
+        follow: Callable[[int, sp.ImmutableMatrix], sp.ImmutableMatrix],
+        *,
+        is_backwards: bool = False,
+        start: sp.ImmutableMatrix = _ZERO,
+    ) -> list[sp.ImmutableMatrix]:
+        """What follows turn by turn from `start`, which is last if the last turn comes first."""
+        found = [start]
+        for k in reversed(range(self.count)) if is_backwards else range(self.count):
+            found.append(self.named(f"{name}{k + 1}", follow(k, found[-1])))
+        return found[::-1] if is_backwards else found
 
     def _gained(self, k: int, omega: Vector) -> Vector:
         """θ̈ n + θ̇ n × omega of one turn."""
         axis = self.axes[k]
         return axis * self.spins[k] + axis.cross(omega) * self.speeds[k]
-
-    def _forwards(self, name: str, follow: Callable[[int, Vector], Vector]) -> list[Vector]:
-        found = [sp.ImmutableMatrix(sp.zeros(3, 1))]
-        for k in range(self.count):
-            found.append(self.named(f"{name}{k + 1}", follow(k, found[-1])))
-        return found
-
-    def _backwards(self, name: str, follow: Callable[[int, Vector], Vector]) -> list[Vector]:
-        found = [sp.ImmutableMatrix(sp.zeros(3, 1))]
-        for k in reversed(range(self.count)):
-            found.append(self.named(f"{name}{k + 1}", follow(k, found[-1])))
-        return found[::-1]
 
     @cached_property
     def axes_space(self) -> list[Vector]:
