@@ -13,7 +13,7 @@ from rigidsym.notes.document.document import Document
 from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.sections.compose import Composer
-from rigidsym.notes.sections.styles import in_style
+from rigidsym.notes.sections.styles import in_style, left_out_of
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
@@ -83,7 +83,7 @@ def note(
         notation=notation,
         conversions=conversions,
     )
-    document = composer.document
+    document = composer.document(left_out_of(style, is_short=composer.is_short))
     if notation.frames != FRAMES:
         document = document.changed(lambda text: tuple(map(notation.named, text)))
     document = in_style(document, style, is_short=composer.is_short).translated(into)

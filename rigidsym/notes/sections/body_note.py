@@ -20,7 +20,6 @@ from rigidsym.notes.document.document import (
     Figure,
     NoteBlock,
     Paragraph,
-    Section,
     Text,
     listed,
     said,
@@ -53,10 +52,6 @@ class BodyComposer(Composer):
     def beginning(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
         if not self.is_short:
             yield from super().beginning()
-
-    def sections(self) -> Iterator[Section]:
-        sections = list(super().sections())
-        yield from sections[:-1] if self.is_short else sections  # without the summary
 
     def _body(self) -> Iterator[NoteBlock]:
         figure = figure_of_body(self.derivation, self.letters)

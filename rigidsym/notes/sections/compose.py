@@ -5,7 +5,7 @@ Equations carry the numbers of the steps; what is only recalled has none.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import chain
@@ -54,7 +54,7 @@ from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.claims_table import claims_in_a_table
 from rigidsym.notes.sections.fitting import Fitter, as_vectors
 from rigidsym.notes.sections.motion_section import what_follows, what_is_constant, what_moves
-from rigidsym.notes.sections.summary import summary
+from rigidsym.notes.sections.summary import TITLE as SUMMARY, summary
 from rigidsym.notes.sections.symbol_tables import functions, program, symbols
 
 if TYPE_CHECKING:
@@ -112,24 +112,25 @@ class Composer:
     def subtitle(self) -> str:
         return self.derivation.subject
 
-    @property
-    def document(self) -> Document:
+    def document(self, left_out: Collection[str] = ()) -> Document:
+        """The note, without the sections of these titles."""
         return Document(
             name=self.derivation.name,
             title=self.derivation.title,
             subtitle=self.subtitle,
             letters=self.letters,
-            sections=tuple(self.sections()),
+            sections=tuple(self.sections(left_out)),
             program=program(self.derivation),
         )
 
-    def sections(self) -> Iterator[Section]:
+    def sections(self, left_out: Collection[str]) -> Iterator[Section]:
         """The sections that have anything in them, and the summary."""
         parts = chain(self.beginning(), self.end())
-        filled = ((title, tuple(blocks)) for title, blocks in parts)
+        filled = ((title, tuple(blocks)) for title, blocks in parts if title not in left_out)
         sections = [Section(title, blocks) for title, blocks in filled if blocks]
         yield from sections
-        yield self.summary(sections)
+        if not self.is_short and SUMMARY not in left_out:
+            yield self.summary(sections)
 
     def beginning(self) -> Iterator[tuple[str, Iterator[NoteBlock]]]:
         """Titles with their blocks, up to where the rates are taken."""
@@ -148,15 +149,15 @@ class Composer:
         yield "The equations of motion", self._motion()
         yield "Conversions", self._conversions()
         yield IDENTITIES, self._proofs()
-        yield SYMBOLS, iter([self.symbol_table()])
+        yield SYMBOLS, self.symbol_table()
         yield FUNCTIONS, self._functions()
 
     def summary(self, sections: Sequence[Section]) -> Section:
         """The results on one sheet."""
         return summary(self.derivation, sections, self.letters)
 
-    def symbol_table(self) -> NoteTable:
-        return symbols(self.derivation, self.letters)
+    def symbol_table(self) -> Iterator[NoteTable]:
+        yield symbols(self.derivation, self.letters)
 
     def _conversions(self) -> Iterator[NoteBlock]:
         """The section on the unit quaternion and the matrix, with its equation."""

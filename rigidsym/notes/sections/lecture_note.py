@@ -82,8 +82,8 @@ class LectureComposer(BodyComposer):
     def summary(self, sections: Sequence[Section]) -> Section:
         return summary_of_the_lecture(self.derivation, sections, self.letters)
 
-    def symbol_table(self) -> NoteTable:
-        return symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
+    def symbol_table(self) -> Iterator[NoteTable]:
+        yield symbols_of_the_lecture(self.derivation, self.letters, _WHERE_SHOWN)
 
     def _statement(self, statement: Statement) -> Iterator[NoteBlock]:
         yield Paragraph(statement.because)

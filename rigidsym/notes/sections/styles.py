@@ -33,18 +33,23 @@ _VERIFIED = (
 )
 
 
-def in_style(document: Document, style: str, *, is_short: bool = False) -> Document:
-    """The document in a style; unproved claims stay in every one.
+def left_out_of(style: str, *, is_short: bool = False) -> tuple[str, ...]:
+    """The titles of the sections that a style does without.
 
     A short note has no tables at its end, unless it is an audit. Raises ModelError for a name
     that is not one of STYLES.
     """
     if style not in STYLES:
         raise ModelError(f"style is {', '.join(STYLES[:-1])} or {STYLES[-1]}, and not {style!r}")
+    return () if style == "audit" else _LEFT_OUT["paper" if is_short else style]
+
+
+def in_style(document: Document, style: str, *, is_short: bool = False) -> Document:
+    """The document in a style; unproved claims stay in every one. Raises what left_out_of does."""
+    left_out = left_out_of(style, is_short=is_short)
     if style == "audit":
         return document
     letters = document.letters
-    left_out = _LEFT_OUT["paper" if is_short else style]
     kept = [
         section._replace(blocks=tuple(_by_the_chain_rule(b, letters) for b in section.blocks))
         for section in document.sections
