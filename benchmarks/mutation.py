@@ -352,6 +352,9 @@ def _figures(trials: Sequence[Trial]) -> Iterator[Figure]:
 _EMPTY = "node 0 is the empty product, which is no factor"
 _NEVER_ZERO = "no coefficient of a sum is zero"
 _MINUSES = "minuses = sum(c < 0 for c in coefficients) - sum(c > 0 for c in coefficients)"
+_WHOLE = (
+    "if divisor == 1 and all(n.is_Integer for n in numbers) and _constants_in_all(entries) == 1:"
+)
 _FLAT = (
     "flat = tuple(sorted(n if k > 0 else ~n for n, k in counted.items() for _ in range(abs(k))))"
 )
@@ -466,6 +469,16 @@ EQUIVALENT: Mapping[tuple[str, str, str], str] = {  # function, change, line: wh
         "Add -> Sub",
         "tuple(tuple((-1) ** (i + j) * self._minor(j, i).det() for j in places) for i in places),",
     ): "i + j and i - j are both even or both odd",
+    (
+        "factored",
+        "1 -> 2",
+        _WHOLE,
+    ): "a shortcut",
+    (
+        "_lines",
+        "LtE -> Lt",
+        "if len(chunks) == 1 or _width(chunks, blank) <= width:",
+    ): "the parts of a line that fits are joined again",
     (
         "_shortened",
         "Or -> And",

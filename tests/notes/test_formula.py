@@ -354,6 +354,7 @@ def test_lines_lose_their_indent_for_each_bracket_that_is_open():
         (r"c\,(d + e + f + g)", 0, ["a (b", "+ c (d + e + f", "+ g))"]),
         (r"c\,(d + e + f + g)", 2, ["a (b", "+ c (d + e", "+ f + g))"]),
         (r"\mathit{ccc}\,(d + e + f)", 2, ["a (b", "+ ccc (d + e", "+ f))"]),
+        (r"\mathit{ccc}\,(d + e)", 2, ["a (b", "+ ccc (d + e))"]),
         (r"\mathit{ccc}\,(d + e + f)", 3, ["a (b", "+ ccc (d", "+ e + f))"]),
     ):
         found = lines_of(rf"a\,(b + {inside})", 14, indent)

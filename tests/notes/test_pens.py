@@ -259,6 +259,7 @@ def test_a_common_factor_stands_before_the_matrix():
         ([a / c, b / c], 1 / c),
         ([2 * a / 3, 4 * b / 3], sp.Rational(2, 3)),
         ([2 * a, 4 * b], 1),
+        ([2 * sp.sqrt(a), 4 * b], 1),
         ([a, 0], 1),
         ([a / b, b], 1),
         ([a**b, 2 * a**b], 1),
@@ -275,11 +276,15 @@ def test_a_common_factor_stands_before_the_matrix():
 
 def test_entries_over_a_common_divisor_are_written_without_it():
     """As (1 − 2 y²/d, 2 x y/d) is (d − 2 y², 2 x y)/d."""
-    x, y, d = sp.symbols("x y d")
+    x, y, z, d = sp.symbols("x y z d")
+    half = sp.Rational(1, 2)
     for entries, factor, rest in (
         ([1 - 2 * y**2 / d, 2 * x * y / d], 1 / d, [d - 2 * y**2, 2 * x * y]),
         ([(x + y) / d, x / d], 1 / d, [x + y, x]),
+        ([x / d + y / d, x / d], 1 / d, [x + y, x]),
         ([x / d + y, x, y], 1, [x / d + y, x, y]),
+        ([x + z * (1 + y / d), x / d], 1, [x + z * (1 + y / d), x / d]),
+        ([half * x + half * y * (1 + z), half * x], half, [x + y * (1 + z), x]),
         ([x + y, x * y], 1, [x + y, x * y]),
         ([x / d, 1 + y / x, y], 1, [x / d, 1 + y / x, y]),
     ):
