@@ -79,10 +79,12 @@ function turnLines({ arcs }, camera) {
   });
 }
 
+/** Only a single axis of turns is drawn in both directions; several would be a tangle. */
 function axisLines({ rays }, camera) {
+  const isSingle = rays.filter(({ kind }) => kind === "node").length === 1;
   return rays.map(({ kind, name, direction }) => {
     const end = camera.project(scaled(kind === "space" || kind === "body" ? AXIS : NODE, direction));
-    const start = kind === "node" ? scaled(-1, end) : [0, 0];
+    const start = kind === "node" && isSingle ? scaled(-1, end) : [0, 0];
     return { kind, name, points: [start, end], arrow: kind !== "node" };
   });
 }

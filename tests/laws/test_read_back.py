@@ -27,7 +27,7 @@ from helpers.witness import TOLERANCE, evaluate, mp
 from rigidsym.models.rotation_text import rotation_from
 
 VECTORS = {  # as the notes call it, its components, and those whose length is n
-    "quaternion": ("v", "x y z", "w x y z"),
+    "quaternion": ("v", "q_1 q_2 q_3", "q_0 q_1 q_2 q_3"),
     "cayley_klein": ("v", "d c b", "d c b"),
     "axis_angle": ("e", "e_1 e_2 e_3", "e_1 e_2 e_3"),
     "rotation_vector": ("v", "v_1 v_2 v_3", "v_1 v_2 v_3"),
@@ -37,6 +37,7 @@ ROTATIONS = (  # one of each kind
     *("ZXZ", "xyz", "quaternion", "cayley_klein", "axis_angle", "rotation_vector", "davenport"),
     *("z(2*phi - psi) x(theta) z(psi/3)", "z(phi) [1,1,0](theta) x(pi/4)"),
 )
+PRINTED = {"w": "q_0", "x": "q_1", "y": "q_2", "z": "q_3"}  # as notes call quaternions
 SYMBOLS = {  # of results, as the reader names them
     "rotation_matrix": "bold R",
     "rotation_rate": "dR/dt",
@@ -154,7 +155,7 @@ def _name(symbol: sp.Expr) -> str:
     plain = str(symbol.expr if order else symbol).removesuffix("(t)")
     base, body, index = re.fullmatch(r"([A-Za-z]+)(_body)?_?(\d*)", plain).groups()
     dots = ("", "dot ", "ddot ")[order]
-    return dots + base + ("'" if body else "") + (f"_{index}" if index else "")
+    return dots + PRINTED.get(base, base) + ("'" if body else "") + (f"_{index}" if index else "")
 
 
 def _components(group: str, motion: rs.Motion) -> list[str]:

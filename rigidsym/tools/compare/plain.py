@@ -226,7 +226,7 @@ class _TexWalk:
         if token == r"\sqrt":
             return f"sqrt({self._argument()})"
         if token in _DOTS:
-            return self._argument() + _DOTS[token]
+            return self._argument() + self._script() + _DOTS[token]
         if token[1:] in FUNCTIONS and token[0] == "\\":
             return self._call(token[1:])
         if token[:1].isdigit():
