@@ -100,15 +100,13 @@ class LagrangeEquations(Flow):
         So says d'Alembert's principle for the displacements U δθ, which are possible.
         """
         work = self.work
-        above, below = work.solved
-        back, acting = work.possible[0].T, work.codec.column(work.forces)
-        left = work.mass_matrix @ above + (work.bias - acting).scale(below)
-        yield self.prove.vanishes(back @ left, claims.POSSIBLE_EQUATIONS, divided_by=below)
+        back, (_, below) = work.possible[0].T, work.solved
+        equations = back @ self._left_over
+        yield self.prove.vanishes(equations, claims.POSSIBLE_EQUATIONS, divided_by=below)
         rates = [self.rate(sp.diff(self.kinetic, rate)) for rate in work.rates]
         divisor = rates[0][1]
         changes = RingMatrix(work.ring, tuple(above.rows[0] for above, _ in rates))
-        slopes = self._slopes - work.codec.column(work.gradient) + acting
-        left = changes - slopes.scale(divisor)
+        left = changes - (self._slopes + work.applied).scale(divisor)
         claim = claims.possible_equations_of_lagrange(self._symbol)
         yield self.prove.vanishes(back @ left, claim, divided_by=divisor)
 
@@ -255,14 +253,20 @@ class LagrangeEquations(Flow):
             )
             proofs, definition = tuple(self._along_possible()), claims.ACCELERATIONS_OF_RATES
             return Found(found, because, proofs, definition=definition)
-        residual = work.mass_matrix @ above + (work.bias - work.codec.column(work.forces)).scale(
-            below
-        )
+        residual = self._left_over
         return Found(
             found,
             "The equations of motion are solved for the accelerations.",
             (self.prove.vanishes(residual, claims.EQUATIONS, divided_by=below),),
         )
+
+    @property
+    def _left_over(self) -> RingMatrix:
+        """M q̈ + h − Q for the accelerations found, times their divisor."""
+        work = self.work
+        above, below = work.solved
+        bias = work.bias - work.codec.column(work.forces)
+        return work.mass_matrix @ above + bias.scale(below)
 
     def hamiltonian(self) -> Found:
         """H(q, p), with the momenta as inputs in a ring of their own."""

@@ -180,7 +180,7 @@ class Lagrange:
         return self.gyroscopic + self.codec.column(self.gradient)
 
     @cached_property
-    def driving(self) -> RingMatrix:
+    def applied(self) -> RingMatrix:
         """Q − ∂V/∂q."""
         return self.codec.column(self.forces) - self.codec.column(self.gradient)
 
@@ -210,9 +210,9 @@ class Lagrange:
         back, below, size = jacobian.adjugate(), jacobian.det(), tensor.det()
         slopes = jacobian.dt() @ self.q_dot + shift.dt()
         inner = tensor.adjugate() @ turned(tensor, self.omega) + slopes.scale(size)
-        if self.driving.is_zero():
+        if self.applied.is_zero():
             return back @ inner.scale(-self.ring.one), self.ring.reduce(size * below)
-        torque = tensor.adjugate() @ (back.T @ self.driving)
+        torque = tensor.adjugate() @ (back.T @ self.applied)
         return back @ (torque - inner.scale(below)), self.ring.reduce(size * below * below)
 
     @cached_property
@@ -223,8 +223,8 @@ class Lagrange:
         """
         assert self.back is not None
         back, below = self.codec.matrix(self.back[0]), self.codec.encode(self.back[1])
-        seen = self.terms[0][0].T @ (back.T @ self.driving)
-        if not self.model.constraints and not (seen - self.driving.scale(below)).is_zero():
+        seen = self.terms[0][0].T @ (back.T @ self.applied)
+        if not self.model.constraints and not (seen - self.applied.scale(below)).is_zero():
             raise ModelError(
                 f"{self.model.name}: the potential or a force depends on coordinates that R does "
                 "not determine, such as the length of a quaternion; expected one that does not, "
@@ -240,7 +240,7 @@ class Lagrange:
         back, below = self.possible
         ((jacobian, shift, tensor, _),) = self.terms
         size, turning = tensor.det(), jacobian @ self.q_dot
-        torque = back.T @ self.driving - turned(tensor, self.omega).scale(below)
+        torque = back.T @ self.applied - turned(tensor, self.omega).scale(below)
         slopes = (shift.dt() + jacobian.dt() @ self.q_dot).scale(size * below)
         within = back @ (tensor.adjugate() @ torque - slopes)  # over det I d²
         moving = (back.dt().scale(below) - back.scale(self.ring.dt(below))) @ turning  # over d²
