@@ -17,7 +17,7 @@ import sympy as sp
 from rigidsym.models.rotation import Citation, Pullback, RotationModel, book
 from rigidsym.models.so3 import hat, rodrigues, rotation_of, time_functions
 
-_SHUSTER = Citation(
+SHUSTER = Citation(
     text="M. Shuster, A Survey of Attitude Representations, Journal of the Astronautical "
     "Sciences 41 (1993)"
 )
@@ -78,7 +78,7 @@ def UnitQuaternion(
         "of half the angle and the axis times the sine of half the angle.",
         (*vector, w) if scalar_last else (w, *vector),
         rotation_of((w, *vector)),
-        _SHUSTER,
+        SHUSTER,
         passive=passive,
         constraints=(w**2 + _square(vector) - 1,),
         definition="unit_quaternion({3}, {0}, {1}, {2})" if scalar_last else _QUATERNION,
@@ -124,7 +124,7 @@ def AxisAngle(
         "The axis is a unit vector, about which the body is turned by the angle.",
         (*axis, angle),
         rodrigues(tuple(axis), angle),
-        _SHUSTER,
+        SHUSTER,
         passive=passive,
         constraints=(_square(axis) - 1,),
         definition="axis_angle({0}, {1}, {2}, {3})",
@@ -149,7 +149,7 @@ def RotationVector(
         "The vector v points along the axis of the turn, and its length n is the angle.",
         vector,
         sp.eye(3) + sp.sin(angle) / angle * skew + (1 - sp.cos(angle)) / square * skew * skew,
-        _SHUSTER,
+        SHUSTER,
         passive=passive,
         definition="axis_angle({0}/N, {1}/N, {2}/N, N)".replace("N", f"sqrt({_SQUARE})"),
         units=("rad",) * 3,
@@ -173,7 +173,7 @@ def GibbsVector(
         "angle; half turns lie at infinity.",
         vector,
         sp.eye(3) + 2 / (1 + _square(vector)) * (skew + skew * skew),
-        _SHUSTER,
+        SHUSTER,
         passive=passive,
         definition="quaternion(1, {0}, {1}, {2})",
         vector=vector,

@@ -1,6 +1,6 @@
 """Coordinates to the unit quaternion and back, and to R: what converts, how, and its proofs.
 
-A quaternion p is scalar first here, (p_w, p_x, p_y, p_z); only the results for a model whose own
+A quaternion p is scalar first here, (p_0, p_1, p_2, p_3); only the results for a model whose own
 quaternion is scalar last are in its order. It is that of R, which turns the body, also where a
 model presents the transpose.
 """
@@ -31,16 +31,12 @@ from rigidsym.mechanics.conversions.unit_quaternions import (
 from rigidsym.mechanics.derivation import Proof, Quantity, Step
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.prove import Prover
-from rigidsym.models.parametrisations import UnitQuaternion
-from rigidsym.models.rotation import Citation, RotationModel
+from rigidsym.models.parametrisations import SHUSTER, UnitQuaternion
+from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import rotation_of
 
 LONGEST_CHAIN = 4  # turns whose product is written out: its terms double with each
 P = formula(r"\mathbf{p}")
-_RODRIGUES = Citation(
-    text="M. Shuster, A Survey of Attitude Representations, Journal of the Astronautical "
-    "Sciences 41 (1993)"
-)
 QUATERNION = Quantity(
     name="quaternion",
     symbol=P,
@@ -48,7 +44,7 @@ QUATERNION = Quantity(
     unit="",
     inputs=("q",),
     shape="vector",
-    source=_RODRIGUES,
+    source=SHUSTER,
 )
 UNIT = "_unit"  # ends the names of what holds for quaternions of length one
 _OF_UNIT_LENGTH = ("rotation_matrix", "angular_velocity_space", "angular_velocity_body")
