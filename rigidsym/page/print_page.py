@@ -116,6 +116,7 @@ def print_page(
         "spoken": printer.named("angular velocity, body components"),
         "turn_words": _turn_words(derivation.model, document, printer),
         "languages": LANGUAGES,
+        "decimal": document.language.decimal,
         "copies": copies,
         "poles": list(_poles(derivation, printer)),
     }
@@ -126,6 +127,7 @@ def print_page(
         printer,
         policy=f"'sha256-{digest}'",
         script=script,
+        decimal=document.language.decimal,
         groups=[
             {
                 "title": escape(printer.said(group.title)),

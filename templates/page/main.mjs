@@ -20,7 +20,7 @@ let warned = ""; // what the warning says
 // --- numbers
 
 const fixed = (value, digits) => {
-  const text = Number.isFinite(value) ? value.toFixed(digits).replace("-", "−") : "–";
+  const text = Number.isFinite(value) ? value.toFixed(digits).replace("-", "−").replace(".", page.decimal) : "–";
   return /[1-9]/.test(text) ? text : text.replace("−", "");
 };
 const rounded = (value, step) =>
@@ -229,7 +229,7 @@ function restart() {
 
 function showTime() {
   at("time").value = view.time;
-  at("clock").textContent = `${view.time.toFixed(2)} s`;
+  at("clock").textContent = `${fixed(view.time, 2)} s`;
 }
 
 function set({ kind, place, factor }, value) {

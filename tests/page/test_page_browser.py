@@ -394,6 +394,9 @@ def test_the_page_in_german_speaks_german(tab, width, tmp_path):
     assert tab.run("document.documentElement.lang") == "de"
     assert tab.run("document.documentElement.scrollWidth") <= width
     assert tab.run("document.getElementById('play').textContent") == "Abspielen"
+    cells = "[...document.querySelectorAll('#rotation_matrix-value data')]"
+    numbers = tab.run(f"{cells}.map((cell) => cell.textContent)")
+    assert all(re.fullmatch("−?[01],[0-9]{4}", number) for number in numbers), numbers
     tab.run("document.getElementById('play').click()")
     assert tab.run("document.getElementById('play').textContent") == "Pause"
     tab.run("document.getElementById('one-by-one').click()")
