@@ -82,7 +82,7 @@ _KINDS: dict[Any, dict[str, Any]] = {  # annotation of a field: how click reads 
 
 
 def option(*flags: str, **settings: Any) -> Any:
-    """A field of a dataclass that a command-line option sets; its annotation is the type."""
+    """A field of a dataclass that a command-line option sets, of the type of its annotation."""
     if "default" in settings:
         settings["show_default"] = True
     return field(metadata={_OPTION: (flags, settings)})

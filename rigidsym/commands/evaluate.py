@@ -37,9 +37,7 @@ class EvaluationOptions(RotationOptions):
     quantities: tuple[list[str], ...] = option(
         "--quantity",
         "--only",
-        multiple=True,
         default=("angular_velocity_body",),
-        metavar="NAME,...",
         help="A quantity, or quaternion, from_quaternion, from_rotation_matrix. May be repeated.",
     )
     out: Path = option(

@@ -127,7 +127,6 @@ class KernelOptions(SelectionOptions):
 
     derivative: tuple[list[str], ...] = option(
         "--derivative",
-        multiple=True,
         metavar="QUANTITY:VECTOR,...",
         help="Add the Jacobian of a quantity with respect to q, q_dot, ...; QUANTITY:VECTOR:jvp "
         "and :vjp add products with a vector. May be repeated.",

@@ -139,7 +139,7 @@ def command(source: str, options: SimulationOptions) -> None:
 
 
 def _motion(source: str, options: SimulationOptions) -> Motion:
-    """With the quantities that a simulation needs; a page shows all."""
+    """The rotation with the quantities that a simulation needs, or with all for a page."""
     spec = read(source)
     is_page = options.animate is not None and options.animate.suffix == ".html"
     if spec.dynamics is not None and len(spec.models) == 1 and not is_page:

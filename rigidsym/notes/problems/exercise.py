@@ -46,8 +46,10 @@ class Asked:
             return (self.choices[0],)
         assert self.symbol is not None
         shown = equal(self.symbol, numeral(self.value))
+        if not self.unit:
+            return (shown,)
         unit = self.unit if self.unit == "°" else f" {self.unit}"
-        return (shown, unit.replace(" ", "\u00a0")) if unit.strip() else (shown,)
+        return (shown, unit.replace(" ", "\u00a0"))
 
     @property
     def cloze(self) -> str:
