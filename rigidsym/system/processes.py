@@ -37,7 +37,7 @@ def in_processes(work: Callable[[T], R], items: Sequence[T]) -> Iterator[R]:
     count = 1 if "jax" in sys.modules else max(min(cores(), len(rest)), 1)
     copy_of = [place % count for place in range(len(rest))]  # 0: it is done here
     if count > 1 and not copy_of[-1]:
-        copy_of[-1] = 1  # this process has more to do: what becomes of the results
+        copy_of[-1] = 1  # this process also handles all results
     shares = [[rest[p] for p, k in enumerate(copy_of) if k == copy] for copy in range(1, count)]
     with _copies(work, shares) as copies:
         for item, copy in zip(rest, copy_of, strict=True):

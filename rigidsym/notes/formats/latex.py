@@ -69,7 +69,7 @@ def rendered(template: str, document: Document) -> str:
         .render(
             babel=document.language.babel,
             sections=sections,
-            last=(),  # for templates of users from the time when sections followed the sources
+            last=(),  # own templates may still list sections after the sources
             metadata=metadata(document),
             source_lines=_lines_of_sources(document),
             **printer.placed(),
@@ -85,12 +85,12 @@ def _lines_of_sources(document: Document) -> int:
 
 
 def _least_lines(section: Section) -> int:
-    """Lines of a section that stay on one page: more where it begins with a table."""
+    """Lines of a section that stay on one page: more if it begins with a table."""
     return 14 if any(isinstance(block, NoteTable) for block in section.blocks[:2]) else 6
 
 
 def _lacked(text: str) -> Iterator[str]:
-    """Short commands that are used but not defined, as with a template copied some time ago."""
+    """Commands that an own template, copied from an older version, uses but does not define."""
     shipped = resources.text(resources.NOTES, f"{_SHIPPED}.jinja")
     for found in _DEFINITION.finditer(shipped):
         definition, command = found.groups()

@@ -77,7 +77,7 @@ def length_of(model: RotationModel) -> VectorLength | None:
 
 
 def entries_of(step: Step, arguments: Iterable[Argument]) -> tuple[Formula, ...]:
-    """The names of a vector's components that are arguments of other quantities, as the rates."""
+    """The names of the components, if the vector is an argument elsewhere, such as the rates."""
     name = step.quantity.name
     is_rates = name.startswith("rates_from_")
     used_as = "q_dot" if is_rates else name.replace("angular_velocity_", "omega_")

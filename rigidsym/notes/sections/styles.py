@@ -45,7 +45,7 @@ def left_out_of(style: str, *, is_short: bool = False) -> tuple[str, ...]:
 
 
 def in_style(document: Document, style: str, *, is_short: bool = False) -> Document:
-    """The document in a style; unproved claims stay in every one. Raises what left_out_of does."""
+    """The document in a style; unproved claims stay in every one. Raises ModelError."""
     left_out = left_out_of(style, is_short=is_short)
     if style == "audit":
         return document

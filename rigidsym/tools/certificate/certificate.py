@@ -121,7 +121,7 @@ def printed_names(record: Mapping[str, Any]) -> list[str]:
 
 
 def _missing(record: Mapping[str, Any], parts: Mapping[str, int], names: Sequence[str]) -> str:
-    """What keeps the checker from stating all claims: one of the names, if it does not know it."""
+    """Why the checker cannot state all claims: a name that it does not know, or a message."""
     try:
         stated(record, Language(record, parts), names)
     except BROKEN as error:
