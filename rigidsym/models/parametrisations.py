@@ -99,7 +99,7 @@ def CayleyKlein(
         "cayley_klein",
         "Cayley-Klein parameters",
         "The parameters are α = a + i b and β = c + i d, with |α|² + |β|² = 1; the unit "
-        "quaternion is (w, x, y, z) = (a, d, c, b).",
+        "quaternion is a + (d, c, b), scalar first.",
         (a, b, c, d),
         rotation_of((a, d, c, b)),
         _GOLDSTEIN,
