@@ -16,6 +16,7 @@ import sympy as sp
 
 from rigidsym.models.rotation import Citation, Pullback, RotationModel, book
 from rigidsym.models.so3 import hat, rodrigues, rotation_of, time_functions
+from rigidsym.text.names import lettered
 
 SHUSTER = Citation(
     text="M. Shuster, A Survey of Attitude Representations, Journal of the Astronautical "
@@ -50,8 +51,8 @@ def Quaternion(
         name=model.name.removeprefix("unit_"),
         title=model.title.removeprefix("Unit ").capitalize(),
         convention=(
-            f"The quaternion is w + (x, y, z), {_SCALAR[scalar_last]}, of any length but zero; "
-            "every multiple of it is the same rotation.",
+            f"The quaternion is {_in_parts(_coordinates(names, 4))}, {_SCALAR[scalar_last]}, of "
+            "any length but zero; every multiple of it is the same rotation.",
         ),
         matrix=model.matrix / (condition + 1),
         definition=model.definition.removeprefix("unit_"),
@@ -74,8 +75,8 @@ def UnitQuaternion(
     return _model(
         "unit_quaternion" + ("_xyzw" if scalar_last else ""),
         f"Unit quaternion, {_SCALAR[scalar_last]}",
-        f"The quaternion is w + (x, y, z), {_SCALAR[scalar_last]}, of length one: the cosine "
-        "of half the angle and the axis times the sine of half the angle.",
+        f"The quaternion is {_in_parts((w, *vector))}, {_SCALAR[scalar_last]}, of length one: the "
+        "cosine of half the angle and the axis times the sine of half the angle.",
         (*vector, w) if scalar_last else (w, *vector),
         rotation_of((w, *vector)),
         SHUSTER,
@@ -94,12 +95,14 @@ def CayleyKlein(
     The rotation is that of the unit quaternion w = a, z = b, y = c, x = d, by the Pauli matrices:
     Q = w 1 + i (x σ₁ + y σ₂ + z σ₃). Raises ModelError for bad names.
     """
-    a, b, c, d = _coordinates(names, 4)
+    a, b, c, d = coordinates = _coordinates(names, 4)
+    shown = [lettered(q.func.__name__) for q in coordinates]
     return _model(
         "cayley_klein",
         "Cayley-Klein parameters",
-        "The parameters are α = a + i b and β = c + i d, with |α|² + |β|² = 1; the unit "
-        "quaternion is a + (d, c, b), scalar first.",
+        "The parameters are α = {} + i {} and β = {} + i {}, with |α|² + |β|² = 1; the unit "
+        "quaternion is ".format(*shown)
+        + f"{_in_parts((a, d, c, b))}, scalar first.",
         (a, b, c, d),
         rotation_of((a, d, c, b)),
         _GOLDSTEIN,
@@ -227,6 +230,12 @@ def DirectionCosines(names: Sequence[str] = _COSINES, *, passive: bool = False) 
 
 def _coordinates(names: Sequence[str], count: int) -> tuple[sp.Expr, ...]:
     return time_functions(names, count, f"expected {count} different names")
+
+
+def _in_parts(coordinates: Sequence[sp.Expr]) -> str:
+    """A quaternion by the names of its parts, the scalar first: w + (x, y, z)."""
+    scalar, *vector = (lettered(q.func.__name__) for q in coordinates)
+    return f"{scalar} + ({', '.join(vector)})"
 
 
 def _square(parts: Sequence[sp.Expr]) -> sp.Expr:

@@ -40,6 +40,7 @@ from rigidsym.errors import AlgebraError, DerivationError, ModelError, NotARotat
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
+from rigidsym.models.parametrisations import CayleyKlein, Quaternion, UnitQuaternion
 from rigidsym.models.so3 import elementary, time_function
 
 DERIVED: dict[str, Derivation] = {}
@@ -262,3 +263,12 @@ def test_a_convention_is_said_in_greek_letters_whatever_the_terminal_shows():
         assert not pretty_use_unicode(False)  # which stays as it was
     finally:
         pretty_use_unicode(before)
+
+
+def test_the_convention_of_a_quaternion_has_the_names_of_its_coordinates():
+    names = ("q_0", "q1", "q2", "q3")
+    for kind, options in ((UnitQuaternion, {}), (Quaternion, {"scalar_last": True})):
+        assert "The quaternion is q₀ + (q₁, q₂, q₃)" in kind(names, **options).convention[0]
+    said = CayleyKlein(names).convention[0]
+    assert said.startswith("The parameters are α = q₀ + i q₁ and β = q₂ + i q₃")
+    assert said.endswith("the unit quaternion is q₀ + (q₃, q₂, q₁), scalar first.")
