@@ -266,6 +266,12 @@ def test_a_file_and_the_command_line_name_the_frames(tmp_path: Path):
     assert "angular velocity, craft components" in run.output
 
 
+def test_angles_called_like_the_parts_of_a_quaternion_keep_their_names():
+    motion = rs.derive("z(w) x(x) y(y) z(z)", ["rotation_matrix"])
+    assert "q_0" not in motion.latex("rotation_matrix")
+    assert "in programs" not in motion.note(style="lecture").markdown()
+
+
 @pytest.mark.parametrize("scalar_last", [False, True])
 def test_a_quaternion_is_printed_in_letters_that_are_no_axes(scalar_last):
     """The functions go on taking w, x, y, z, which the note says once."""

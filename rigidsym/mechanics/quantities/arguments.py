@@ -67,7 +67,7 @@ def arguments_of_motion(model: RotationModel) -> tuple[Argument, ...]:
     """The generalised momenta and the torque, inputs of Hamilton's and Euler's equations."""
     plain = [coordinate.func.__name__ for coordinate in model.coordinates]
     momenta = [sp.Symbol(f"p_{label}") for label in plain]
-    shown = [formula("p_{#1}", named(label)) for label in _shown(plain)]
+    shown = [formula("p_{#1}", named(label)) for label in _shown(plain, model.coordinate_units)]
     torque, components = sp.symbols("torque_1:4"), [formula(f"N'_{k}") for k in (1, 2, 3)]
     about = "body components of the torque about the fixed point"
     return (
@@ -146,14 +146,16 @@ def _moving(
         name=name,
         symbols=symbols,
         names=tuple(label + ("", "_dot", "_ddot")[order] for label in plain),
-        notation=tuple(map(named, _shown(plain), repeat(order))),
+        notation=tuple(map(named, _shown(plain, units), repeat(order))),
         units=tuple(f"{unit or '1'}{per}" if order else unit for unit in units),
         about=about,
     )
 
 
-def _shown(names: Sequence[str]) -> Sequence[str]:
-    return [_QUATERNION[name] for name in names] if {*names} == {*_QUATERNION} else names
+def _shown(names: Sequence[str], units: Sequence[str]) -> Sequence[str]:
+    """The letters in print; w, x, y, z without units are a quaternion, in print q₀, q₁, q₂, q₃."""
+    is_quaternion = {*names} == {*_QUATERNION} and not any(units)
+    return [_QUATERNION[name] for name in names] if is_quaternion else names
 
 
 @cache

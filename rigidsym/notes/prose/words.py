@@ -191,7 +191,7 @@ def _coordinates(argument: Argument, *, has_dots: bool) -> Text:
     head = words(f"The coordinate{'s are' if several else ' is'} {{}} = (", COORDINATES)
     dots = "; a dot denotes the derivative with respect to time" if has_dots else ""
     programs: Text = ()
-    if {*argument.names} == {*"wxyz"}:  # printed in other letters
+    if {*argument.names} == {*"wxyz"} and not any(units):  # printed in other letters
         programs = (", in programs ", *listed([(Code(n),) for n in argument.names], ", "))
     return (*head, *names, f"){measured}", *programs, f"{dots}.")
 
