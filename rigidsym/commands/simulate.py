@@ -39,6 +39,8 @@ def _grid(context: click.Context, _: object, given: Sequence[str]) -> dict[str, 
         try:
             first, last, count = values.split(":")
             axes[name] = np.linspace(float(first), float(last), int(count))
+            if not axes[name].size:
+                raise ValueError
         except ValueError:
             raise click.UsageError(
                 f"--grid {text}: expected NAME=FROM:TO:COUNT, as in theta=0.1:1.2:50", context
@@ -77,7 +79,7 @@ class SimulationOptions:
     spread: tuple[tuple[str, float], ...] = option(
         "--spread", help="With --ensemble: standard deviation of an initial value or a parameter."
     )
-    seed: int = option("--seed", type=int, default=0, help="Of --ensemble.")
+    seed: int = option("--seed", type=click.IntRange(0), default=0, help="Of --ensemble.")
     grid: dict[str, Any] = option(
         "--grid",
         multiple=True,
@@ -180,6 +182,10 @@ def _ensemble(motion: Motion, options: SimulationOptions) -> None:
         known = constants if name in names else initial
         if name not in known:
             raise click.UsageError(f"--spread {name}: no value of it is given")
+        if not 0 <= deviation < np.inf:
+            raise click.UsageError(
+                f"--spread {name}={deviation:g}: expected a standard deviation, 0 or more"
+            )
         known[name] = generator.normal(known[name], deviation, count)
     start = _start(motion, initial)
     first = next(iter(start))

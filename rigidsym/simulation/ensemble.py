@@ -99,6 +99,7 @@ def simulate_ensemble(
         raise ModelError(f"the end time is {t_end}; expected a positive number of seconds")
     members = _members(initial, parameters)
     first = Problem(with_motion(derivation), *_of(0, initial, parameters))
+    first.check_bodies(members, parameters)
     start = first.state_of(initial)
     start = np.broadcast_to(start, (members, start.shape[-1]))
     constants = np.array(first.constants, float)

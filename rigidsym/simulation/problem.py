@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from rigidsym.errors import ModelError, offer
+from rigidsym.errors import BodyError, ModelError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.example import OMEGA as OMEGA
@@ -83,6 +83,27 @@ class Problem:
                 parameters=tuple(replace(p, value=by_name[p.symbol.name]) for p in body.parameters),
             )
         return values
+
+    def check_bodies(self, members: int, given: Mapping[str, Any]) -> None:
+        """Raises BodyError for the first of many bodies, given by arrays, that cannot be."""
+        body = self.derivation.body
+        assert body is not None
+        varied = [p for p in body.parameters if np.ndim(given.get(p.symbol.name, 1.0))]
+        if not varied:
+            return
+        symbols = [p.symbol for p in body.parameters]
+        values = [np.broadcast_to(given.get(s.name, 1.0), members) for s in symbols]
+        entries = sp.lambdify(symbols, list(body.inertia), "numpy")(*values)
+        tensors = np.stack([np.broadcast_to(e, members) for e in entries], axis=-1)
+        a, b, c = np.linalg.eigvalsh(tensors.reshape(members, 3, 3)).T
+        doubtful = ~((a >= 0) & (c <= a + b))
+        for parameter, value in zip(body.parameters, values, strict=True):
+            doubtful |= ~(value > 0) if parameter.positive else False
+        for k in np.flatnonzero(doubtful):  # the limits of rounding are those of one body
+            try:
+                self._parameters({name: v[k] if np.ndim(v) else v for name, v in given.items()})
+            except BodyError as error:
+                raise BodyError(f"motion {k + 1} of {members}: {error}") from None
 
     @property
     def _symbols(self) -> set[sp.Basic]:

@@ -8,6 +8,7 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.command import call
+from rigidsym.errors import BodyError
 from rigidsym.simulation import ensemble
 
 A, C = sp.symbols("A C")
@@ -117,12 +118,22 @@ def test_the_command_simulates_a_grid_and_writes_every_kind_of_file(tmp_path):
         (["--ensemble=3", "--spread=phi=1"], "--spread phi: no value of it is given"),
         (["--ensemble=3", "--plot=top.svg"], "--plot and --animate show one motion"),
         (["--ensemble=3", "--method=lie"], "an ensemble takes steps of fixed length"),
+        (["--grid=theta=0.2:1:0"], "expected NAME=FROM:TO:COUNT"),
+        (["--ensemble=3", "--spread=theta=-1"], "--spread theta=-1: expected a standard deviation"),
+        (["--ensemble=3", "--seed=-1"], "-1 is not in the range x>=0"),
         (["--ensemble=3", "--out=x.foo"], "a result ends in .npy, .csv, .txt, .parquet, .pq, .npz"),
     ],
 )
 def test_what_an_ensemble_cannot_be_is_said(options, message, tmp_path):
     wrong = call("simulate", "heavy_symmetric_top", *options, cwd=tmp_path, status=2)
     assert message in wrong.stderr
+
+
+def test_each_body_of_an_ensemble_can_be(top):
+    """The first does not answer for the others"""
+    for name, values in (("C", [0.7, 2.7, 2.8]), ("A", [1.3, -1.0, 0.1])):
+        with pytest.raises(BodyError, match=r"^motion 2 of 3: "):
+            top.simulate_many(START | {"theta": TILTS}, TOP | {name: np.array(values)}, 0.1)
 
 
 def test_long_work_goes_without_a_compiler(top, monkeypatch, tmp_path):
