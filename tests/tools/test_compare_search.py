@@ -51,6 +51,15 @@ def test_printed_latex_of_notes_is_read_back(name):
             assert rs.compare(text, motion, quantity).is_equal, text
 
 
+@pytest.mark.parametrize("quantity", ["rotation_matrix", "angular_velocity_body"])
+def test_the_length_of_a_vector_is_called_n_as_in_notes(quantity):
+    motion = rs.derive("quaternion", quantity)
+    text = motion.latex(quantity)
+    assert "n^2" in text
+    assert rs.compare(text, motion, quantity).is_proved
+    assert not rs.compare(text.replace("n^2", "n"), motion, quantity).is_equal
+
+
 @pytest.mark.parametrize(
     "text",
     [

@@ -51,7 +51,8 @@ class Meaning:
 
     @classmethod
     def of(cls, formula: sp.ImmutableMatrix, goal: KnownQuantity, names: Names) -> Meaning:
-        values = {symbol: goal.points[meant] for symbol, meant in names.items()}
+        meant = sp.Matrix([[*names.values()]])
+        values = dict(zip(names, evaluated(meant, dict(goal.points))[:, 0].T, strict=True))
         return cls(formula=formula, goal=goal, names=names, values=values)
 
     def numbers(self, matrix: sp.MatrixBase) -> Array:

@@ -214,6 +214,7 @@ def agreement(one: Array, other: Array) -> NDArray[np.bool_]:
 
 # What the names in a formula stand for
 
+_LENGTH = "n"
 _RATE = re.compile(r"(?:d_?|dot_?)(?P<behind>\w+)|(?P<before>\w+?)_?(?:dot|rate|d|p)")
 _OMEGA = re.compile(
     r"(?:omega|Omega|w|W|gyro|g|rate|Omega_body|omega_(?:body|space))_?[xyz0-3]|[pqr]|[wW][pqr]"
@@ -221,7 +222,17 @@ _OMEGA = re.compile(
 
 
 def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
-    """What the names may stand for: themselves, if all are known, or else each possible order."""
+    """What the names may stand for: themselves, if all are known, or else each possible order.
+
+    In a rotation with a vector, n is its length, or that of all coordinates, as notes write it.
+    """
+    model = goal.motion.model
+    length = next((s for s in matrix.free_symbols if s.name == _LENGTH), None)
+    if length and model.vector and _LENGTH not in goal.names:
+        for names in readings(matrix.xreplace({length: sp.Integer(1)}), goal):
+            for parts in dict.fromkeys((model.coordinates, model.vector)):
+                yield {**names, length: sp.sqrt(sum(part**2 for part in parts))}
+        return
     symbols = sorted(matrix.free_symbols, key=lambda s: _natural(s.name))
     own = {s: goal.names.get(s.name) or goal.names.get(f"{stem_of(s.name)}_dot") for s in symbols}
     if all(own.values()):
