@@ -19,7 +19,7 @@ from rigidsym.notes.document.document import Equation, Paragraph, plain
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.pdf import Typeset
 from rigidsym.notes.problems import body_problems as bodies, euler_problems as euler
-from rigidsym.notes.problems.exercise import Asked, Exercise, Sheet, sheet_of
+from rigidsym.notes.problems.exercise import Asked, Exercise, Sheet, numeral, sheet_of
 from rigidsym.notes.problems.subjects import SUBJECTS
 
 
@@ -169,3 +169,10 @@ def test_the_quiz_is_well_formed_and_embeds_every_answer():
     for question, problem in zip(questions, made.problems, strict=True):
         text = question.findtext("questiontext/text")
         assert len(re.findall(r"\{1:(?:NUMERICAL|MULTICHOICE_S):=", text)) == len(problem.answers)
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"), [(18.275, "18.28"), (-0.0012345, "−0.001235"), (2.0, "2"), (5475.5, "5476")]
+)
+def test_half_of_the_last_digit_is_rounded_up(value, shown):
+    assert numeral(value).text == shown

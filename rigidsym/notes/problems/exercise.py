@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from decimal import ROUND_HALF_UP, Context
 from html import escape
 from random import Random
 
@@ -170,8 +171,9 @@ def _solution(problem: Exercise) -> Iterator[NoteBlock]:
 
 
 def numeral(value: float) -> Formula:
-    """A number with four digits at most."""
-    return decimal(value, most=4)
+    """A number with four digits at most; 18.275 is rounded up, as students do."""
+    rounded = Context(prec=4, rounding=ROUND_HALF_UP).create_decimal(f"{value:.12g}")
+    return decimal(float(rounded), most=4)
 
 
 def _question(section: Section, problem: Exercise, letters: Letters) -> str:
