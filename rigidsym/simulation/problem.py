@@ -91,14 +91,15 @@ class Problem:
         varied = [p for p in body.parameters if np.ndim(given.get(p.symbol.name, 1.0))]
         if not varied:
             return
-        symbols = [p.symbol for p in body.parameters]
-        values = [np.broadcast_to(given.get(s.name, 1.0), members) for s in symbols]
-        entries = sp.lambdify(symbols, list(body.inertia), "numpy")(*values)
-        tensors = np.stack([np.broadcast_to(e, members) for e in entries], axis=-1)
-        a, b, c = np.linalg.eigvalsh(tensors.reshape(members, 3, 3)).T
-        doubtful = ~((a >= 0) & (c <= a + b))
-        for parameter, value in zip(body.parameters, values, strict=True):
+        doubtful = np.zeros(members, bool)
+        for parameter in varied:
+            value = np.broadcast_to(given[parameter.symbol.name], members)
             doubtful |= ~(value > 0) if parameter.positive else False
+        if self.given("inertia_tensor"):
+            values = [np.broadcast_to(given.get(n, 1.0), members) for n in self.names["parameters"]]
+            tensors = self.kernels.inertia_tensor(np.stack(values, axis=1).astype(float))
+            a, b, c = np.linalg.eigvalsh(tensors).T
+            doubtful |= ~((a >= 0) & (c <= a + b))
         for k in np.flatnonzero(doubtful):  # the limits of rounding are those of one body
             try:
                 self._parameters({name: v[k] if np.ndim(v) else v for name, v in given.items()})

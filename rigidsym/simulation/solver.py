@@ -19,7 +19,7 @@ from rigidsym.simulation.sampled_motion import Array
 from rigidsym.simulation.trajectory import Trajectory
 
 METHODS = ("DOP853", "RK45", "Radau", "LSODA", "lie", "exact")
-_NEEDED = ("rotation_matrix", "angular_velocity_body", "energy")
+_NEEDED = ("rotation_matrix", "angular_velocity_body", "energy", "inertia_tensor")
 _PREFERRED = ("rates_from_angular_velocity_body", "torque_body")
 
 Progress = Callable[[float], None]
