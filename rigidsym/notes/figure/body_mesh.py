@@ -76,7 +76,9 @@ def lengths_of(
 ) -> dict[sp.Symbol, sp.Float] | None:
     """The parameters with their values, or a suitable length if they have none."""
     known = {symbol: value for symbol, value in values.items() if value is not None}
-    missing = [s for s in sorted(values, key=str) if s not in known and _holds(what, s)]
+    inner = {variable for solid in _solids(what) for variable in solid.coordinates}
+    held = {s for expression in _geometry(what) for s in expression.free_symbols}
+    missing = sorted(held - inner - {*known}, key=str)
     lengths = _FEW_LENGTHS.get(len(missing), _LENGTHS[: len(missing)])
     if len(missing) > len(lengths):
         return None
@@ -142,10 +144,6 @@ def _geometry(what: Distribution) -> Iterator[sp.Basic]:
         case Composite():
             for part in what.parts:
                 yield from (part.at, part.turned, *_geometry(part.what))
-
-
-def _holds(what: Distribution, symbol: sp.Symbol) -> bool:
-    return any(symbol in expression.free_symbols for expression in _geometry(what))
 
 
 def _solids(what: Distribution) -> Iterator[Solid]:

@@ -114,7 +114,7 @@ def _chosen(derivation: Derivation, letters: Letters) -> Text:
         return ()
     values = {p.symbol: p.value for p in body.parameters}
     numbers = lengths_of(body.distribution, values) or {}
-    chosen = [symbol for symbol in numbers if values[symbol] is None]
+    chosen = [symbol for symbol in numbers if values.get(symbol) is None]
     if not chosen:
         return ("All lengths are to scale.",)
     equations = [
