@@ -200,8 +200,8 @@ def test_letters_for_entries_need_no_moments_in_closed_form():
 def test_an_angle_that_the_inertia_does_not_hold_is_chosen_for_the_drawing(tmp_path):
     """A cylinder that is turned about its own axis"""
     file = tmp_path / "turned.toml"
-    part = '{ shape = "cylinder", radius = 0.5, mass = 2, height = 1, turned = "z(alpha)" }'
-    rod = '{ shape = "rod", length = 2, mass = 1 }'
+    part = '{ shape = "cylinder", radius = 0.5, density = 2, turned = "y(beta) z(alpha)" }'
+    rod = '{ shape = "rod", length = 2, mass = 1.5, turned = "y(beta) z(theta)" }'
     file.write_text(f'[rotation]\nsequence = "zxz"\n[body]\nparts = [{part}, {rod}]\n', "utf-8")
     call("run", str(file), "--quiet", cwd=tmp_path)
     assert "drawn for" in next(tmp_path.rglob("turned.html")).read_text("utf-8")
