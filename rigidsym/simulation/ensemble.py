@@ -104,9 +104,7 @@ def simulate_ensemble(
     start = np.broadcast_to(start, (members, start.shape[-1]))
     constants = np.array(first.constants, float)
     if first.constants and any(map(np.ndim, parameters.values())):
-        names = first.names["parameters"]
-        known = [np.broadcast_to(parameters.get(name, 1.0), members) for name in names]
-        constants = np.stack(known, axis=1).astype(float)
+        constants = first.parameters_of(members, parameters)
     times = np.linspace(0.0, t_end, samples)
     speed = float(np.linalg.norm(first.omega(start), axis=1).max()) or 1.0
     count = max(1, int(np.ceil(times[1] / (step or _ANGLE / speed))))

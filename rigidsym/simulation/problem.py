@@ -84,6 +84,11 @@ class Problem:
             )
         return values
 
+    def parameters_of(self, members: int, given: Mapping[str, Any]) -> Array:
+        """The parameters of many motions, (members, p), from numbers and arrays by name."""
+        values = (given.get(name, 1.0) for name in self.names["parameters"])
+        return _stacked([np.broadcast_to(value, members) for value in values])
+
     def check_bodies(self, members: int, given: Mapping[str, Any]) -> None:
         """Raises BodyError for the first of many bodies, given by arrays, that cannot be."""
         body = self.derivation.body
@@ -96,8 +101,7 @@ class Problem:
             value = np.broadcast_to(given[parameter.symbol.name], members)
             doubtful |= ~(value > 0) if parameter.positive else False
         if self.given("inertia_tensor"):
-            values = [np.broadcast_to(given.get(n, 1.0), members) for n in self.names["parameters"]]
-            tensors = self.kernels.inertia_tensor(np.stack(values, axis=1).astype(float))
+            tensors = self.kernels.inertia_tensor(self.parameters_of(members, given))
             a, b, c = np.linalg.eigvalsh(tensors).T
             doubtful |= ~((a >= 0) & (c <= a + b))
         for k in np.flatnonzero(doubtful):  # the limits of rounding are those of one body

@@ -106,7 +106,7 @@ FORMS = [
 
 
 def test_terms_with_brackets_follow_the_rates_in_them():
-    """As A φ̇ stands before m φ̇², so does A (φ̇ + ψ̇) before m (φ̇ + ψ̇)²; a root counts once."""
+    """A (φ̇ + ψ̇) comes before m (φ̇ + ψ̇)², like A φ̇ before m φ̇²; a root counts once."""
     total = phi_dot + psi_dot
     for expression, shown in (
         (m * phi_dot**2 + A * phi_dot, "A φ̇ + m₁ φ̇²"),

@@ -78,7 +78,7 @@ class Recursion:
         return symbol
 
     def opened(self, entries: Iterable[sp.Expr], group: str) -> list[sp.Expr]:
-        """The entries, those that were named in one group as they are defined."""
+        """The entries; names of this group are replaced by their definitions."""
         own = self._groups.get(group, {})
         return [own.get(entry, entry) for entry in entries]
 

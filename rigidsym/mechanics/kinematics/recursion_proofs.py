@@ -85,7 +85,7 @@ def _encoded(entries: list[sp.Expr], recursion: Recursion) -> Encoded:
 
 
 def _speed(r: Recursion, k: int) -> Equal:
-    """What stands for θ̇, and Σ ∂θ/∂q q̇."""
+    """The symbol for θ̇, and its value Σ ∂θ/∂q q̇."""
     angle = r.angles[k]
     rates = (sp.diff(angle, q) * sp.diff(q, TIME) for q in angle.atoms(AppliedUndef))
     return r.opened([r.speeds[k]], f"dtheta{k + 1}"), [sp.Add(*rates)]

@@ -153,9 +153,13 @@ def _moving(
 
 
 def _shown(names: Sequence[str], units: Sequence[str]) -> Sequence[str]:
-    """The letters in print; w, x, y, z without units are a quaternion, in print q₀, q₁, q₂, q₃."""
-    is_quaternion = {*names} == {*_QUATERNION} and not any(units)
-    return [_QUATERNION[name] for name in names] if is_quaternion else names
+    """The letters in print: q₀, q₁, q₂, q₃ for the components of a quaternion."""
+    return [_QUATERNION[name] for name in names] if is_quaternion(names, units) else names
+
+
+def is_quaternion(names: Sequence[str], units: Sequence[str]) -> bool:
+    """Whether these are w, x, y, z without units, in any order."""
+    return {*names} == {*_QUATERNION} and not any(units)
 
 
 @cache

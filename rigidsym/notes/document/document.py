@@ -151,7 +151,7 @@ class Document:
 
     @cached_property
     def displays(self) -> tuple[Equation, ...]:
-        """All equations, in order, also those that share a line."""
+        """All equations in order, including equations that share a line."""
         blocks = chain.from_iterable(section.blocks for section in self.sections)
         shown = (b.equations if isinstance(b, EquationRow) else (b,) for b in blocks)
         return tuple(e for e in chain.from_iterable(shown) if isinstance(e, Equation))

@@ -15,6 +15,7 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.sentence import by_text
 from rigidsym.formula.tree import Formula, Symbol, equal, transpose_of
 from rigidsym.mechanics.derivation import Argument, Derivation
+from rigidsym.mechanics.quantities.arguments import is_quaternion
 from rigidsym.mechanics.quantities.energy import ABOUT_FIXED_POINT, CENTRE
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, MASS, OF_BODY_ALONE, POINT
@@ -191,7 +192,7 @@ def _coordinates(argument: Argument, *, has_dots: bool) -> Text:
     head = words(f"The coordinate{'s are' if several else ' is'} {{}} = (", COORDINATES)
     dots = "; a dot denotes the derivative with respect to time" if has_dots else ""
     programs: Text = ()
-    if {*argument.names} == {*"wxyz"} and not any(units):  # printed in other letters
+    if is_quaternion(argument.names, argument.units):  # printed in other letters
         programs = (", in programs ", *listed([(Code(n),) for n in argument.names], ", "))
     return (*head, *names, f"){measured}", *programs, f"{dots}.")
 

@@ -334,7 +334,7 @@ class Composer:
 
 
 def claims_of(proofs: Iterable[Proof]) -> tuple[tuple[Formula, ...], tuple[Formula, ...]]:
-    """The claims that are proved, and those that are not."""
+    """The proved claims, and the unproved ones."""
     proofs = list(proofs)
     return (
         tuple([proof.claim for proof in proofs if proof.status == "exact"]),

@@ -222,9 +222,9 @@ _OMEGA = re.compile(
 
 
 def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
-    """What the names may stand for: themselves, if all are known, or else each possible order.
+    """The possible meanings of the names: their own if all are known, else every assignment.
 
-    In a rotation with a vector, n is its length, or that of all coordinates, as notes write it.
+    If the rotation has a vector, n is the length of this vector or of all coordinates, as in notes.
     """
     model = goal.motion.model
     length = next((s for s in matrix.free_symbols if s.name == _LENGTH), None)
