@@ -7,20 +7,17 @@ one algorithm for every rotation model (`Expanded`; lecture, eq. 15 and 16), or 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from functools import cache, cached_property
+from collections.abc import Collection, Iterator
+from functools import cached_property
 
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.matrix import RingMatrix, hat
-from rigidsym.formula.tree import Bracket, Formula, Rate, equal, row
+from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Found, Proof, VectorForm
 from rigidsym.mechanics.kinematics.vector_forms import matrix_form, vector_form
 from rigidsym.mechanics.kinematics.workspace import Values
-from rigidsym.mechanics.quantities import claims
 from rigidsym.mechanics.quantities.kinematics import (
-    ALPHA,
-    ALPHA_BODY,
     BODY,
     COSINES,
     QUANTITY_NAMES,
@@ -28,12 +25,11 @@ from rigidsym.mechanics.quantities.kinematics import (
     ROTATION,
     SPACE,
     Frame,
+    laws,
 )
 from rigidsym.models.rotation import RotationModel
 
-Law = tuple[str, Formula]  # what is to be proved, by name, and how it is written
 FRAMES = {"space": SPACE, "body": BODY}
-IS_OPERATOR = ("angular_velocity_space", claims.is_operator(SPACE.omega, claims.spin_of(ROTATION)))
 
 
 class Kinematics(ABC):
@@ -43,7 +39,7 @@ class Kinematics(ABC):
         self.model = model
         self.symbol = COSINES if model.passive else ROTATION
         self.is_square = len(model.coordinates) == 3
-        self.laws = _laws(model.passive, self.is_square)
+        self.laws = laws(model.passive, self.is_square)
 
     def steps(self, only: Collection[str] = ()) -> Iterator[tuple[str, Found]]:
         """(name, what was found) of the quantities that are wanted and that the model has.
@@ -63,40 +59,6 @@ class Kinematics(ABC):
 
     def inverse_symbol(self, frame: Frame) -> Formula:
         return frame.inverse if self.is_square else frame.right_inverse
-
-
-@cache
-def _laws(passive: bool, is_square: bool) -> Mapping[str, Sequence[Law]]:
-    """What is to be proved of each quantity."""
-    symbol = COSINES if passive else ROTATION
-    spin, whole_rate = claims.spin_of(symbol), Rate(Bracket(claims.spin_of(ROTATION)))
-    skew = [("skew", claims.skew(spin))]
-    if passive:
-        skew.append(("passive_operator", claims.is_operator(BODY.omega, spin, "-")))
-    found: dict[str, Sequence[Law]] = {
-        "rotation_matrix": [
-            ("orthogonal", claims.orthogonal(symbol)),
-            ("proper", claims.proper(symbol)),
-        ],
-        "rotation_rate": [("skew", claims.stays_orthogonal(symbol))],
-        "spin_matrix": skew,
-        "angular_velocity_space": [IS_OPERATOR],
-    }
-    of_frames = {
-        "angular_velocity_body": claims.rotates(ROTATION, BODY.omega, SPACE.omega),
-        "angular_acceleration_space": claims.is_operator(ALPHA, whole_rate),
-        "angular_acceleration_body": claims.rotates(ROTATION, ALPHA_BODY, ALPHA),
-    }
-    for name, frame in FRAMES.items():
-        inverse = frame.inverse if is_square else frame.right_inverse
-        of_frames |= {
-            f"rate_matrix_{name}": equal(row(frame.matrix, RATES), frame.omega),
-            f"inverse_rate_matrix_{name}": claims.inverse_of(frame.matrix, inverse),
-            f"rates_from_angular_velocity_{name}": claims.solves(
-                frame.matrix, inverse, frame.omega
-            ),
-        }
-    return found | {name: [(name, claim)] for name, claim in of_frames.items()}
 
 
 def kind_and_frame(name: str) -> tuple[str, str]:

@@ -16,7 +16,6 @@ from rigidsym.formula.tree import Bracket, Formula, Symbol, transpose_of
 from rigidsym.mechanics.derivation import Definition, Found, Proof, Singularities
 from rigidsym.mechanics.kinematics.derive import (
     FRAMES,
-    IS_OPERATOR,
     WORDS,
     Kinematics,
     kind_and_frame,
@@ -30,7 +29,7 @@ from rigidsym.mechanics.kinematics.recursion_proofs import (
 )
 from rigidsym.mechanics.prove import Prover, consequence, identity
 from rigidsym.mechanics.quantities.arguments import arguments_of
-from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
+from rigidsym.mechanics.quantities.kinematics import BODY, IS_OPERATOR, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import hat
 

@@ -6,16 +6,17 @@ follow for the passive one (A = Rᵀ, the direction cosine matrix).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from types import MappingProxyType
 from typing import NamedTuple
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula, Rate, transpose_of
+from rigidsym.formula.tree import Bracket, Formula, Rate, equal, row, transpose_of
 from rigidsym.mechanics.derivation import Quantity
-from rigidsym.mechanics.quantities.claims import spin_of
 from rigidsym.mechanics.quantities.table import read_table
+
+Law = tuple[str, Formula]  # what is to be proved, by name, and how it is written
 
 ROTATION = formula(r"\mathbf{R}")
 COSINES = formula(r"\mathbf{A}")
@@ -24,8 +25,34 @@ ALPHA = formula(r"\dot{\boldsymbol{\Omega}}")
 ALPHA_BODY = formula(r"\dot{\boldsymbol{\Omega}}'")
 
 
-def _product(matrix: Formula, vector: Formula) -> Formula:
-    return formula("#1#2", matrix, vector)
+class Presentation(NamedTuple):
+    """The matrix that is shown, R or A = Rᵀ, and what is proved of it and its derivative."""
+
+    matrix: Formula
+    spin: Formula  # the derivative times the transpose
+    orthogonal: Formula
+    proper: Formula
+    stays_orthogonal: Formula  # the derivative of the statement that it is orthogonal
+    skew: Formula
+
+
+def _presented(matrix: Formula) -> Presentation:
+    other = transpose_of(matrix)
+    spin = row(Rate(matrix), other)
+    return Presentation(
+        matrix=matrix,
+        spin=spin,
+        orthogonal=formula(r"#1#2 = \mathbf{1}", matrix, other),
+        proper=formula(r"\det #1 = 1", matrix),
+        stays_orthogonal=formula(
+            r"#1#2 + #3#4 = \mathbf{0}", *(Rate(matrix), other, matrix, Rate(other))
+        ),
+        skew=formula(r"#1 + \left(#1\right)^{\mathsf T} = \mathbf{0}", spin),
+    )
+
+
+_ACTIVE, _PASSIVE = _presented(ROTATION), _presented(COSINES)
+PRESENTED = {False: _ACTIVE, True: _PASSIVE}  # by `passive`
 
 
 class Frame(NamedTuple):
@@ -53,7 +80,7 @@ BODY = Frame(
     right_inverse=formula(r"\mathbf{W}'^{+}"),
 )
 
-_ACTIVE = read_table(
+_OF_ROTATION = read_table(
     """
     rotation_matrix                    matrix  -        q                -
         rotation matrix, body to space components
@@ -85,9 +112,9 @@ _ACTIVE = read_table(
     {
         "rotation_matrix": (ROTATION,),
         "rotation_rate": (Rate(ROTATION),),
-        "spin_matrix": (spin_of(ROTATION), formula(r"\mathbf{C}(#1)", SPACE.omega)),
-        "angular_velocity_space": (SPACE.omega, formula(r"\mathbf{C}^{-1}(#1)", spin_of(ROTATION))),
-        "angular_velocity_body": (BODY.omega, _product(transpose_of(ROTATION), SPACE.omega)),
+        "spin_matrix": (_ACTIVE.spin, formula(r"\mathbf{C}(#1)", SPACE.omega)),
+        "angular_velocity_space": (SPACE.omega, formula(r"\mathbf{C}^{-1}(#1)", _ACTIVE.spin)),
+        "angular_velocity_body": (BODY.omega, formula("#1#2", transpose_of(ROTATION), SPACE.omega)),
         **{
             name: formulas
             for frame in (SPACE, BODY)
@@ -99,18 +126,18 @@ _ACTIVE = read_table(
                 f"inverse_rate_matrix_{frame.name}": (frame.inverse,),
                 f"rates_from_angular_velocity_{frame.name}": (
                     RATES,
-                    _product(frame.inverse, frame.omega),
+                    formula("#1#2", frame.inverse, frame.omega),
                 ),
             }.items()
         },
         "angular_acceleration_space": (ALPHA, Rate(SPACE.omega)),
         "angular_acceleration_body": (
             ALPHA_BODY,
-            _product(transpose_of(ROTATION), Rate(SPACE.omega)),
+            formula("#1#2", transpose_of(ROTATION), Rate(SPACE.omega)),
         ),
     },
 )
-_PASSIVE = read_table(
+_OF_COSINES = read_table(
     """
     rotation_matrix         matrix  -      q        -
         direction cosine matrix, space to body components
@@ -126,7 +153,7 @@ _PASSIVE = read_table(
     {
         "rotation_matrix": (COSINES, transpose_of(ROTATION)),
         "rotation_rate": (Rate(COSINES),),
-        "spin_matrix": (spin_of(COSINES), formula(r"-\mathbf{C}(#1)", BODY.omega)),
+        "spin_matrix": (_PASSIVE.spin, formula(r"-\mathbf{C}(#1)", BODY.omega)),
         "angular_velocity_space": (
             SPACE.omega,
             formula(r"\mathbf{C}^{-1}(#1\,#2)", Rate(transpose_of(COSINES)), COSINES),
@@ -137,7 +164,7 @@ _PASSIVE = read_table(
         ),
     },
 )
-QUANTITY_NAMES = tuple(_ACTIVE)
+QUANTITY_NAMES = tuple(_OF_ROTATION)
 
 
 @cache
@@ -148,7 +175,7 @@ def quantities(
 
     `rate_unit` is the unit that all rates share; empty if they do not.
     """
-    table = {**_ACTIVE, **(_PASSIVE if passive else {})}
+    table = {**_OF_ROTATION, **(_OF_COSINES if passive else {})}
     for frame in (SPACE, BODY):
         inverse, rates = (
             f"{name}_{frame.name}"
@@ -160,6 +187,49 @@ def quantities(
                 symbol=frame.right_inverse,
                 about=f"right inverse of the rate matrix from {frame.name} components",
             )
-            definition = _product(frame.right_inverse, frame.omega)
+            definition = formula("#1#2", frame.right_inverse, frame.omega)
             table[rates] = table[rates]._replace(definition=definition)
     return MappingProxyType(table)
+
+
+# Claims.
+
+IS_OPERATOR = (
+    "angular_velocity_space",
+    formula(r"#2 = \mathbf{C}(#1)", SPACE.omega, _ACTIVE.spin),
+)
+
+
+@cache
+def laws(passive: bool, is_square: bool) -> Mapping[str, Sequence[Law]]:
+    """What is to be proved of each quantity; W has an inverse if it is square."""
+    shown = PRESENTED[passive]
+    found: dict[str, Sequence[Law]] = {
+        "rotation_matrix": [("orthogonal", shown.orthogonal), ("proper", shown.proper)],
+        "rotation_rate": [("skew", shown.stays_orthogonal)],
+        "spin_matrix": [("skew", shown.skew)],
+        "angular_velocity_space": [IS_OPERATOR],
+    }
+    if passive:
+        claim = formula(r"#2 = -\mathbf{C}(#1)", BODY.omega, shown.spin)
+        found["spin_matrix"] = [("skew", shown.skew), ("passive_operator", claim)]
+    whole_rate = Rate(Bracket(_ACTIVE.spin))
+    claims = {
+        "angular_velocity_body": formula(r"#3 = #1\,#2", ROTATION, BODY.omega, SPACE.omega),
+        "angular_acceleration_space": formula(r"#2 = \mathbf{C}(#1)", ALPHA, whole_rate),
+        "angular_acceleration_body": formula(r"#3 = #1\,#2", ROTATION, ALPHA_BODY, ALPHA),
+    }
+    for frame in (SPACE, BODY):
+        inverse = frame.inverse if is_square else frame.right_inverse
+        claims |= {
+            f"rate_matrix_{frame.name}": equal(row(frame.matrix, RATES), frame.omega),
+            f"inverse_rate_matrix_{frame.name}": formula(
+                r"#1#2 = \mathbf{1}", frame.matrix, inverse
+            ),
+            f"rates_from_angular_velocity_{frame.name}": formula(
+                r"#1\,(#2#3) = #3", *(frame.matrix, inverse, frame.omega)
+            ),
+        }
+    for name, claim in claims.items():
+        found[name] = [(name, claim)]
+    return found

@@ -23,27 +23,18 @@ def read_table(text: str, formulas: Formulas) -> Mapping[str, Quantity]:
     "Landau 32 (32.12)".
     """
     lines = [line.strip() for line in text.strip().splitlines()]
-    return MappingProxyType(
-        {
-            quantity.name: quantity
-            for head, about in zip(lines[::2], lines[1::2], strict=True)
-            for quantity in (_read(head, about, formulas),)
-        }
-    )
-
-
-def _read(head: str, about: str, formulas: Formulas) -> Quantity:
-    name, shape, unit, inputs, source = (
-        "" if column == "-" else column for column in _COLUMNS.split(head)
-    )
-    symbol, *definition = formulas[name]
-    return Quantity(
-        name=name,
-        symbol=symbol,
-        about=about,
-        unit=unit,
-        inputs=tuple(inputs.split()),
-        shape=cast(Shape, shape),
-        definition=definition[0] if definition else NOTHING,
-        source=book(source) if source else None,
-    )
+    found: dict[str, Quantity] = {}
+    for head, about in zip(lines[::2], lines[1::2], strict=True):
+        name, shape, unit, inputs, source = _COLUMNS.split(head)
+        symbol, *definition = formulas[name]
+        found[name] = Quantity(
+            name=name,
+            symbol=symbol,
+            about=about,
+            unit=unit.strip("-"),
+            inputs=tuple(inputs.strip("-").split()),
+            shape=cast(Shape, shape),
+            definition=definition[0] if definition else NOTHING,
+            source=None if source == "-" else book(source),
+        )
+    return MappingProxyType(found)

@@ -10,8 +10,7 @@ from rigidsym.formula.display import Done
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Rate, Symbol, equal, joined, row
-from rigidsym.mechanics.quantities.claims import orthogonal, skew, spin_of
-from rigidsym.mechanics.quantities.kinematics import COSINES, ROTATION
+from rigidsym.mechanics.quantities.kinematics import PRESENTED
 from rigidsym.models.rotation import Turn, book
 from rigidsym.models.so3 import hat
 from rigidsym.notes.document.document import (
@@ -61,7 +60,7 @@ def axis_of(turn: Turn, letters: Letters) -> Formula:
 
 def motion(*, passive: bool) -> Iterator[NoteBlock]:
     """Why the derivative times the transpose is the operator of the angular velocity."""
-    shown = COSINES if passive else ROTATION
+    shown = PRESENTED[passive]
     place, velocity = (BODY_POSITION, BODY_POSITION_RATE) if passive else (POSITION, POSITION_RATE)
     other = POSITION if passive else BODY_POSITION
     if passive:
@@ -70,27 +69,27 @@ def motion(*, passive: bool) -> Iterator[NoteBlock]:
         )
     else:
         yield said("A point at rest in the body, {}, has the velocity", ACTIVE)
-    yield Equation(sides=(velocity, row(Rate(shown), other), row(spin_of(shown), place)))
+    yield Equation(sides=(velocity, row(Rate(shown.matrix), other), row(shown.spin, place)))
     if passive:
         yield said(
             "As seen from the body, the point moves with the velocity "
             "$-\\boldsymbol{\\Omega}'\\times\\mathbf{x}'$\u00a0{}, so that {} is the matrix of "
             "the operator $-\\boldsymbol{\\Omega}'\\times$.",
-            *(_TURNING, spin_of(shown)),
+            *(_TURNING, shown.spin),
         )
     else:
         yield said(
             "This velocity is also $\\boldsymbol{\\Omega}\\times\\mathbf{x}$\u00a0{}, so that {} "
             "is the matrix of the operator $\\boldsymbol{\\Omega}\\times$.",
-            *(_TURNING, spin_of(shown)),
+            *(_TURNING, shown.spin),
         )
     yield said(
         r"The matrix of $\mathbf{u}\times$ is skew for any $\mathbf{u}$, and so is {}, by "
         "differentiation of {}:",
-        *(spin_of(shown), orthogonal(shown)),
+        *(shown.spin, shown.orthogonal),
     )
     operator = Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
-    yield EquationRow((operator, Equation(sides=(skew(spin_of(shown)),))))
+    yield EquationRow((operator, Equation(sides=(shown.skew,))))
 
 
 def announcement(equation: Equation, done: Done) -> Text:
