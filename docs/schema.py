@@ -284,6 +284,7 @@ def _output() -> Schema:
             "conversions": flag("add functions to and from quaternions and matrices"),
             "derivatives": texts('Jacobians, such as "angular_velocity_body by q"'),
             "degrees": flag("functions take and return degrees, in files NAME_deg"),
+            "certificates": flag("add NAME.cert.json, NAME.v and NAME.lean"),
         },
     )
 

@@ -62,16 +62,27 @@ class Output(NamedTuple):
     def record_text(self) -> str:
         return self.files[f"{self.name}.json"]
 
+    def joined_by(self, more: Mapping[str, str]) -> Output:
+        """The output with more files, which its record describes as well."""
+        data = json.loads(self.record_text)
+        files = {name: self.files[name] for name in data["files"]}
+        return self._replace(files=_with_record(data, {**files, **more}))
+
 
 def output_of(spec: DerivationSpec) -> Output:
     """Stages 2 and 3 for the specification of one rotation."""
     motion = motion_of(spec)
     conversions = motion.conversions if spec.conversions else None
-    files = dict(_printed(motion, spec))
     data = record(motion, spec.to_data(), conversions)
-    data["files"] = {name: digest(text.encode()) for name, text in files.items()}
-    files[f"{spec.name}.json"] = json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+    files = _with_record(data, dict(_printed(motion, spec)))
     return Output(spec=spec, motion=motion, conversions=conversions, files=files)
+
+
+def _with_record(data: Mapping[str, Any], files: Mapping[str, str]) -> dict[str, str]:
+    """Files and, last, the record that knows them by their digests."""
+    known = {name: digest(text.encode()) for name, text in files.items()}
+    content = json.dumps({**data, "files": known}, indent=1, ensure_ascii=False) + "\n"
+    return {**files, f"{data['name']}.json": content}
 
 
 # 1. read

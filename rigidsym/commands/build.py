@@ -11,11 +11,11 @@ import click
 
 from rigidsym.commands.command import command as make, option, with_options
 from rigidsym.commands.options import FolderOptions, KernelOptions, RotationOptions
-from rigidsym.commands.output_folder import with_existing_files, write
+from rigidsym.commands.output_folder import printed, with_existing_files, write
 from rigidsym.errors import CheckError
 from rigidsym.kernels.targets.c.compiling import build
 from rigidsym.kernels.targets.c.function import Contents
-from rigidsym.pipeline import integrated, output_of, read
+from rigidsym.pipeline import integrated, read
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +54,7 @@ def _built(source: str, options: BuildOptions) -> Iterator[Path]:
                 f"{source}: a Python module needs C with arrays and both precisions, which "
                 "[output.c] leaves out; rigidsym run writes the source"
             )
-        output = output_of(with_existing_files(replace(single, kernels=("c",)), options.out))
+        output = printed(with_existing_files(replace(single, kernels=("c",)), options.out))
         write(output, options.out, force=options.force)
         main = next(name for name in output.files if Path(name).suffix == ".c")
         yield build(options.out / single.name / main, portable=options.portable)

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 
 import click
 
 from rigidsym.commands.command import command as make, with_options
 from rigidsym.commands.options import TemplateOptions
-from rigidsym.commands.output_folder import content_of
+from rigidsym.commands.output_folder import CERTIFICATE, CERTIFICATES, content_of, printed
 from rigidsym.errors import CheckError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
-from rigidsym.pipeline import output_of, read_record
-from rigidsym.tools.certificate.certificate import printed_names
+from rigidsym.pipeline import read_record
+from rigidsym.tools.certificate import certificate
 from rigidsym.tools.certificate.checker import BROKEN, verify
 
 
@@ -60,8 +61,8 @@ def _records(path: Path) -> list[Path]:
 
     Raises CheckError if there is none.
     """
-    files = sorted(path.rglob("*.json")) if path.is_dir() else [path.with_suffix(".json")]
-    found = [file for file in files if content_of(file).get("schema") == SCHEMA]
+    files = path.rglob("*.json") if path.is_dir() else [_record_of(path)]
+    found = sorted({_record_of(file) for file in files if _is_ours(file)})
     if not found:
         raise CheckError(
             f"{path}: no record of a derivation here; expected NAME.json beside generated files"
@@ -69,30 +70,52 @@ def _records(path: Path) -> list[Path]:
     return found
 
 
+def _record_of(file: Path) -> Path:
+    """NAME.json beside NAME.cert.json, NAME.d.mts and other files."""
+    return file.with_name(file.name.partition(".")[0] + ".json")
+
+
+def _is_ours(file: Path) -> bool:
+    """Whether this is a record, a certificate, or NAME/NAME.json that cannot be read."""
+    content = content_of(file)
+    is_damaged = file.is_file() and not content and file.stem == file.parent.name
+    return is_damaged or content.get("schema") in (SCHEMA, certificate.SCHEMA)
+
+
 def _compare(record: Path) -> Iterator[Finding]:
     content = content_of(record)
     version = content.get("schema_version")
+    if not content:
+        is_there = record.exists()
+        yield Finding(path=record, problem="cannot be read" if is_there else "missing")
+        return
     if version != SCHEMA_VERSION:
         yield Finding(path=record, problem=f"schema version {version}, expected {SCHEMA_VERSION}")
         return
-    fresh = output_of(read_record(content.get("request"), source=str(record)))
+    fresh = printed(read_record(content.get("request"), source=str(record)))
     for name, text in fresh.files.items():
-        yield finding_of(record.parent / name, text)
-    certificate = record.with_suffix(".cert.json")
-    if certificate.is_file():
-        yield _certified(certificate, record)
+        finding = finding_of(record.parent / name, text)
+        yield _certified(finding, content) if name.endswith(CERTIFICATE) else finding
+    for file in map(record.with_suffix, (f".{ending}" for ending in CERTIFICATES)):
+        if file.name not in fresh.files and file.exists():
+            yield Finding(
+                path=file, problem=f"unknown to {record.name}: derive again with --certificates"
+            )
 
 
-def _certified(path: Path, record: Path) -> Finding:
-    """What the independent checker says of a certificate, and what it does not cover."""
-    content = content_of(record)
+def _certified(finding: Finding, record: Mapping[str, Any]) -> Finding:
+    """What the independent checker says of a certificate that is there, and what it leaves out."""
+    if not finding.path.is_file():
+        return finding
     try:
-        proved = verify(content, content_of(path))
-    except BROKEN as error:
-        return Finding(path=path, problem=f"refused: {error}")
-    rest = [name for name in printed_names(content) if name not in proved]
+        proved = verify(record, content_of(finding.path))
+    except ValueError as error:
+        return replace(finding, problem=f"refused: {error}")
+    except BROKEN:
+        return replace(finding, problem="refused: no certificate of what is printed")
+    rest = [name for name in certificate.printed_names(record) if name not in proved]
     note = f"\n  proved: {', '.join(proved)}\n  not covered: {', '.join(rest) or 'nothing'}"
-    return Finding(path=path, note=note)
+    return replace(finding, note=note)
 
 
 def finding_of(path: Path, expected: str) -> Finding:

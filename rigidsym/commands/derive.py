@@ -13,15 +13,15 @@ import click
 
 from rigidsym.commands.command import command as make, message, option, with_options
 from rigidsym.commands.options import MOST_LINES, PrintingOptions, RotationOptions
-from rigidsym.commands.output_folder import with_existing_files, write
+from rigidsym.commands.output_folder import CERTIFICATE, printed, with_existing_files, write
 from rigidsym.errors import RigidsymError
 from rigidsym.motion import Motion
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.record import record
 from rigidsym.notes.formats.terminal import show
-from rigidsym.pipeline import PDF, Output, integrated, motion_of, output_of
+from rigidsym.pipeline import PDF, Output, integrated, motion_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
-from rigidsym.system.files import write_bytes, write_text
+from rigidsym.system.files import write_bytes
 from rigidsym.system.processes import in_processes
 from rigidsym.system.progress import counter
 
@@ -69,8 +69,7 @@ def produce(specs: Iterable[DerivationSpec], options: PrintingOptions) -> None:
                 written.append(write_bytes(written[0].parent / f"{output.name}.pdf", paper))
             elif paper is not None:
                 missing.append(paper)
-            if options.certificates:
-                written += _certified(output, written[0].parent)
+            _report_uncovered(output)
             _show(output, written, options, is_only=len(singles) == 1)
             count += 1
     finally:
@@ -112,7 +111,7 @@ def _outputs(singles: Sequence[DerivationSpec]) -> Iterator[Made]:
 
 def _made(single: DerivationSpec) -> Made:
     """The output of a rotation; a missing TeX is reported after all other files are written."""
-    output = output_of(single)
+    output = printed(single)
     if PDF not in output.spec.note:
         return output, None
     try:
@@ -121,15 +120,12 @@ def _made(single: DerivationSpec) -> Made:
         return output, error
 
 
-def _certified(output: Output, folder: Path) -> list[Path]:
-    """The certificate of the record, and its theorems for Coq and Lean."""
-    from rigidsym.tools.certificate import certificate, formal  # few derivations ask for one
-
-    found = certificate.certificate_of(json.loads(output.record_text))
-    if found.uncovered:
-        message(f"{output.name}: the certificate does not cover {', '.join(found.uncovered)}")
-    texts = {"cert.json": found.json, "v": formal.coq(found), "lean": formal.lean(found)}
-    return [write_text(folder / f"{output.name}.{end}", text) for end, text in texts.items()]
+def _report_uncovered(output: Output) -> None:
+    """A message on standard error if the certificate says nothing of some quantities."""
+    if output.spec.certificates:
+        uncovered = json.loads(output.files[f"{output.name}.{CERTIFICATE}"])["uncovered"]
+        if uncovered:
+            message(f"{output.name}: the certificate does not cover {', '.join(uncovered)}")
 
 
 def _show(

@@ -221,6 +221,7 @@ class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, KernelOptio
             kernels=tuple(dict.fromkeys((*(targets or spec.kernels), *lean))),
             target_options={**spec.target_options, **lean},
             style=self.style or spec.style,
+            certificates=spec.certificates or self.certificates,
         )
 
 

@@ -12,9 +12,33 @@ from rigidsym.commands.command import message
 from rigidsym.errors import EditedFiles, SpecError
 from rigidsym.kernels.lowering.degrees import SUFFIX
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.pipeline import PAGE, PDF, Output, digest, note_formats, page_name, read_record
+from rigidsym.pipeline import (
+    PAGE,
+    PDF,
+    Output,
+    digest,
+    note_formats,
+    output_of,
+    page_name,
+    read_record,
+)
 from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.files import locked, write_text
+
+CERTIFICATE = "cert.json"
+CERTIFICATES = (CERTIFICATE, "v", "lean")  # NAME.v is for Coq
+
+
+def printed(spec: DerivationSpec) -> Output:
+    """Stages 2 and 3, with the certificates of the record if the specification asks for them."""
+    output = output_of(spec)
+    if not spec.certificates:
+        return output
+    from rigidsym.tools.certificate import certificate, formal  # few derivations ask for one
+
+    found = certificate.certificate_of(json.loads(output.record_text))
+    texts = zip(CERTIFICATES, (found.json, formal.coq(found), formal.lean(found)), strict=True)
+    return output.joined_by({f"{output.name}.{ending}": text for ending, text in texts})
 
 
 def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
@@ -27,10 +51,12 @@ def with_existing_files(spec: DerivationSpec, out: Path) -> DerivationSpec:
     before = _spec_there(folder)
     if before is None or not _is_same(before, spec):
         return spec
+    kept = set(_kept(_outputs(before), before, spec, folder))
     return replace(
         spec,
-        kernels=(*spec.kernels, *_kept(before.kernels, before, spec, folder)),
-        note=(*spec.note, *_kept(before.note, before, spec, folder)),
+        kernels=(*spec.kernels, *(name for name in before.kernels if name in kept)),
+        note=(*spec.note, *(name for name in before.note if name in kept)),
+        certificates=spec.certificates or CERTIFICATE in kept,
     )
 
 
@@ -72,7 +98,7 @@ def _report_other_files(output: Output, folder: Path) -> None:
         return
     if before.models != now.models:
         message(f"overwriting {folder}, which held a different rotation (use --out to keep both)")
-    left = list(_kept((*before.kernels, *before.note), before, now, folder))
+    left = list(_kept(_outputs(before), before, now, folder))
     if left:
         message(
             f"{folder} keeps files made with other options, "
@@ -82,7 +108,8 @@ def _report_other_files(output: Output, folder: Path) -> None:
 
 def _is_same(before: DerivationSpec, now: DerivationSpec) -> bool:
     """Whether two specifications differ at most in the files they print."""
-    return replace(before, kernels=now.kernels, note=now.note) == now
+    as_now = {key: getattr(now, key) for key in ("kernels", "note", "certificates")}
+    return replace(before, **as_now) == now
 
 
 def _spec_there(folder: Path) -> DerivationSpec | None:
@@ -106,16 +133,22 @@ def _kept(
     outputs: Iterable[str], before: DerivationSpec, now: DerivationSpec, folder: Path
 ) -> Iterator[str]:
     """Outputs of `before` that are there and not asked for; a PDF is never compared."""
-    written = {_file(output, now, folder) for output in (*now.kernels, *now.note)}
+    written = {_file(output, now, folder) for output in _outputs(now)}
     for output in outputs:
         file = _file(output, before, folder)
         if output != PDF and file not in written and file.is_file():
             yield output
 
 
+def _outputs(spec: DerivationSpec) -> tuple[str, ...]:
+    return (*spec.kernels, *spec.note, *(CERTIFICATE,) * spec.certificates)
+
+
 def _file(output: str, spec: DerivationSpec, folder: Path) -> Path:
-    """The main file of a target or a format."""
+    """The main file of a target, a format or the certificates."""
     name = folder.name
+    if output == CERTIFICATE:
+        return folder / f"{name}.{CERTIFICATE}"
     if output in TARGETS:
         return folder / f"{name}{SUFFIX * spec.degrees}{TARGETS[output].ending}"
     assert output in note_formats()

@@ -14,8 +14,8 @@ from rigidsym.commands.options import (
     RotationOptions,
     SelectionOptions,
 )
-from rigidsym.commands.output_folder import with_existing_files, write
-from rigidsym.pipeline import PAGE, integrated, output_of, page_name, read
+from rigidsym.commands.output_folder import printed, with_existing_files, write
+from rigidsym.pipeline import PAGE, integrated, page_name, read
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,6 +37,6 @@ def command(source: str, options: PageOptions) -> None:
     spec = integrated(read(source, **options.of_rotation()))
     for single in options.in_language(options.in_notation(options.selected(spec))).singles():
         asked = replace(single, kernels=(), note=(PAGE,))
-        output = output_of(with_existing_files(asked, options.out))
+        output = printed(with_existing_files(asked, options.out))
         write(output, options.out, force=options.force)
         click.echo(options.out / single.name / page_name(single.name))

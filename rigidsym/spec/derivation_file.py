@@ -33,7 +33,7 @@ _LINES = ("author", "course", "date")
 _SENTENCES = ("before", "after", "sources")
 _OUTPUT = (
     *("quantities", "kernels", "note", "style", "language"),
-    *("conversions", "derivatives", "degrees"),
+    *("conversions", "derivatives", "degrees", "certificates"),
 )
 
 
@@ -200,6 +200,7 @@ class _Reader:
             "language": table.choice("language", words.languages),
             "conversions": table.flag("conversions"),
             "degrees": table.flag("degrees"),
+            "certificates": table.flag("certificates"),
         }
         chosen["target_options"] = self.target_options(table) or None
         chosen["derivatives"] = self.derivatives(table, chosen["quantities"] or words.quantities)

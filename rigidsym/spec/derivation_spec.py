@@ -48,6 +48,7 @@ class DerivationSpec:
     conversions: bool = False  # to and from quaternion and matrix
     derivatives: tuple[str, ...] = ()  # "angular_velocity_body by q"
     degrees: bool = False  # angles in kernels
+    certificates: bool = False  # cofactors, and theorems for Coq and Lean
     notation: NotationChoice | None = None  # of notes and terminal; None: the default
     text: TextChoice | None = None  # the user's own, in the note
     source: Source | None = field(default=None, compare=False, repr=False)  # where it was read
@@ -88,6 +89,7 @@ class DerivationSpec:
             "conversions": self.conversions,
             "derivatives": list(self.derivatives),
             "degrees": self.degrees,
+            "certificates": self.certificates,
             "notation": self._notation_data(),
             "text": {k: v for k, v in asdict(self.text).items() if v} if self.text else {},
         }
