@@ -101,6 +101,17 @@ def is_identically_zero(expression: sp.Expr) -> bool:
     )
 
 
+def angle_of(sine: sp.Expr, cosine: sp.Expr) -> sp.Expr:
+    """The angle with a given sine and cosine; atan2 only if they name no angle themselves."""
+    for sign_of_sine in (1, -1):
+        for sign_of_cosine in (1, -1):
+            first, second = sign_of_sine * sine, sign_of_cosine * cosine
+            if first.func is sp.sin and second == sp.cos(first.args[0]):
+                angle = sign_of_sine * sign_of_cosine * first.args[0]
+                return angle if sign_of_cosine > 0 else angle + sp.pi
+    return sp.atan2(sine, cosine)
+
+
 def not_exact(number: sp.Float) -> AlgebraError:
     """The error for a floating-point number, with the fraction to write for it."""
     fraction = Fraction(str(number)).limit_denominator(10**12)

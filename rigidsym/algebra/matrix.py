@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations
 from operator import add
 from typing import Any
 
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.ring import Ring
+from rigidsym.algebra.shorten import shortest
 
 Row = tuple[PolyElement, ...]
 Origin = tuple[str, tuple[Any, ...]]  # "@", "+", "-", "T" or "*", and what it was applied to
@@ -151,6 +153,70 @@ class RingMatrix:
             tuple(tuple((-1) ** (i + j) * self._minor(j, i).det() for j in places) for i in places),
         )
 
+    def rank_and_minors(self, most: int | None = None) -> tuple[int, list[PolyElement]]:
+        """The generic rank, or `most` if that is less, and the minors of that size but zeros.
+
+        With `most`, one minor that is a number is enough: the rank is then the same everywhere.
+        """
+        largest = min(self.shape) if most is None else min(*self.shape, most)
+        for size in range(largest, 0, -1):
+            minors: list[PolyElement] = []
+            for minor in filter(None, self._minors(size)):
+                if most is not None and minor.is_ground:
+                    return size, [minor]
+                minors.append(minor)
+            if minors:
+                return size, minors
+        return 0, []
+
+    def _minors(self, size: int) -> Iterator[PolyElement]:
+        """The determinants of all parts with so many rows and columns."""
+        dot, places = self.ring.dot, range(self.shape[1])
+        if self.shape == (size, size):
+            yield self.det()
+            return
+        for rows in combinations(self.rows, size):
+            if size == 2:
+                first, second = rows
+                for j, k in combinations(places, 2):
+                    yield dot(((first[j], second[k]),), minus=((first[k], second[j]),))
+            else:
+                for columns in combinations(places, size):
+                    yield self._part(rows, columns).det()
+
+    def _part(self, rows: Sequence[Row], columns: Sequence[int]) -> RingMatrix:
+        return RingMatrix(self.ring, tuple(tuple(row[k] for k in columns) for row in rows))
+
+    def kernel(self, rank: int) -> RingMatrix:
+        """Columns that span the kernel of a matrix wider than its rank, by Cramer's rule."""
+        width = self.shape[1]
+        if not rank:
+            return RingMatrix.identity(self.ring, width)
+        if (rank, width) == (2, 3):
+            pairs = combinations(self.rows, 2)
+            normal = next(n for u, v in pairs if any(n := cross(self.ring, u, v)))
+            return RingMatrix.column(self.ring, primitive(self.ring, normal))
+        vectors: dict[Row, None] = {}
+        for rows, pivots in self._regular_parts(rank):
+            square = self._part(rows, pivots)
+            found = list(_solutions(square, rows, pivots, width))
+            if square.det().is_ground:
+                return RingMatrix(self.ring, tuple(found)).T
+            vectors |= dict.fromkeys(found)
+        return RingMatrix(self.ring, tuple(vectors)).T
+
+    def _regular_parts(self, rank: int) -> list[tuple[Sequence[Row], Sequence[int]]]:
+        """Rows and columns of the regular parts; only one if its determinant is constant."""
+        found: list[tuple[Sequence[Row], Sequence[int]]] = []
+        for rows in combinations(self.rows, rank):
+            for columns in combinations(range(self.shape[1]), rank):
+                determinant = self._part(rows, columns).det()
+                if determinant.is_ground and determinant:
+                    return [(rows, columns)]
+                if determinant:
+                    found.append((rows, columns))
+        return found
+
     def _minor(self, row: int, column: int) -> RingMatrix:
         """The matrix without one row and one column."""
         kept = [entries for place, entries in enumerate(self.rows) if place != row]
@@ -174,3 +240,30 @@ def hat(vector: RingMatrix) -> RingMatrix:
 def unhat(skew: RingMatrix) -> RingMatrix:
     """C⁻¹: the vector of a skew matrix, from its entries below the diagonal (lecture, 3.2)."""
     return RingMatrix.column(skew.ring, [skew[2, 1], skew[0, 2], skew[1, 0]])
+
+
+def _solutions(
+    square: RingMatrix, rows: Sequence[Row], pivots: Sequence[int], width: int
+) -> Iterator[Row]:
+    """A vector of the kernel for each column that is no pivot."""
+    ring = square.ring
+    above, below = square.adjugate(), square.det()
+    for free in (k for k in range(width) if k not in pivots):
+        solved = above @ RingMatrix.column(ring, [-row[free] for row in rows])
+        found = dict(zip(pivots, solved.entries, strict=True)) | {free: below}
+        yield primitive(ring, [found.get(k, ring.zero) for k in range(width)])
+
+
+def primitive(ring: Ring, given: Sequence[PolyElement]) -> Row:
+    """The entries without their common factor, the first of them with a plus sign."""
+    entries = [shortest(ring, entry) for entry in given]
+    first, *others = (entry for entry in entries if entry)
+    common = first
+    for entry in others:
+        if not common.is_ground:  # a search that can find nothing
+            common = common.gcd(entry)
+    common *= 1 if first.LC * common.LC > 0 else -1
+    if len(common) == 1:
+        (term,) = common.items()
+        return tuple(entry.quo_term(term) for entry in entries)
+    return tuple(entry.exquo(common) for entry in entries)

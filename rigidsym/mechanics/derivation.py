@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol, Self
 
 import sympy as sp
 
+from rigidsym.algebra.zeros import Place as Place
 from rigidsym.errors import DerivationError, QuantityError, offer
 from rigidsym.formula.sentence import Sentence
 from rigidsym.formula.tree import NOTHING, Formula
@@ -215,19 +216,6 @@ class Statement(NamedTuple):
     proofs: tuple[Proof, ...] = ()
     shows_summands: bool = False  # whether the matrix of the generic particle belongs to it
     summands: sp.ImmutableMatrix | None = None  # that matrix; its sum is the last side
-
-
-class Place(NamedTuple):
-    """A coordinate, or the length of all of them, at one value, over and over again.
-
-    The values are value + k period for all whole k; of a length, which is never negative, for
-    k = 0, 1, 2, ... alone.
-    """
-
-    coordinate: sp.Expr
-    value: sp.Expr  # of an angle in (−period/2, period/2]; of a length the least, above zero
-    period: sp.Expr  # 2π, a multiple of it where parts of the angle are turned by, or π
-    is_length: bool = False
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -16,9 +16,9 @@ import sympy as sp
 from rigidsym.algebra.angles import is_identically_zero
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.present import presenter_for
+from rigidsym.algebra.zeros import solver_for
 from rigidsym.mechanics.derivation import Place, Singularities, Singularity
 from rigidsym.mechanics.kinematics.recursion import Recursion
-from rigidsym.mechanics.singularities.zeros import solver_for
 from rigidsym.models.rotation import RotationModel
 
 _MOST_POINTS = 8  # that are listed

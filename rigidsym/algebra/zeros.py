@@ -1,4 +1,6 @@
-"""Common zeros of polynomials in sines and cosines: solved factor by factor, or not at all.
+"""Where polynomials in sines and cosines vanish, and where the rank of a matrix of them falls.
+
+Common zeros are solved factor by factor, or not at all.
 
 A factor is solved where it is the sine or the cosine of a rational multiple of one coordinate (or
 of the length n of all of them), 1 plus or minus such a cosine, or a sum of multiples of the two
@@ -15,15 +17,29 @@ from typing import Any, NamedTuple
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
+from rigidsym.algebra.adjoin import TIME
+from rigidsym.algebra.angles import angle_of
 from rigidsym.algebra.codec import Codec
+from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import Monomial
 from rigidsym.algebra.shorten import shortest
-from rigidsym.errors import AlgebraError
-from rigidsym.mechanics.derivation import Place
-from rigidsym.models.so3 import TIME
+from rigidsym.errors import AlgebraError, ModelError
 
 _QUARTERS = {0: (0, 1), 1: (1, 0), 2: (0, -1), -1: (-1, 0)}  # quarter turns: sine, cosine
+
+
+class Place(NamedTuple):
+    """A coordinate, or the length of all of them, at one value, over and over again.
+
+    The values are value + k period for all whole k; of a length, which is never negative, for
+    k = 0, 1, 2, ... alone.
+    """
+
+    coordinate: sp.Expr
+    value: sp.Expr  # of an angle in (−period/2, period/2]; of a length the least, above zero
+    period: sp.Expr  # 2π, a multiple of it where parts of the angle are turned by, or π
+    is_length: bool = False
 
 
 class Root(NamedTuple):
@@ -81,6 +97,86 @@ def matrix_at(matrix: RingMatrix, zero: Zero) -> RingMatrix:
     if not any(monomial[k] for entry in matrix.entries for monomial in entry for k in places):
         return matrix
     return RingMatrix.of(matrix.ring, [[substituted(e, zero) for e in row] for row in matrix.rows])
+
+
+class Stratum(NamedTuple):
+    """A zero at which the rank of a matrix falls, the matrix there, and its rank."""
+
+    zero: Zero
+    matrix: RingMatrix
+    rank: int
+
+
+class FallingRank:
+    """The rank of a matrix over a ring, and the zeros at which it falls.
+
+    `bound` are rows of the matrix: the derivatives of `constraints` by the coordinates. Zeros at
+    which these cannot hold do not count.
+    """
+
+    def __init__(
+        self,
+        codec: Codec,
+        coordinates: tuple[sp.Expr, ...],
+        matrix: RingMatrix,
+        *,
+        bound: RingMatrix | None = None,
+        constraints: tuple[sp.Expr, ...] = (),
+        name: str,
+    ) -> None:
+        self.codec, self.solver = codec, solver_for(codec, coordinates)
+        self._bound, self._constraints, self._name = bound, constraints, name
+        self.bound_rank = bound.rank_and_minors()[0] if bound is not None else 0
+        self.rank, self.minors = matrix.rank_and_minors()
+        self.strata: list[Stratum] = []
+        self.is_solved = self._search(matrix, (), self.rank, self.minors)
+
+    def _search(
+        self, matrix: RingMatrix, zero: Zero, rank: int, minors: Sequence[PolyElement]
+    ) -> bool:
+        """Enter the zeros at which the rank falls, and further on those at which it falls again.
+
+        Whether these are all.
+        """
+        if not rank or any(minor.is_ground for minor in minors):
+            return True
+        if len(minors) > 1 and self.solver.is_never_zero(self.sum_of_squares(minors)):
+            return True
+        zeros, is_solved = self.solver.common(minors)
+        for more in zeros:
+            whole = (*zero, *more)
+            is_allowed = self._is_allowed(whole)
+            if not is_allowed:
+                is_solved = is_solved and is_allowed is False
+                continue
+            there = matrix_at(matrix, more)
+            full, smaller = there.rank_and_minors(rank - 1)
+            self.strata.append(Stratum(whole, there, full))
+            is_solved = self._search(there, whole, full, smaller) and is_solved
+        return is_solved
+
+    def sum_of_squares(self, minors: Sequence[PolyElement]) -> PolyElement:
+        return self.codec.ring.dot((minor, minor) for minor in minors)
+
+    def _is_allowed(self, zero: Zero) -> bool | None:
+        """Whether the conditions on the coordinates can hold at a zero; None if nothing tells.
+
+        Nothing is told of points at which the conditions touch and leave more rates free.
+        """
+        relations = (substituted(relation, zero) for relation in self.codec.ring.relations)
+        if any(relation.is_ground and relation for relation in relations):
+            return False
+        bound = self._bound
+        if bound is not None and matrix_at(bound, zero).rank_and_minors()[0] < self.bound_rank:
+            return None
+        if not any(c.has(root.place.coordinate) for c in self._constraints for root in zero):
+            return True
+        places = tuple(root.place.coordinate - root.place.value for root in zero)
+        try:
+            configurations(self._name, (*self._constraints, *places), ())
+        except ModelError:
+            return None
+        return True
 
 
 @lru_cache(maxsize=32)
@@ -277,17 +373,6 @@ class Solver:
 
 def length_of(coordinates: Sequence[sp.Expr]) -> sp.Expr:
     return sp.sqrt(sp.Add(*(coordinate**2 for coordinate in coordinates)))
-
-
-def angle_of(sine: sp.Expr, cosine: sp.Expr) -> sp.Expr:
-    """The angle with a given sine and cosine; atan2 only if they name no angle themselves."""
-    for sign_of_sine in (1, -1):
-        for sign_of_cosine in (1, -1):
-            first, second = sign_of_sine * sine, sign_of_cosine * cosine
-            if first.func is sp.sin and second == sp.cos(first.args[0]):
-                angle = sign_of_sine * sign_of_cosine * first.args[0]
-                return angle if sign_of_cosine > 0 else angle + sp.pi
-    return sp.atan2(sine, cosine)
 
 
 def _placed(value: sp.Expr, period: sp.Expr, *, is_length: bool) -> sp.Expr:
