@@ -37,11 +37,8 @@ from rigidsym.models.rotation import (
 )
 from rigidsym.models.rotation_text import rotation_from as rotation_from
 from rigidsym.motion import Motion as Motion, derive as derive, kernels as kernels
-from rigidsym.tools.compare.comparison import (
-    Comparison as Comparison,
-    checked as checked,
-    compare as compare,
-)
+from rigidsym.tools.compare.comparison import checked as checked, compare as compare
+from rigidsym.tools.compare.matching import Comparison as Comparison
 from rigidsym.tools.identify.identification import identify as identify
 from rigidsym.tools.identify.report import Identification as Identification
 from rigidsym.version import __version__ as __version__

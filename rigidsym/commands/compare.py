@@ -42,8 +42,19 @@ class CompareOptions(RotationOptions):
         """The rotation to compare with, with the quantity derived."""
         given = self.of_rotation()
         if self.rotation is None or self.quantity is None:
-            if given or self.rotation or self.quantity:
-                raise click.UsageError("--rotation and --quantity belong together")
+            if self.rotation:
+                raise click.UsageError(
+                    f"--rotation {self.rotation} needs a quantity to compare with, such as "
+                    "--quantity rotation_matrix; without both, all known quantities are tried"
+                )
+            if self.quantity:
+                raise click.UsageError(
+                    f"--quantity {self.quantity} needs the rotation that it belongs to, such as "
+                    "--rotation ZYX; without both, all known quantities are tried"
+                )
+            if given:
+                flag = "--" + next(iter(given)).replace("_", "-")
+                raise click.UsageError(f"{flag} needs --rotation and --quantity")
             return None
         spec = read(self.rotation, **given)
         is_name = not given and spec.body is None and not self.rotation.endswith(".toml")
@@ -63,7 +74,7 @@ def command(context: click.Context, paths: tuple[Path, ...], options: CompareOpt
 
     In a folder, rotation matrices, rate matrices, quaternion kinematics and the mass and Coriolis
     matrices of quadcopters are found in Python, C, C++ and MATLAB. Text is read, never run. The
-    exit code is 1 if a formula is wrong, or TEXT is unknown.
+    exit code is 1 if a formula is wrong, or none is known.
     """
     if (options.formula is None) == (not paths):
         raise click.UsageError("expected --formula TEXT, or paths")
@@ -78,7 +89,7 @@ def command(context: click.Context, paths: tuple[Path, ...], options: CompareOpt
 
 
 def _searched(paths: Sequence[Path], *, as_json: bool) -> bool:
-    """Print the formulas in source files; whether one is wrong."""
+    """Print the formulas in source files; whether one is wrong, or none was found."""
     body = _quadcopter()
     also = [KnownQuantity(motion=body, rotation=body.name, quantity=name) for name in _OF_BODY]
     files = list(source_files(paths))
@@ -94,8 +105,9 @@ def _searched(paths: Sequence[Path], *, as_json: bool) -> bool:
                 progress((place + 1) / len(files))
     if as_json:
         click.echo(_json(records))
-    message(f"{counted(len(records), 'formula')} in {counted(len(files), 'file')}")
-    return wrong
+    what = counted(len(records), "formula") if records else "no known formula"
+    message(f"{what} in {counted(len(files), 'file')}")
+    return wrong or not records
 
 
 def _quadcopter() -> Motion:

@@ -273,8 +273,80 @@ def test_the_matrix_that_takes_a_quaternion_to_its_rates_is_known(last, factor):
     )
 
 
+OF_QUATERNION = [  # in Python, in C with the scalar last, and in LaTeX
+    "[2*(q0*dq1 - q1*dq0 - q2*dq3 + q3*dq2), 2*(q0*dq2 - q2*dq0 - q3*dq1 + q1*dq3), "
+    "2*(q0*dq3 - q3*dq0 - q1*dq2 + q2*dq1)]",
+    "{2*(q[3]*qd[0]-q[0]*qd[3]-q[1]*qd[2]+q[2]*qd[1]), 2*(q[3]*qd[1]-q[1]*qd[3]-q[2]*qd[0]+"
+    "q[0]*qd[2]), 2*(q[3]*qd[2]-q[2]*qd[3]-q[0]*qd[1]+q[1]*qd[0])}",
+    r"2\begin{pmatrix} q_0 \dot q_1 - q_1 \dot q_0 - q_2\dot q_3 + q_3\dot q_2 \\ q_0\dot q_2 - "
+    r"q_2\dot q_0 - q_3\dot q_1 + q_1\dot q_3 \\ q_0\dot q_3 - q_3\dot q_0 - q_1\dot q_2 + "
+    r"q_2\dot q_1\end{pmatrix}",
+]
+
+
+@pytest.mark.parametrize("text", OF_QUATERNION, ids=["python", "c", "latex"])
+def test_the_angular_velocity_of_a_quaternion_is_known_unaided(text):
+    found = rs.compare(text)
+    assert str(found.found) == "angular_velocity_body of unit_quaternion"
+    assert (found.is_equal, found.is_proved, len(found.record()["names"])) == (True, True, 8)
+
+
+@pytest.mark.parametrize("last", [False, True], ids=["first", "last"])
+def test_the_rate_matrix_of_a_quaternion_is_known_without_its_factor(last):
+    matrix = right("unit_quaternion", "rate_matrix_body") / 2
+    found = rs.compare(matrix[:, [1, 2, 3, 0]] if last else matrix)
+    assert str(found.found) == "rate_matrix_body of unit_quaternion"
+    assert (found.is_proved, found.arrangement) == (True, "scalar last, half" if last else "half")
+
+
+@pytest.mark.parametrize("rotation", ["gibbs_vector", "modified_rodrigues"])
+@pytest.mark.parametrize("quantity", ["angular_velocity_space", "rates_from_angular_velocity_body"])
+def test_quantities_of_vectors_are_known_unaided(rotation, quantity):
+    found = rs.compare(right(rotation, quantity))
+    assert (str(found.found), found.is_proved) == (f"{quantity} of {rotation}", True)
+
+
+def test_the_jacobian_of_a_rotation_vector_is_known_by_the_name_of_its_angle():
+    skew = "C([x, y, z])"
+    text = f"one(3) + (1 - cos(theta))/theta**2*{skew} + (theta - sin(theta))/theta**3*{skew}**2"
+    found = rs.compare(text)
+    assert str(found.found) == "rate_matrix_space of rotation_vector"
+    assert found.is_equal
+
+
+@pytest.mark.parametrize(
+    ("case", "change", "kind"),
+    [
+        (("unit_quaternion", "angular_velocity_body"), lambda m: -m, "sign"),
+        (("unit_quaternion", "angular_velocity_body"), lambda m: m / 2, "factor"),
+        (("xyz", "rate_matrix_body"), lambda m: m.T, "transpose"),
+    ],
+)
+def test_a_change_of_all_entries_is_named_unaided(case, change, kind):
+    found = rs.compare(change(right(*case)))
+    assert [repair.kind for repair in found.repairs] == [kind]
+    assert (found.found.quantity, found.is_equal, found.is_proved) == (case[1], False, True)
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ("hello", "hello is a single expression; expected a matrix of 3x3, "),
+        ("3", "3 is a single expression"),
+        ("[c -s; s c]", "the formula is a 2x2 matrix"),
+        ("[1, 2, 3]", "a vector of 3 entries of numbers only; expected a formula with names"),
+    ],
+)
+def test_what_is_no_formula_is_said(text, read):
+    with pytest.raises(ExpressionError, match=f"^{read}"):
+        rs.compare(text)
+    found = rs.compare(text, "ZYX", "rate_matrix_body").text()
+    expected = "" if "vector" in read and "3x3" in read else "; expected a 3x3 matrix)"
+    assert found.endswith(expected)
+
+
 def test_functions_may_return_anything_with_entries():
     found = rs.compare(lambda q: np.full((3, 3), np.sin(q[0])), "ZYX", "rotation_matrix")
-    assert found.text() == "not rotation_matrix of ZYX, and no single change makes it one"
+    assert found.text().startswith("not rotation_matrix of ZYX, and no single change makes it one")
     turn = lambda q: sp.Matrix([[sp.cos(q[0]), -sp.sin(q[0])], [sp.sin(q[0]), sp.cos(q[0])]])  # noqa: E731
     assert rs.compare(lambda q: sp.diag(turn(q), 1), "z(a)", "rotation_matrix").is_proved

@@ -334,4 +334,42 @@ def test_a_file_that_is_not_read_is_named_with_the_kinds_that_are(tmp_path):
         (large, "large.py: 300001 bytes; expected 300000 at most"),
     ):
         assert message in call("compare", str(file), cwd=tmp_path, status=2).stderr
-    assert run(str(ROOT / "docs" / "howto")).exit_code == 0  # a folder without source files
+
+
+def test_a_folder_without_formulas_is_told_from_a_right_one(tmp_path):
+    empty = call("compare", str(tmp_path), cwd=tmp_path, status=2)
+    assert "no source files; looked for .py, .c, .h, " in empty.stderr
+    (tmp_path / "a.py").write_text("x = 1\n")
+    assert "no known formula in 1 file" in call("compare", ".", cwd=tmp_path, status=1).stderr
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (["--rotation", "ZYX"], "--rotation ZYX needs a quantity to compare with, such as"),
+        (["--quantity", "rate_matrix_body"], "--quantity rate_matrix_body needs the rotation"),
+        (["--passive"], "--passive needs --rotation and --quantity"),
+    ],
+)
+def test_half_of_what_is_compared_with_is_refused(given, message, tmp_path):
+    wrong = call("compare", "--formula", "[a, b, c]", *given, cwd=tmp_path, status=2)
+    assert message in wrong.stderr
+
+
+def test_rates_in_arrays_are_read_in_c(tmp_path):
+    quaternion = "\n".join(
+        f"  w[{k}] = 2*(q[0]*qd[{k + 1}] - q[{k + 1}]*qd[0] - q[{a}]*qd[{b}] + q[{b}]*qd[{a}]);"
+        for k, (a, b) in enumerate([(2, 3), (3, 1), (1, 2)])
+    )
+    angles = (
+        "  w[0] = ed[0] - ed[2]*sin(e[1]);\n"
+        "  w[1] = ed[1]*cos(e[0]) + ed[2]*sin(e[0])*cos(e[1]);\n"
+        "  w[2] = ed[2]*cos(e[0])*cos(e[1]) - ed[1]*sin(e[0]);\n"
+    )
+    others = angles.replace("ed[", "u[")
+    text = "".join(f"void f(void) {{\n{body}\n}}\n" for body in (quaternion, angles, others))
+    found = [str(f.comparison.found) for f in found_in(tmp_path, "a.c", text)]
+    assert found == [
+        "angular_velocity_body of unit_quaternion",
+        *["angular_velocity_body of ZYX"] * 2,
+    ]

@@ -3,107 +3,27 @@
 from __future__ import annotations
 
 import inspect
-import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.errors import AlgebraError, DerivationError, ExpressionError, ModelError
+from rigidsym.errors import ExpressionError
 from rigidsym.motion import Motion
 from rigidsym.tools.compare.language import read_formula, spelled_out
-from rigidsym.tools.compare.plain import plain
-from rigidsym.tools.compare.repair import (
-    Meaning,
-    Repair,
-    entry_repairs,
-    renamings,
-    twofold_repairs,
-    whole_repairs,
+from rigidsym.tools.compare.matching import (
+    Comparison,
+    against,
+    identified,
+    in_text,
+    in_words,
+    likely,
 )
-from rigidsym.tools.compare.targets import KnownQuantity, Names, catalogue, readings, target
-
-_MOST_REPAIRS = 2  # of a formula that nobody has named
-_NEAR = 0.6  # share of entries that must be right for a formula to be close to another
-
-
-@dataclass(frozen=True, kw_only=True)
-class Comparison:
-    """What a formula is, and what makes it right."""
-
-    formula: sp.ImmutableMatrix
-    asked: KnownQuantity | None  # what it should be
-    found: KnownQuantity | None = None  # what it is after the repairs
-    names: Names | None = None
-    repairs: tuple[Repair, ...] = ()
-    arrangement: str = ""  # "transposed", "scalar last", "twice": what it is of what was found
-    as_it_stands: KnownQuantity | None = None  # what it is before a repair of its entries
-    is_proved: bool = False  # that the repaired formula is what was found
-
-    @property
-    def is_equal(self) -> bool:
-        """Whether the formula is right as it stands."""
-        return self.found is not None and not self.repairs
-
-    def record(self) -> dict[str, Any]:
-        """For JSON."""
-        found = self.found
-        return {
-            "equal": self.is_equal,
-            "proved": self.is_proved,
-            "rotation": found.rotation if found else None,
-            "quantity": found.quantity if found else None,
-            "arrangement": self.arrangement,
-            "as_it_stands": str(self.as_it_stands) if self.as_it_stands else None,
-            "names": self._called(),
-            "repairs": [
-                {
-                    "kind": repair.kind,
-                    "words": repair.words,
-                    "entry": list(repair.place) if repair.place else None,
-                    "before": None if repair.before is None else str(repair.before),
-                    "after": None if repair.after is None else str(repair.after),
-                }
-                for repair in self.repairs
-            ],
-        }
-
-    def text(self) -> str:
-        """The findings in sentences."""
-        proof = "proved" if self.is_proved else "equal to nine digits at random points"
-        if self.found is None:
-            head = f"not {self.asked}" if self.asked else "not a known quantity"
-            return f"{head}, and no single change makes it one"
-        what = f"{self.found}{self._in_names()}"
-        if self.arrangement:
-            what += f", {self.arrangement}"
-        if not self.repairs:
-            return f"equal to {what} ({proof})"
-        changes = "; ".join(repair.words for repair in self.repairs)
-        if self.asked is None:
-            return f"close to {what}: {changes} (with this, {proof})"
-        if self.as_it_stands:
-            changes += f"; as it stands this is {self.as_it_stands}"
-        is_changed = self.asked.quantity == self.found.quantity
-        is_changed &= self.asked.rotation == self.found.rotation
-        proof = f"with this, {proof}" if is_changed else proof
-        return f"not {self.asked}: {changes}{'' if is_changed else self._in_names()} ({proof})"
-
-    def _in_names(self) -> str:
-        """The coordinates as the user calls them, in the order of the rotation."""
-        called = self._called()
-        own = self.found.coordinates if self.found else {}
-        names = [called.get(name, name) for name in own]
-        return f" in ({', '.join(names)})" if names != list(own) else ""
-
-    def _called(self) -> dict[str, str]:
-        """Names of the user by those of the quantity that was found."""
-        symbols = {meant: str(name) for name, meant in (self.names or {}).items()}
-        known = self.found.names if self.found else {}
-        return {name: symbols[symbol] for name, symbol in known.items() if symbol in symbols}
+from rigidsym.tools.compare.plain import plain
+from rigidsym.tools.compare.repair import Meaning
+from rigidsym.tools.compare.targets import SHAPES, KnownQuantity, target
 
 
 def compare(
@@ -120,11 +40,27 @@ def compare(
     if callable(formula):
         return _of_function(formula, _goal(rotation, quantity))
     matrix = spelled_out(as_matrix(formula))
-    if rotation is None:
-        return identified(matrix)
+    if matrix.rows == 1:
+        matrix = matrix.T
+    if rotation is None and quantity is None:
+        return identified(_checked(matrix))
     goal = _goal(rotation, quantity)
     found = against(matrix, goal)
-    return found if found.found or not isinstance(formula, str) else _in_text(found, plain(formula))
+    return found if found.found or not isinstance(formula, str) else in_text(found, plain(formula))
+
+
+def _checked(formula: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """Raises ExpressionError if the formula cannot be a quantity of the catalogue."""
+    shape = in_words(formula.shape)
+    if formula.shape not in SHAPES:
+        read = f"{formula[0]} is {shape}" if len(formula) == 1 else f"the formula is {shape}"
+        raise ExpressionError(
+            f"{read}; expected a matrix of 3x3, 3x4, 4x3 or 4x4, or a vector of 3 or 4 entries, as "
+            "in [c -s 0; s c 0; 0 0 1]"
+        )
+    if not formula.free_symbols:
+        raise ExpressionError(f"{shape} of numbers only; expected a formula with names of angles")
+    return formula
 
 
 def as_matrix(formula: Any) -> sp.ImmutableMatrix:
@@ -156,138 +92,6 @@ def _goal(rotation: str | Motion | None, quantity: str | None) -> KnownQuantity:
     if isinstance(rotation, Motion):
         return KnownQuantity(motion=rotation, rotation=rotation.name, quantity=quantity)
     return target(rotation, quantity)
-
-
-def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
-    """Compare with one quantity."""
-    meant = [Meaning.of(formula, goal, names) for names in readings(formula, goal)]
-    found = next(_likely(meant, goal), None)
-    if found and not any(repair.place for repair in found[1]):
-        return _made(*found, goal)
-    other = identified(formula, only_equal=True)
-    if found:
-        return replace(_made(*found, goal), as_it_stands=other.found)
-    if other.found:
-        words = f"this is {other.found}"
-        repair = Repair(kind="convention", words=words, formula=formula, goal=other.found)
-        return replace(other, asked=goal, repairs=(repair, *other.repairs))
-    if found := next(((m, (r,)) for m in meant for r in twofold_repairs(m)), None):
-        return _made(*found, goal)
-    return Comparison(formula=formula, asked=goal)
-
-
-def _likely(
-    meant: Sequence[Meaning], goal: KnownQuantity
-) -> Iterator[tuple[Meaning, tuple[Repair, ...]]]:
-    """Readings with the repairs that make them right, the smallest first."""
-    yield from ((m, ()) for m in meant if m.agrees(m.formula, goal))
-    yield from ((m, (r,)) for m in meant for r in whole_repairs(m))
-    nearest = max(meant, key=_count_right, default=None)
-    entries = entry_repairs(nearest) if nearest else ()
-    if nearest and len(entries) == 1 and entries[0].kind != "entry":
-        yield nearest, entries
-    yield from ((m, (r,)) for m in meant for r in renamings(m))
-    if nearest and entries:
-        yield nearest, entries
-
-
-def identified(
-    formula: sp.ImmutableMatrix, *, only_equal: bool = False, also: Sequence[KnownQuantity] = ()
-) -> Comparison:
-    """Compare with all quantities of the catalogue, and `also`; the nearest if none is equal."""
-    near: list[tuple[float, str, Meaning]] = []
-    for goal in (*catalogue(formula), *also):
-        for arrangement, arranged in _arranged(formula, goal):
-            for names in readings(arranged, goal):
-                reading = Meaning.of(arranged, goal, names)
-                right = reading.right
-                if right.all():
-                    return replace(_made(reading, (), None), arrangement=arrangement)
-                near.append((float(right.mean()), arrangement, reading))
-    near.sort(key=lambda each: -each[0])
-    for share, arrangement, reading in near[:8] if not only_equal else ():
-        repairs = entry_repairs(reading) if share >= _NEAR else ()
-        if 0 < len(repairs) <= _MOST_REPAIRS and all(r.kind != "entry" for r in repairs):
-            found = _made(reading, repairs, None)
-            return replace(found, arrangement=arrangement)
-    return Comparison(formula=formula, asked=None)
-
-
-def _arranged(
-    formula: sp.ImmutableMatrix, goal: KnownQuantity
-) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
-    """(what the formula is of the quantity, the formula as the quantity is written)."""
-    if formula.shape != goal.matrix.shape:
-        return
-    yield "", formula
-    if goal.quantity == "rotation_matrix":
-        yield "transposed (passive, the direction cosine matrix)", formula.T
-    if formula.rows == 4:
-        last = [3, 0, 1, 2]
-        moved = formula[last, last] if formula.cols == 4 else formula[last, :]
-        for words, each in (("", formula), ("scalar last", moved)):
-            yield from ((words, each),) if words else ()
-            yield ", ".join(filter(None, (words, "twice"))), each / 2
-
-
-_SIGNS = {"+": "-", "-": "+", "sin": "cos", "cos": "sin", "**2": ""}
-
-
-def _in_text(unknown: Comparison, text: str) -> Comparison:
-    """The comparison after one change in the text, such as a sign between matrices."""
-    goal = unknown.asked
-    assert goal is not None
-    for match in re.finditer(r"[+-]|\b(?:sin|cos)\b|\*\*2\b", text):
-        changed = text[: match.start()] + _SIGNS[match[0]] + text[match.end() :]
-        formula = spelled_out(read_formula(changed))
-        for names in readings(formula, goal):
-            reading = Meaning.of(formula, goal, names)
-            if reading.agrees(formula, goal):
-                before = text[max(0, match.start() - 15) : match.end() + 15]
-                after = changed[max(0, match.start() - 15) : match.end() + 15]
-                words = f"...{before}... should be ...{after}..."
-                kind = {"s": "sine and cosine", "c": "sine and cosine", "*": "square"}
-                change = Repair(
-                    kind=kind.get(match[0][0], "sign"), words=words, formula=formula, goal=goal
-                )
-                return replace(_made(reading, (change,), goal), formula=unknown.formula)
-    return unknown
-
-
-def _count_right(reading: Meaning) -> int:
-    same = reading.formula.shape == reading.goal.matrix.shape
-    return int(reading.right.sum()) if same else 0
-
-
-def _made(reading: Meaning, repairs: Sequence[Repair], asked: KnownQuantity | None) -> Comparison:
-    """The comparison, with the proof that the repaired formula is what was found."""
-    found = repairs[0].goal if repairs else reading.goal
-    changed = _together(reading.formula, repairs)
-    ours, theirs = map(found.applied, (found.matrix, changed.xreplace(dict(reading.names))))
-    try:
-        is_proved = found.motion.equality(theirs, ours).is_exact
-    except DerivationError:  # it is false, although the numbers agree
-        return Comparison(formula=reading.formula, asked=asked)
-    except (AlgebraError, ModelError):  # the ring cannot hold it
-        is_proved = False
-    return Comparison(
-        formula=reading.formula,
-        asked=asked,
-        found=found,
-        names=reading.names,
-        repairs=tuple(repairs),
-        is_proved=is_proved,
-    )
-
-
-def _together(formula: sp.ImmutableMatrix, repairs: Iterable[Repair]) -> sp.ImmutableMatrix:
-    """The formula after all repairs: of one, or of one entry each."""
-    changed = formula.as_mutable()
-    for repair in repairs:
-        if repair.after is None or repair.place is None:
-            return repair.formula
-        changed[repair.place[0] - 1, repair.place[1] - 1] = repair.after
-    return sp.ImmutableMatrix(changed)
 
 
 # Functions
@@ -324,7 +128,7 @@ def _by_numbers(
     formula = sp.ImmutableMatrix(entries)
     values = {s: table[:, i, j] for i, row in enumerate(entries) for j, s in enumerate(row)}
     reading = Meaning(formula=formula, goal=goal, names={}, values=values)
-    _, repairs = next(_likely([reading], goal), (reading, None))
+    _, repairs = next(likely([reading], goal), (reading, None))
     if repairs is None:
         return Comparison(formula=formula, asked=goal)
     found = repairs[0].goal if repairs else goal

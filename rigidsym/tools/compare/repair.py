@@ -52,7 +52,8 @@ class Meaning:
     @classmethod
     def of(cls, formula: sp.ImmutableMatrix, goal: KnownQuantity, names: Names) -> Meaning:
         meant = sp.Matrix([[*names.values()]])
-        values = dict(zip(names, evaluated(meant, dict(goal.points))[:, 0].T, strict=True))
+        numbers = evaluated(meant, dict(goal.points))[:, 0].T if names else ()
+        values = dict(zip(names, numbers, strict=True))
         return cls(formula=formula, goal=goal, names=names, values=values)
 
     def numbers(self, matrix: sp.MatrixBase) -> Array:
@@ -72,6 +73,15 @@ class Meaning:
     def right(self) -> NDArray[np.bool_]:
         """Which entries are right."""
         return agreement(self.numbers(self.formula), self.goal.values)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether a transpose, a sign or a factor of all entries makes them right."""
+        numbers, wanted = self.numbers(self.formula), self.goal.values
+        changed = (numbers.transpose(0, 2, 1), -numbers, 2 * numbers, numbers / 2)
+        return any(
+            each.shape == wanted.shape and bool(agreement(each, wanted).all()) for each in changed
+        )
 
 
 Change = tuple[str, str, sp.ImmutableMatrix]  # kind, words, the formula after it

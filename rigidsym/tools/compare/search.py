@@ -15,8 +15,8 @@ from typing import Any
 import sympy as sp
 
 from rigidsym.errors import ExpressionError, RequestError
-from rigidsym.tools.compare.comparison import Comparison, identified
 from rigidsym.tools.compare.language import read_formula, spelled_out
+from rigidsym.tools.compare.matching import Comparison, identified
 from rigidsym.tools.compare.plain import name_of, plain
 from rigidsym.tools.compare.targets import KnownQuantity, stem_of
 
@@ -70,8 +70,8 @@ class FormulaInFile:
 def source_files(paths: Sequence[Path]) -> Iterator[Path]:
     """The source files among the paths and below them, in order, without hidden folders.
 
-    Raises RequestError for a file in another language or of more than 300 kB, and ExpressionError
-    if there are more than can be searched.
+    Raises RequestError for a file in another language or of more than 300 kB and if there are no
+    source files, and ExpressionError if there are more than can be searched.
     """
     for path in paths:
         if path.is_file() and path.suffix not in SUFFIXES:
@@ -89,6 +89,9 @@ def source_files(paths: Sequence[Path]) -> Iterator[Path]:
         and file.is_file()
         and file.stat().st_size <= _MOST_BYTES
     ]
+    if not files:
+        where = ", ".join(map(str, paths))
+        raise RequestError(f"{where}: no source files; looked for {', '.join(SUFFIXES)}")
     if len(files) > _MOST_FILES:
         raise ExpressionError(f"{len(files)} source files; expected at most {_MOST_FILES}")
     yield from dict.fromkeys(files)
@@ -273,4 +276,6 @@ def _may_be_known(matrix: sp.ImmutableMatrix) -> bool:
     if count:
         return count >= (2 if matrix.cols == 1 else 4)
     varied = sum(not entry.is_number for entry in matrix)
+    if matrix.shape == (3, 1):  # an angular velocity, or rates, without sines
+        return varied == 3 and len(matrix.free_symbols) >= 6
     return len(matrix.free_symbols) >= 3 and varied >= (4 if matrix.cols == 1 else 6)

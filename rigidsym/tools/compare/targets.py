@@ -39,6 +39,7 @@ _TWO = tuple(f"{a}(first) {b}(second)" for a, b in permutations("xyz", 2))
 _VECTORS = ("gibbs_vector", "modified_rodrigues")
 _QUATERNIONS = ("unit_quaternion",)
 _SERIES = ("rotation_vector",)
+_AXIS_ANGLE = ("axis_angle",)
 _FRAMES = ("body", "space")
 _OF_RATES = tuple(
     f"{name}_{frame}"
@@ -49,6 +50,14 @@ _OF_RATES = tuple(
     for frame in _FRAMES
 )
 OPERATOR = "quaternion_rate_operator"  # A(Ω) with q̇ = A q
+SHAPES: dict[tuple[int, int], tuple[str, ...]] = {  # of formulas, and what each may be
+    (3, 3): ("rotation_matrix", *_OF_RATES[:4]),
+    (3, 1): _OF_RATES[4:],
+    (4, 1): _OF_RATES[6:],
+    (4, 3): _OF_RATES[2:4],
+    (3, 4): _OF_RATES[:2],
+    (4, 4): tuple(f"{OPERATOR}_{frame}" for frame in _FRAMES),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,27 +163,24 @@ def _kinematics(rotation: str, quantities: tuple[str, ...]) -> Motion:
 
 def catalogue(matrix: sp.MatrixBase) -> Iterator[KnownQuantity]:
     """All quantities that a formula of this shape may be, plain ones first."""
-    turns = matrix.has(sp.sin, sp.cos, sp.tan)
-    count = len(matrix.free_symbols)
-    table: dict[tuple[int, int], Sequence[str]] = {
-        (3, 3): ("rotation_matrix", *_OF_RATES[:4]),
-        (3, 1): _OF_RATES[4:],
-        (4, 1): _OF_RATES[6:],
-        (4, 3): _OF_RATES[2:4],
-        (3, 4): _OF_RATES[:2],
-        (4, 4): tuple(f"{OPERATOR}_{frame}" for frame in _FRAMES),
-    }
-    for quantity in table.get(matrix.shape, ()):
-        rotations = _THREE if turns else _VECTORS[: 2 * (count == 3)]
-        if matrix.shape != (3, 3) and matrix.shape != (3, 1):
-            rotations = _QUATERNIONS
-        elif quantity == "rotation_matrix":
-            few = _ONE if count == 1 else _TWO if count == 2 else _THREE
-            many = ("axis_angle",) if count > 3 else few
-            rotations = many if turns else (*_QUATERNIONS, "quaternion") if count == 4 else _VECTORS
-        if matrix.has(sp.sqrt) or (turns and count == 3):
-            rotations = (*rotations, *_SERIES[: quantity == "rotation_matrix"])
-        yield from (target(rotation, quantity) for rotation in rotations)
+    for quantity in SHAPES.get(matrix.shape, ()):
+        yield from (target(rotation, quantity) for rotation in _rotations(matrix, quantity))
+
+
+def _rotations(matrix: sp.MatrixBase, quantity: str) -> tuple[str, ...]:
+    """The rotations whose quantity has as many names, and sines and cosines if this has."""
+    turns, count = matrix.has(sp.sin, sp.cos, sp.tan), len(matrix.free_symbols)
+    if 4 in matrix.shape:
+        return _QUATERNIONS
+    if quantity == "rotation_matrix":
+        angles = {1: _ONE, 2: _TWO, 3: _THREE}.get(count, _AXIS_ANGLE)
+        parts = {3: _VECTORS, 4: (*_QUATERNIONS, *_VECTORS), 5: _QUATERNIONS}.get(count, ())
+    elif matrix.shape == (3, 3):
+        angles, parts = _THREE, _VECTORS[: 2 * (count in (3, 4))]
+    else:
+        angles, parts = (*_THREE, *_AXIS_ANGLE), (*_VECTORS, *_QUATERNIONS)
+    series = _SERIES if matrix.has(sp.sqrt) or (turns and count >= 3) else ()
+    return (*(angles if turns else parts), *series)
 
 
 def evaluated(matrix: sp.MatrixBase, values: Values) -> Array:
@@ -214,8 +220,10 @@ def agreement(one: Array, other: Array) -> NDArray[np.bool_]:
 
 # What the names in a formula stand for
 
-_LENGTH = "n"
-_RATE = re.compile(r"(?:d_?|dot_?)(?P<behind>\w+)|(?P<before>\w+?)_?(?:dot|rate|d|p)")
+_LENGTHS = ("n", "theta", "angle", "norm")
+_RATE = re.compile(
+    r"(?:d_?|dot_?)(?P<behind>\w+)|(?P<before>\w+?)_?(?:dot|rates?|d|p)(?P<index>_?\d)?"
+)
 _OMEGA = re.compile(
     r"(?:omega|Omega|w|W|gyro|g|rate|Omega_body|omega_(?:body|space))_?[xyz0-3]|[pqr]|[wW][pqr]"
 )
@@ -224,11 +232,13 @@ _OMEGA = re.compile(
 def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
     """The possible meanings of the names: their own if all are known, else every assignment.
 
-    If the rotation has a vector, n is the length of this vector or of all coordinates, as in notes.
+    If the rotation has a vector, n is the length of this vector or of all coordinates, as in notes,
+    and so are other names that texts give to a length.
     """
     model = goal.motion.model
-    length = next((s for s in matrix.free_symbols if s.name == _LENGTH), None)
-    if length and model.vector and _LENGTH not in goal.names:
+    lengths = _LENGTHS[:1] if model.constraints else _LENGTHS
+    length = next((s for s in matrix.free_symbols if s.name in lengths), None)
+    if length and model.vector and length.name not in goal.names:
         for names in readings(matrix.xreplace({length: sp.Integer(1)}), goal):
             for parts in dict.fromkeys((model.coordinates, model.vector)):
                 yield {**names, length: sp.sqrt(sum(part**2 for part in parts))}
@@ -245,6 +255,7 @@ def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
     omega = omega if {"omega_body", "omega_space"} & inputs else []
     left = [s for s in symbols if s not in omega]
     rates = {s: stem for s in left if (stem := stem_of(s.name)) and s not in angles}
+    rates = rates or _of_arrays([s for s in left if s not in angles], angles)
     rates = rates if "q_dot" in inputs else {}
     others = [s for s in left if s not in rates and angles and s not in angles]
     others = others if goal.motion.body else []
@@ -264,6 +275,14 @@ def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
         yield found | dict(zip(omega, velocity, strict=False)) | fixed
 
 
+def _of_arrays(others: Sequence[sp.Symbol], angles: set[sp.Symbol]) -> dict[sp.Symbol, str]:
+    """e_1 by its rate u_1, if all angles are in one array and all other names in another."""
+    arrays = [{s.name.rpartition("_")[0] for s in part} for part in (angles, others)]
+    if any(len(array) != 1 or "" in array for array in arrays):
+        return {}
+    return {s: f"{min(arrays[0])}_{s.name.rpartition('_')[2]}" for s in others}
+
+
 def _inputs(goal: KnownQuantity) -> set[str]:
     if goal.quantity.startswith(OPERATOR):
         return {"q", "omega" + goal.quantity.removeprefix(OPERATOR)}
@@ -271,9 +290,9 @@ def _inputs(goal: KnownQuantity) -> set[str]:
 
 
 def stem_of(name: str) -> str:
-    """phi of phi_dot, dphi, phidot, phi_rate; "" for other names."""
+    """phi of phi_dot, dphi, phidot, phi_rate, and q_0 of qd_0; "" for other names."""
     match = _RATE.fullmatch(name)
-    return (match["behind"] or match["before"]) if match else ""
+    return match["behind"] or match["before"] + (match["index"] or "") if match else ""
 
 
 def _natural(name: str) -> tuple[object, ...]:
