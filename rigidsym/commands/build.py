@@ -31,10 +31,10 @@ class BuildOptions(FolderOptions, KernelOptions, RotationOptions):
 def command(sources: tuple[str, ...], options: BuildOptions) -> None:
     """Compile kernels in C into Python modules, NAME_c.py.
 
-    For a rotation or a derivation FILE, the C source is written first, as by --target c. NAME.c
-    is compiled with the other files of its derivation beside it. The binary uses this CPU's
-    instruction set; use --portable to share it. Without a C compiler the exit code is 4, and the
-    source is written all the same.
+    For a ROTATION or a derivation FILE, `build` first writes the C source, as --target c does. A
+    generated FILE NAME.c is compiled as it is. The binary uses this CPU's instruction set; use
+    --portable to share it. Without a C compiler, `build` writes only the source, and the exit code
+    is 4.
     """
     for source in sources:
         for module in _built(source, options):

@@ -22,19 +22,19 @@ from rigidsym.version import __version__
 _INTERRUPTED = 130
 _NEW_OBJECTS = 200_000  # between two searches for cycles; importing SymPy makes 100,000
 _SUMMARIES = {  # name: what `rigidsym --help` says of it
-    "derive": "Derive one rotation; show it and write its files.",
+    "derive": "Derive one rotation, show the result, and write files.",
     "run": "Run derivation files.",
     "page": "Write an interactive page for a browser.",
     "build": "Compile kernels in C into a Python module.",
     "check": "Compare generated files with a fresh derivation.",
     "eval": "Evaluate quantities for every row of a file.",
     "identify": "Find the convention that given numbers follow.",
-    "compare": "Name the convention of a formula and its errors.",
-    "inertia": "Mass properties of particles or of a mesh.",
+    "compare": "Check formulas and name their conventions.",
+    "inertia": "Compute the mass properties of particles or a mesh.",
     "simulate": "Simulate a motion and report its first integrals.",
     "problems": "Write a problem sheet with worked solutions.",
     "list": "List rotations, quantities, targets and shipped files.",
-    "templates": "Copy the shipped templates, to change them.",
+    "templates": "Copy the shipped templates, so that you can change them.",
 }
 _FILES = {"eval": "evaluate"}  # where the file is not named after its command
 
@@ -101,6 +101,6 @@ class _Commands(click.Group):
 @click.version_option(__version__, prog_name="rigidsym")
 @click.pass_context
 def commands(context: click.Context) -> None:
-    """Derive the kinematics of a rotation, proved step by step; print kernels and notes."""
+    """Derive the kinematics of a rotation, prove each step, and write kernels and notes."""
     if os.environ.get("NO_COLOR"):
         context.color = False

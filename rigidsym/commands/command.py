@@ -33,7 +33,7 @@ _LIMITS = (
         type=POSITIVE,
         default=4.0,
         metavar="GB",
-        help="Stop when this much memory is needed; inf for no limit.  [default: 4]",
+        help="Stop if more memory is needed; inf for no limit.  [default: 4]",
     ),
 )
 

@@ -31,10 +31,10 @@ class CompareOptions(RotationOptions):
         "--formula", metavar="TEXT", help="A matrix or vector in Python, C, MATLAB or LaTeX."
     )
     rotation: str | None = option(
-        "--rotation", metavar="ROTATION", help="As for `derive`, or a derivation file."
+        "--rotation", metavar="ROTATION", help="A rotation as for `derive`, or a derivation file."
     )
     quantity: str | None = option(
-        "--quantity", metavar="NAME", help="What the formula should be; see `rigidsym list`."
+        "--quantity", metavar="NAME", help="The quantity that the formula should give."
     )
     as_json: bool = option("--json", help="Print the results as JSON.")
 
@@ -66,15 +66,15 @@ class CompareOptions(RotationOptions):
 @with_options(CompareOptions)
 @click.pass_context
 def command(context: click.Context, paths: tuple[Path, ...], options: CompareOptions) -> None:
-    """Check formulas: one in TEXT, or those in the source files of each PATH.
+    """Check the formula TEXT, or all formulas in source files.
 
-    A formula is compared with a quantity of a rotation, or with all known conventions. If it is
-    wrong, the smallest repair is named: a sign, a transpose, sine for cosine, another angle or
-    frame, the order of turns, a missing square. Answers are proved, if the ring can hold them.
+    The formula TEXT is compared with a quantity of a rotation, or with all known conventions. If
+    it is wrong, `compare` names the smallest repair: a sign, a transpose, sine for cosine, another
+    angle or frame, the order of turns, a missing square. Answers are proved wherever possible.
 
-    In a folder, rotation matrices, rate matrices, quaternion kinematics and the mass and Coriolis
-    matrices of quadcopters are found in Python, C, C++ and MATLAB. Text is read, never run. The
-    exit code is 1 if a formula is wrong, or none is known.
+    PATHS are files or folders. In Python, C, C++ and MATLAB, `compare` finds rotation matrices,
+    rate matrices, quaternion kinematics, and the mass and Coriolis matrices of quadcopters. Source
+    code is parsed, never run. The exit code is 1 if a formula is wrong, or if none is known.
     """
     if (options.formula is None) == (not paths):
         raise click.UsageError("expected --formula TEXT, or paths")

@@ -38,26 +38,31 @@ class EvaluationOptions(RotationOptions):
         "--quantity",
         "--only",
         default=("angular_velocity_body",),
-        help="A quantity, or quaternion, from_quaternion, from_rotation_matrix. May be repeated.",
+        help="Quantities or conversions: quaternion, from_quaternion, from_rotation_matrix. May be "
+        "repeated.",
     )
     out: Path = option(
         "--out",
         required=True,
         type=click.Path(dir_okay=False, allow_dash=True, path_type=Path),
         metavar="RESULT",
-        help="Result file: NPY, Parquet or CSV by its ending, or - for CSV on standard output.",
+        help="Result file: .npy, .parquet or .csv; - writes CSV to standard output.",
     )
     columns: list[str] | None = option("--columns", help="Names of the columns of FILE, in order.")
-    given: tuple[tuple[str, float], ...] = option("--given", help="An input without a column.")
+    given: tuple[tuple[str, float], ...] = option("--given", help="A constant input.")
     keep: list[str] | None = option("--keep", help="Columns of FILE to copy, such as time.")
     missing: Missing = option(
         "--missing",
         type=click.Choice(["error", "nan", "drop"]),
         default="error",
-        help="If a number of a row is missing: an error, NaN as the result, or no result.",
+        help="If a row lacks a number: stop, write NaN, or leave the row out.",
     )
-    degrees: bool = option("--degrees", help="Write degrees; read them if no unit is stated.")
-    threads: int = option("--threads", type=click.IntRange(1), default=1, help="Worker threads.")
+    degrees: bool = option(
+        "--degrees", help="Write degrees, and read columns without a unit as degrees."
+    )
+    threads: int = option(
+        "--threads", type=click.IntRange(1), default=1, help="Number of worker threads."
+    )
     scheduler: str | None = option(
         "--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster."
     )
@@ -72,11 +77,11 @@ class EvaluationOptions(RotationOptions):
 def command(rotation: str, file: Path, options: EvaluationOptions) -> None:
     """Evaluate quantities of ROTATION for every row of FILE, however long.
 
-    ROTATION is as for `derive`, or a derivation file, whose body provides its numbers. FILE is
-    NPY, Parquet, or text with one row a line; - is standard input. Columns are found by name
-    (phi, theta, psi, phi_dot, ...); without names they are the inputs in order. Units in names,
-    such as "yaw [deg]" or "gyro_x [°/s]", are converted; without a unit, angles are in radians.
-    RESULT is written as a whole or not at all.
+    ROTATION is as for `derive`, or a derivation file with the parameters of its body. FILE is NPY,
+    Parquet, or text with one row per line; - is standard input. Columns are found by name (phi,
+    theta, psi, phi_dot, ...); without names they are the inputs in order. Units in names, such as
+    "yaw [deg]" or "gyro_x [°/s]", are converted; without a unit, angles are in radians. If the
+    command is stopped, an older RESULT is kept.
     """
     made = _evaluated(read(rotation, **options.of_rotation()), file, options)
     rows, columns = counted(made.rows, "row"), ", ".join(made.columns)

@@ -34,11 +34,15 @@ def _samples(name: str, form: str, about: str) -> Any:
 class IdentifyOptions:
     """All options of `identify`."""
 
-    angles: tuple[str, ...] = _samples("angles", "A,B,C", "Three angles; roll=A,... names them.")
+    angles: tuple[str, ...] = _samples(
+        "angles", "A,B,C", "Three angles; roll=A,pitch=B,yaw=C names them."
+    )
     matrix: tuple[str, ...] = _samples("matrix", "R11,R12,...", "Nine numbers, row by row.")
-    quaternion: tuple[str, ...] = _samples("quaternion", "A,B,C,D", "Scalar first or last.")
+    quaternion: tuple[str, ...] = _samples(
+        "quaternion", "A,B,C,D", "Four numbers, scalar first or last."
+    )
     rates: tuple[str, ...] = _samples("rates", "A,B,C", "Rates of the angles; needs --omega.")
-    omega: tuple[str, ...] = _samples("omega", "X,Y,Z", "The angular velocity.")
+    omega: tuple[str, ...] = _samples("omega", "X,Y,Z", "Components of the angular velocity.")
     columns: list[str] | None = option(
         "--columns", help="Names of the columns of FILE; - skips one."
     )
@@ -46,15 +50,16 @@ class IdentifyOptions:
         "--tolerance",
         type=float,
         metavar="RADIANS",
-        help="Largest angle between data and reading.  [default: from the digits given]",
+        help="Largest angle between the data and a convention that fits.  [default: from the "
+        "digits given]",
     )
     missing: str = option(
         "--missing",
         type=click.Choice(["error", "drop"]),
         default="error",
-        help="Samples in which a number is missing.",
+        help="If a sample lacks a number: stop, or leave it out.",
     )
-    everything: bool = option("--all", help="Show all readings, with all calls.")
+    everything: bool = option("--all", help="Show every convention that fits, with all calls.")
     as_json: bool = option("--json", help="Print the results as JSON.")
 
 
@@ -65,11 +70,12 @@ class IdentifyOptions:
 def command(context: click.Context, file: Path | None, options: IdentifyOptions) -> None:
     """Name the convention that angles and a matrix or quaternion follow.
 
-    Give samples as options, each option once per sample, or in FILE. FILE is NPY or Parquet, with
-    3 angles and 9 or 4 numbers a row (then 3 rates and 3 components of the angular velocity), or
-    text with named columns: roll,pitch,yaw or phi,theta,psi or a1,a2,a3; r11,...,r33 or q1,...,q4
-    or qw,qx,qy,qz; a1_dot,... or rate1,...; omega1,omega2,omega3. Units in names, such as
-    "yaw [mrad]", are converted. The exit code is 1 if no convention fits.
+    Give samples as options, each option once per sample, or in FILE. FILE is NPY, Parquet or text.
+    Its columns may have names: roll,pitch,yaw or phi,theta,psi or a1,a2,a3; r11,...,r33 or
+    q1,...,q4 or qw,qx,qy,qz; a1_dot,... or rate1,...; omega1,omega2,omega3. Without names, they are
+    3 angles, then 9 entries of a matrix or 4 of a quaternion, then perhaps 3 rates and 3 components
+    of the angular velocity. Units in names, such as "yaw [mrad]", are converted. The exit code is 1
+    if no convention fits.
     """
     texts = {name: getattr(options, name) for name in _COUNTS}
     if (file is None) == (not any(texts.values())):

@@ -18,14 +18,17 @@ from rigidsym.system.progress import bar
 @make("rigidsym inertia cloud.npy\n         rigidsym inertia part.stl --density 2700 --scale 0.001")
 @click.argument("file", type=EXISTING_FILE)
 @click.option(
-    "--columns", type=NAMES, metavar="NAME,...", help="Column order of particles, such as x,y,z,m."
+    "--columns",
+    type=NAMES,
+    metavar="NAME,...",
+    help="Names of the columns, in order, such as x,y,z,m.",
 )
 @click.option("--mass", type=POSITIVE, metavar="KG", help="Mass of a uniform mesh.")
 @click.option("--density", type=POSITIVE, metavar="KG/M3", help="Density of a uniform mesh.")
 @click.option(
     "--scale", type=POSITIVE, metavar="M", help="Length unit of a mesh in metres.  [default: 1]"
 )
-@click.option("--scheduler", metavar="ADDRESS", help="Use a Dask cluster that sees the NPY file.")
+@click.option("--scheduler", metavar="ADDRESS", help="Use a Dask cluster that can read FILE.")
 @click.option("--allow", is_flag=True, help="Accept negative masses and open meshes.")
 @click.option("--json", "as_json", is_flag=True, help="Print the results as JSON.")
 def command(
@@ -38,10 +41,11 @@ def command(
     allow: bool,
     as_json: bool,
 ) -> None:
-    """Mass, centre, inertia tensor and principal axes of particles or of a mesh.
+    """Compute the mass, centre, inertia tensor and principal axes of particles or a mesh.
 
-    FILE holds particles (NPY, CSV or Parquet, with the columns m, x, y, z, or x, y, z for 1 kg
-    each) or a closed mesh (STL, OBJ or PLY). NPY files are memory-mapped and read once.
+    FILE contains particles (NPY, CSV or Parquet, with the columns m, x, y, z, or x, y, z for
+    particles of 1 kg) or a closed mesh (STL, OBJ or PLY). NPY files are memory-mapped and read
+    once.
     """
     of_mesh = {"--mass": mass, "--density": density, "--scale": scale}
     of_particles = {"--columns": columns, "--scheduler": scheduler}

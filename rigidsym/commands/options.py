@@ -51,7 +51,7 @@ class FolderOptions(TemplateOptions):
         metavar="DIR",
         help="Write to DIR/NAME/.",
     )
-    force: bool = option("--force", help="Overwrite files that were edited since.")
+    force: bool = option("--force", help="Overwrite files even if they were edited.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,12 +59,12 @@ class RotationOptions:
     """How the text of a rotation is read."""
 
     angles: list[str] | None = option(
-        "--angles", "--names", metavar="A,B,C", help="Names of the coordinates, in their order."
+        "--angles", "--names", metavar="A,B,C", help="Names of the coordinates, in order."
     )
     constants: list[str] | None = option(
-        "--constants", metavar="A,B", help="Names in turns that are constants."
+        "--constants", metavar="A,B", help="Names in ROTATION that are constants."
     )
-    scalar_last: bool = option("--scalar-last", help="Quaternions as (x, y, z, w).")
+    scalar_last: bool = option("--scalar-last", help="Order quaternions as (x, y, z, w).")
     passive: bool = option("--passive", help="Present the direction cosine matrix A = Rᵀ.")
 
     def of_rotation(self) -> dict[str, Any]:
@@ -83,12 +83,16 @@ def _notation(name: str, about: str) -> Any:
 class NotationOptions:
     """The notation of the note and the terminal; it takes precedence over that of a file."""
 
-    rates: str | None = _notation("rates", "Rates as φ̇ or as dφ/dt.")
-    vectors: str | None = _notation("vectors", "Vectors in bold or with arrows.")
-    body: str | None = _notation("body", "Body components as Ω′ or as Ωᴮ.")
-    angular_velocity: str | None = _notation("angular_velocity", "Angular velocity as Ω or ω.")
+    rates: str | None = _notation("rates", "Print rates as φ̇ or dφ/dt.")
+    vectors: str | None = _notation("vectors", "Print vectors in bold or with arrows.")
+    body: str | None = _notation("body", "Print body components as Ω′ or Ωᴮ.")
+    angular_velocity: str | None = _notation(
+        "angular_velocity", "Print the angular velocity as Ω or ω."
+    )
     frames: list[str] | None = option(
-        "--frames", metavar="SPACE,BODY", help="Names of the two frames: inertial,spacecraft."
+        "--frames",
+        metavar="SPACE,BODY",
+        help="Names of the two frames, such as inertial,spacecraft.",
     )
 
     def in_notation(self, spec: DerivationSpec) -> DerivationSpec:
@@ -106,10 +110,10 @@ class SelectionOptions:
     only: tuple[list[str], ...] = option(
         "--only",
         "--quantity",
-        help="Derive these quantities only; `rigidsym list` shows the names. May be repeated.",
+        help="Derive only these quantities; `rigidsym list` shows the names. May be repeated.",
     )
     conversions: bool = option(
-        "--conversions", help="Add conversions to and from quaternion and matrix, and `unwrap`."
+        "--conversions", help="Add conversions to and from quaternions and matrices, and `unwrap`."
     )
 
     def selected(self, spec: DerivationSpec) -> DerivationSpec:
@@ -133,7 +137,7 @@ class KernelOptions(SelectionOptions):
     )
 
     degrees: bool = option(
-        "--degrees", help="Functions that take and return degrees, in files NAME_deg."
+        "--degrees", help="Print functions that take and return degrees, in files NAME_deg."
     )
 
     def selected(self, spec: DerivationSpec) -> DerivationSpec:
@@ -182,7 +186,7 @@ class OutputOptions(LanguageOptions):
     )
     lean: bool = option(
         "--lean",
-        help="C for firmware: double precision, one orientation a call, <math.h>, and a test.",
+        help="Print C for firmware: double precision, one orientation per call, <math.h>, a test.",
     )
     style: str | None = option(
         "--style",
@@ -196,8 +200,8 @@ class OutputOptions(LanguageOptions):
     )
     certificates: bool = option(
         "--certificates",
-        help="Also write NAME.cert.json, NAME.v and NAME.lean, with which others can check the "
-        "claims.",
+        help="Also write certificates that other programs can check: NAME.cert.json, NAME.v "
+        "(Coq) and NAME.lean.",
     )
     as_json: bool = option("--json", help="Print the results as JSON.")
     quiet: bool = option("--quiet", help="Print only the names of the files written.")

@@ -29,7 +29,7 @@ class PageOptions(
 @click.argument("source", metavar="ROTATION|FILE")
 @with_options(PageOptions)
 def command(source: str, options: PageOptions) -> None:
-    """Write a page for a browser: the note, and a figure with sliders.
+    """Write an interactive page for a browser: the note, and a figure with sliders.
 
     ROTATION is as for `derive`, FILE as for `run`. The page DIR/NAME/NAME_page.html is one file
     that needs no network; NAME.json beside it is the record that `check` reads.

@@ -20,16 +20,22 @@ _ENDINGS = ("tex", "html")
 
 @make("rigidsym problems euler --number 8 --variant 3")
 @click.argument("subject", type=click.Choice(list(SUBJECTS)))
-@click.option("--number", type=click.IntRange(1, 100), default=4, show_default=True)
+@click.option(
+    "--number",
+    type=click.IntRange(1, 100),
+    default=4,
+    show_default=True,
+    help="Number of problems.",
+)
 @click.option(
     "--variant",
     type=click.IntRange(0),
     default=1,
     show_default=True,
-    help="Equal variants give equal sheets; others have other numbers.",
+    help="Each variant has its own numbers; the same variant gives the same sheet.",
 )
-@click.option("--author", default="", help="A name below the title.")
-@click.option("--course", default="", help="A course below the title.")
+@click.option("--author", default="", help="Author, printed below the title.")
+@click.option("--course", default="", help="Course, printed below the title.")
 @click.option(
     "--language",
     type=click.Choice(resources.languages()),
@@ -61,8 +67,8 @@ def command(
 ) -> None:
     """Write a problem sheet and its worked solutions.
 
-    SUBJECT is euler (Euler angles), bodies (moments of inertia) or all. Every answer is derived.
-    The files are LaTeX and HTML.
+    The subject is euler (Euler angles), bodies (moments of inertia) or all. Every answer is
+    derived. The files are LaTeX and HTML.
     """
     sheet = sheet_of(subject, SUBJECTS, count=number, variant=variant, language=language)
     own = OwnText(author=author, course=course)

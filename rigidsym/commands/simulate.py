@@ -54,46 +54,55 @@ class SimulationOptions:
     """All options of `simulate`."""
 
     constants: tuple[tuple[str, float], ...] = option(
-        "--set", help="A parameter.  [default: the first example of the file]"
+        "--set", help="Value of a parameter.  [default: from the first example of the file]"
     )
     initial: tuple[tuple[str, float], ...] = option(
         "--initial",
-        help="A coordinate, a rate, or angular_velocity_body_1, _2, _3 in place of rates. "
-        "The others are 0.  [default: the first example of the file, else no rotation, at rest]",
+        help="Initial value of a coordinate, a rate, or, instead of the rates, "
+        "angular_velocity_body_1, _2 or _3. The others are 0.  [default: from the first example "
+        "of the file, else R = 1 and at rest]",
     )
     t_end: float | None = option(
-        "--time", type=float, help="Seconds.  [default: the first example of the file, else 10]"
+        "--time",
+        type=float,
+        metavar="SECONDS",
+        help="Duration.  [default: from the first example of the file, else 10]",
     )
     method: str = option(
         "--method",
         type=click.Choice(METHODS),
         default=METHODS[0],
-        help="lie takes steps in the rotation group; exact is for free bodies.",
+        help="Integrator; lie takes steps in the rotation group, exact is for free bodies.",
     )
     samples: int | None = option(
-        "--samples", type=click.IntRange(2), help="Times.  [default: 1001; of an ensemble 101]"
+        "--samples",
+        type=click.IntRange(2),
+        help="Number of output times.  [default: 1001; 101 for an ensemble]",
     )
     ensemble: int | None = option(
         "--ensemble", type=click.IntRange(1), help="Simulate this many motions at once."
     )
     spread: tuple[tuple[str, float], ...] = option(
-        "--spread", help="With --ensemble: standard deviation of an initial value or a parameter."
+        "--spread", help="With --ensemble, standard deviation of an initial value or parameter."
     )
-    seed: int = option("--seed", type=click.IntRange(0), default=0, help="Of --ensemble.")
+    seed: int = option(
+        "--seed", type=click.IntRange(0), default=0, help="Random seed of --ensemble."
+    )
     grid: dict[str, Any] = option(
         "--grid",
         multiple=True,
         callback=_grid,
         metavar="NAME=FROM:TO:COUNT",
-        help="An ensemble over values of an initial value or a parameter; may be repeated.",
+        help="Simulate COUNT values of an initial value or parameter; if repeated, every "
+        "combination.",
     )
     scheduler: str | None = option(
         "--scheduler", metavar="ADDRESS", help="Compute the ensemble on a Dask cluster."
     )
-    out: Path | None = option("--out", help="CSV, NPY, NPZ or Parquet file.")
-    plot: Path | None = option("--plot", help="PNG, SVG or PDF picture.")
+    out: Path | None = option("--out", help="Write the motion: .csv, .npy, .npz or .parquet.")
+    plot: Path | None = option("--plot", help="Draw the motion: .png, .svg or .pdf.")
     animate: Path | None = option(
-        "--animate", help="GIF, MP4 (extra video), or an HTML page that plays."
+        "--animate", help="Animate the motion: .gif, .mp4 (needs ffmpeg), or .html for a live page."
     )
 
 
@@ -104,11 +113,11 @@ class SimulationOptions:
 @click.argument("source", metavar="NAME|FILE")
 @with_options(SimulationOptions)
 def command(source: str, options: SimulationOptions) -> None:
-    """Simulate the motion of a derivation file with [dynamics].
+    """Simulate the motion that a derivation file with [dynamics] describes.
 
     NAME is a shipped derivation such as heavy_symmetric_top. The report shows how far each first
-    integral drifts. If the motion cannot be followed to its end, everything up to that time is
-    written, and the exit code is 1.
+    integral drifts. If the integration stops early, the motion up to that time is written, and the
+    exit code is 1.
     """
     if options.out is not None:
         check_ending(options.out, _ARCHIVE)

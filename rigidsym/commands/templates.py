@@ -14,7 +14,10 @@ from rigidsym.system.files import write_text
 @make("rigidsym templates mine && rigidsym derive ZXZ --templates mine", kind=Command)
 @click.argument("folder", metavar="DIR", type=click.Path(file_okay=False, path_type=Path))
 def command(folder: Path) -> None:
-    """Copy the shipped templates into DIR, to change them there; see --templates of `derive`."""
+    """Copy the shipped templates of notes into DIR, where you can change them.
+
+    `rigidsym derive ROTATION --templates DIR` uses them.
+    """
     shipped = [f"{name}.jinja" for name in resources.names(resources.NOTES, ".jinja")]
     taken = [name for name in shipped if (folder / name).exists()]
     if taken:
