@@ -52,7 +52,7 @@ class LimitReached(RigidsymError):
 
 
 class AlgebraError(RigidsymError):
-    """An expression that the ring cannot hold, or a derivative beyond the ring's order."""
+    """An expression that exact algebra cannot represent, or a derivative of too high an order."""
 
     remedy: ClassVar[str] = "Use sines, cosines, roots and quotients of polynomials."
 
@@ -65,7 +65,7 @@ class ModelError(RigidsymError):
 
 
 class NotARotation(RigidsymError):
-    """A 3x3 matrix with R Rᵀ ≠ 1 or det R ≠ 1; the message shows what is left over."""
+    """A 3x3 matrix with R Rᵀ ≠ 1 or det R ≠ 1; the message shows the residual."""
 
     remedy: ClassVar[str] = "Correct the entries, or add conditions on the coordinates."
 
@@ -77,7 +77,7 @@ class BodyError(RigidsymError):
     """
 
     exit_code: ClassVar[int] = 3
-    remedy: ClassVar[str] = "Correct the body, or set allow = true if it is meant."
+    remedy: ClassVar[str] = "Correct the body, or set allow = true if it is intended."
 
     def __init__(self, message: str, *, place: tuple[str | int, ...] = ()) -> None:
         super().__init__(message)
@@ -85,19 +85,19 @@ class BodyError(RigidsymError):
 
 
 class DerivationError(RigidsymError):
-    """A claim of the derivation that is false; the message shows what is left over."""
+    """A false claim of a derivation; the message shows the residual."""
 
     remedy: ClassVar[str] = "Correct what was claimed."
 
 
 class Defect(RigidsymError):
-    """A claim that is proved and yet false at a point: a mistake in rigidsym, not of its user."""
+    """A proved claim that is false at a point: a mistake in rigidsym, not in its use."""
 
     remedy: ClassVar[str] = "Report it with the input; do not use the result."
 
 
 class QuantityError(RigidsymError):
-    """An unknown quantity, or one that the derivation does not hold."""
+    """An unknown quantity, or one that the derivation does not contain."""
 
     exit_code: ClassVar[int] = 2
     remedy: ClassVar[str] = "Choose a name that `rigidsym list` shows."
@@ -166,21 +166,21 @@ class MissingExtra(RigidsymError):
 
 
 class ClusterError(RigidsymError):
-    """A Dask scheduler that does not answer, or one without workers."""
+    """A Dask scheduler that does not answer or has no workers."""
 
     exit_code: ClassVar[int] = 4
     remedy: ClassVar[str] = "Start the scheduler and its workers, or correct its address."
 
 
 class TemplateFault(RigidsymError):
-    """A template that cannot be filled: the message says which, where, and what names it has."""
+    """A template that cannot be filled; the message names the template, the line and the fault."""
 
     exit_code: ClassVar[int] = 3
     remedy: ClassVar[str] = "Correct the template at the line that the message names."
 
 
 class ToolFailed(RigidsymError):
-    """A program outside Python that ran and failed; the message holds the end of its log."""
+    """A program outside Python that failed; the message contains the end of its log."""
 
     remedy: ClassVar[str] = "Read the end of the log in the message."
 
@@ -193,7 +193,7 @@ class DataError(RigidsymError):
 
 
 class RequestError(DataError):
-    """A request that no file of numbers can satisfy."""
+    """A request that cannot be satisfied, whatever the file contains."""
 
     exit_code: ClassVar[int] = 2
     remedy: ClassVar[str] = "Change the request as the message says."
@@ -207,13 +207,15 @@ class KernelError(RigidsymError):
 
 
 class EditedFiles(RigidsymError):
-    """Generated files that were edited since, and that a command would overwrite."""
+    """Generated files that were edited and that a command would overwrite."""
 
-    remedy: ClassVar[str] = "Use --out for another folder, or --force to overwrite them."
+    remedy: ClassVar[str] = (
+        "Write to another folder with --out, or overwrite the files with --force."
+    )
 
 
 class CheckError(RigidsymError):
-    """A path that `rigidsym check` cannot check: no record of a derivation there."""
+    """A path without the record of a derivation that `rigidsym check` needs."""
 
     exit_code: ClassVar[int] = 2
-    remedy: ClassVar[str] = "Name a folder or file that `derive` or `run` has written."
+    remedy: ClassVar[str] = "Name a folder or file that `derive` or `run` wrote."

@@ -97,7 +97,7 @@ def read(source: str, **options: Any) -> DerivationSpec:
     if source in shipped or Path(source).suffix == ".toml":
         if options:
             raise RequestError(
-                f"{source} is a derivation file and has its own {', '.join(options)}"
+                f"{source} is a derivation file; expected {', '.join(options)} in the file"
             )
         return read_file(source)
     try:

@@ -150,7 +150,9 @@ class GeneratorSet:
     def _collect_angle(self, argument: sp.Expr) -> None:
         terms = combination(argument)
         if sp.S.One in terms:
-            raise AlgebraError(f"sin and cos of {argument} are not in the ring: name the number")
+            raise AlgebraError(
+                f"sin and cos of {argument} are not in the ring; expected a symbol for the number"
+            )
         if sp.pi in terms:
             for value in cosine_sine_of_pi(terms[sp.pi]):
                 self.collect(value)
@@ -165,8 +167,8 @@ class GeneratorSet:
             return
         if len(self.kinds) >= _MOST_GENERATORS:
             raise AlgebraError(
-                f"more than {_MOST_GENERATORS} generators, the last {expression}: "
-                "its derivatives keep bringing new functions"
+                f"more than {_MOST_GENERATORS} generators: the derivatives of {expression} contain "
+                "ever new functions"
             )
         self.kinds[expression] = kind
         self._underived.append(expression)

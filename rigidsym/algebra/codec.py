@@ -286,7 +286,7 @@ class Codec:
         if abs(times) > _HIGHEST_MULTIPLE:
             raise AlgebraError(
                 f"sin and cos of {coefficient * atom} beside those of {fraction * atom}: "
-                f"multiples up to {_HIGHEST_MULTIPLE} are expanded"
+                f"expected multiples up to {_HIGHEST_MULTIPLE}"
             )
         index, ring = self.ring.index, self.ring
         cosine = ring.generator(index[sp.cos(fraction * atom)])

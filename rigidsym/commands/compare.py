@@ -84,7 +84,7 @@ def command(context: click.Context, paths: tuple[Path, ...], options: CompareOpt
         click.echo(_json(found.record()) if options.as_json else found.text())
         context.exit(not found.is_equal)
     if motion is not None:
-        raise click.UsageError("--rotation and --quantity go with --formula")
+        raise click.UsageError("--rotation and --quantity need --formula")
     context.exit(_searched(paths, as_json=options.as_json))
 
 

@@ -130,7 +130,9 @@ def command(source: str, options: SimulationOptions) -> None:
         return
     for name in ("spread", "scheduler"):
         if getattr(options, name):
-            raise click.UsageError(f"--{name} is for ensembles; add --ensemble or --grid")
+            raise click.UsageError(
+                f"--{name} is for ensembles; expected --ensemble or --grid as well"
+            )
     initial, constants, t_end = _given(motion, options)
     with bar(motion.name) as progress:
         found = motion.simulate(
@@ -176,11 +178,11 @@ def _animated(
 def _ensemble(motion: Motion, options: SimulationOptions) -> None:
     """Motions over a grid, or with normally distributed initial values and parameters."""
     if options.plot is not None or options.animate is not None:
-        raise click.UsageError("--plot and --animate show one motion; leave the ensemble out")
+        raise click.UsageError("--plot and --animate show one motion, not an ensemble")
     if options.method != METHODS[0]:
-        raise click.UsageError("an ensemble takes steps of fixed length; leave --method out")
+        raise click.UsageError("an ensemble has its own integrator; leave --method out")
     if options.grid and options.ensemble is not None:
-        raise click.UsageError("--grid and --ensemble: expected one of them")
+        raise click.UsageError("expected --grid or --ensemble, not both")
     generator = np.random.default_rng(options.seed)
     initial, constants, t_end = _given(motion, options)
     names = {name for each in motion.arguments if each.name == "parameters" for name in each.names}
@@ -190,7 +192,9 @@ def _ensemble(motion: Motion, options: SimulationOptions) -> None:
     for name, deviation in options.spread:
         known = constants if name in names else initial
         if name not in known:
-            raise click.UsageError(f"--spread {name}: no value of it is given")
+            raise click.UsageError(
+                f"--spread {name}: expected its mean as well, by --initial or --set"
+            )
         if not 0 <= deviation < np.inf:
             raise click.UsageError(
                 f"--spread {name}={deviation:g}: expected a standard deviation, 0 or more"

@@ -88,7 +88,7 @@ class TextReader:
             if len(line) == _LONGEST:
                 raise DataError(
                     f"{self.path}, line {number}: longer than {_LONGEST >> 20} MB; "
-                    "expected one row a line"
+                    "expected one row per line"
                 )
             yield line
 
@@ -308,7 +308,7 @@ class TextReader:
         return np.array(table, float).reshape(-1, len(columns))
 
 
-_QUOTES = "quotes that do not end where the field does; expected one row a line"
+_QUOTES = "quotes that do not end where the field does; expected one row per line"
 
 
 def listed(path: Path | str, faults: Sequence[str], count: int | None = None) -> str:

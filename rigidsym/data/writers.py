@@ -28,7 +28,7 @@ def check_ending(path: Path, *others: str) -> None:
     if path.suffix.lower() not in (*ENDINGS, *others):
         found = f"the ending {path.suffix}" if path.suffix else "no ending"
         known = ", ".join((*ENDINGS, *others))
-        raise RequestError(f"{path} has {found}; a result ends in {known}")
+        raise RequestError(f"{path} has {found}; expected {known}")
 
 
 @contextmanager
@@ -85,8 +85,8 @@ class NpyWriter:
             numbers = None
         if numbers is None or np.abs(numbers).max(initial=0) > _EXACT:
             raise DataError(
-                "an NPY file does not hold texts or integers beyond 2^53, as a column of --keep "
-                "has; write .csv or .parquet"
+                "a column of --keep has texts or integers beyond 2^53, which an NPY file of floats "
+                "cannot contain; expected .csv or .parquet"
             )
         return numbers
 

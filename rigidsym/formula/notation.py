@@ -74,7 +74,7 @@ class Notation:
         for name, known in CHOICES.items():
             chosen = getattr(self, name)
             if chosen not in known:
-                raise ModelError(f"notation: {name} is {' or '.join(known)}, and not {chosen!r}")
+                raise ModelError(f"notation, {name}: expected {' or '.join(known)}, got {chosen!r}")
 
     def words(self, text: str) -> str:
         """A sentence in which the frames have the user's names; twice is the same as once."""
@@ -182,7 +182,7 @@ def _checked(frames: Sequence[str]) -> tuple[str, str]:
     """Two different names of letters, digits, blanks, points and hyphens."""
     names = [frames] if isinstance(frames, str) else list(frames)
     if len(names) != 2 or names[0] == names[1]:
-        raise ModelError(f"frames are two different names, got {', '.join(names)}")
+        raise ModelError(f"frames: expected two different names, got {', '.join(names)}")
     for name in names:
         if not _A_FRAME_NAME.fullmatch(name):
             raise ModelError(

@@ -59,7 +59,7 @@ class Product:
 
     def __post_init__(self) -> None:
         if not self.factors:
-            raise KernelError("a product needs a factor, be it one")
+            raise KernelError("a product needs at least one factor")
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,14 +70,16 @@ class RigidBody:
         if not _MODULE_NAME.fullmatch(self.name):
             raise BodyError(
                 f"{self.name!r} cannot name a body: expected lower-case letters, digits and "
-                "underscores, a letter first"
+                "underscores, beginning with a letter"
             )
         for what, matrix, shape in (
-            ("an inertia tensor", self.inertia, (3, 3)),
-            ("a centre of mass", self.centre, (3, 1)),
+            ("the inertia tensor", self.inertia, (3, 3)),
+            ("the centre of mass", self.centre, (3, 1)),
         ):
             if matrix.shape != shape:
-                raise BodyError(f"{self.name}: {what} is {shape}, got {matrix.shape}")
+                raise BodyError(
+                    f"{self.name}: expected {what} of shape {shape}, got {matrix.shape}"
+                )
         self._check_symbols()
         self._check_symmetry()
         if not self.allow:
@@ -99,7 +101,7 @@ class RigidBody:
             raise BodyError(f"{self.name}: a parameter is named twice")
         for entry in (self.mass, *self.inertia, *self.centre):
             if entry.has(TIME, AppliedUndef) or entry.has(sp.I, sp.nan, sp.oo, sp.zoo):
-                raise BodyError(f"{self.name}: {entry} is no real constant")
+                raise BodyError(f"{self.name}: {entry} is not a real constant")
             for number in entry.atoms(sp.Float):
                 raise BodyError(f"{self.name}: {not_exact(number)}")
             for symbol in sorted(entry.free_symbols - known, key=str):

@@ -65,12 +65,10 @@ class Solid:
         if count not in (1, 2, 3) or len(self.bounds) != count or self.place.shape != (3, 1):
             raise BodyError(
                 f"{self.title}: expected one to three coordinates, bounds for each, and three "
-                "components of the place"
+                "components of the position"
             )
         if (count == 3) == (self.element is not None):
-            raise BodyError(
-                f"{self.title}: an element goes with lines and surfaces, and not with volumes"
-            )
+            raise BodyError(f"{self.title}: lines and surfaces have an element, volumes have none")
         if (self.mass is None) == (self.density is None):
             raise BodyError(f"{self.title}: expected either the mass or the density")
         for place, pair in enumerate(self.bounds):
@@ -78,9 +76,9 @@ class Solid:
             for bound in pair:
                 if bound.free_symbols & later:
                     raise BodyError(
-                        f"{self.title}: the bounds of {self.coordinates[place]} hold "
-                        f"{', '.join(map(str, bound.free_symbols & later))}; they may hold the "
-                        "coordinates before it alone"
+                        f"{self.title}: the bounds of {self.coordinates[place]} contain "
+                        f"{', '.join(map(str, bound.free_symbols & later))}; expected only "
+                        "coordinates before it"
                     )
 
 

@@ -35,9 +35,9 @@ def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Ite
     first = Example({}, {}, 0.0)
     for k, example in enumerate(given):
         for key in set(example) - set(_KEYS):
-            raise ModelError(f"an example with {key}; expected {', '.join(_KEYS)}")
+            raise ModelError(f"an example: unknown key {key}; expected {', '.join(_KEYS)}")
         if not all(isinstance(example.get(key, {}), Mapping) for key in _KEYS[:2]):
-            raise ModelError("an example has parameters and initial values by name")
+            raise ModelError("an example: expected parameters and initial values by name")
         found = Example(
             {**first.parameters, **example.get("parameters", {})},
             {**first.initial, **example.get("initial", {})},
@@ -45,7 +45,7 @@ def examples_of(model: RotationModel, given: Sequence[Mapping[str, Any]]) -> Ite
         )
         for name in found.initial:
             if name not in known:
-                raise ModelError(f"an example begins with {name}; {offer(name, known)}")
+                raise ModelError(f"an example: unknown initial value {name}; {offer(name, known)}")
         numbers: tuple[Any, ...] = (*found.parameters.values(), *found.initial.values(), found.time)
         are_finite = all(isinstance(value, Real) and isfinite(value) for value in numbers)
         if not are_finite or found.time <= 0:

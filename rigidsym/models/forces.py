@@ -99,7 +99,9 @@ class Forces:
         constants = {str(symbol) for symbol in (known | symbols) - {*OMEGA_BODY, TIME}}
         given = {name for example in self.examples for name in example.parameters}
         for name in sorted(given - constants):
-            raise ModelError(f"an example has a value of {name}; {offer(name, sorted(constants))}")
+            raise ModelError(
+                f"an example: unknown parameter {name}; {offer(name, sorted(constants))}"
+            )
         own = {p.symbol: p for p in body.declared}
         moments = {moment for part in self.parts for moment in part.inertia}
 
@@ -142,7 +144,9 @@ def forces_on(
     names |= {f"omega_body_{k}": OMEGA_BODY[k - 1] for k in (1, 2, 3)} | {"t": TIME}
     for name in forces:
         if name not in known:
-            raise ModelError(f"a force on {name}, which is none of {', '.join(known)}")
+            raise ModelError(
+                f"a force on {name}, which is not a coordinate; expected {', '.join(known)}"
+            )
     for what, given in (("torque", torque), ("frame_rate", frame_rate)):
         if len(given) not in (0, 3):
             raise ModelError(f"{what}: expected three components, got {len(given)}")
@@ -168,7 +172,7 @@ def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
         rotation = rotation_from(given["rotation"])
         strange = [str(q.func) for q in rotation.coordinates if q not in names.values()]
         if strange:
-            raise ModelError(f"a part turns by {strange[0]}, which is no coordinate of the body")
+            raise ModelError(f"a part turns by {strange[0]}, which is not a coordinate of the body")
         inertia = given["principal_moments"]
     elif given.keys() == {"velocity", "mass"}:
         velocity, inertia = given["velocity"], [given["mass"]] * 3
@@ -178,7 +182,9 @@ def _part(given: Mapping[str, Any], names: Mapping[str, sp.Expr]) -> MovingPart:
             "principal_moments, or velocity and mass"
         )
     if len(inertia) != 3 or len(velocity) not in (0, 3):
-        raise ModelError("a part has three principal moments, or three components of velocity")
+        raise ModelError(
+            "a part: expected three principal moments, or three components of velocity"
+        )
     return MovingPart(
         rotation=rotation,
         velocity=tuple(_read(component, names) for component in velocity),

@@ -73,7 +73,7 @@ def _example(
         name = str(key.func if isinstance(key, AppliedUndef) else key)
         exact = symbolic(value, f"{model}: the example of {name}")
         if name not in named:
-            raise ModelError(f"{model}: no {name} for an example; {offer(name, named)}")
+            raise ModelError(f"{model}: the example: unknown name {name}; {offer(name, named)}")
         if not exact.is_number or exact.has(sp.Float) or exact.is_real is False:
             raise ModelError(
                 f"{model}: the example of {name}: expected an exact number, got {exact}"

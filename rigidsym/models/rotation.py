@@ -167,7 +167,7 @@ class RotationModel:
         if not _MODULE_NAME.fullmatch(self.name):
             raise ModelError(
                 f"{self.name!r} cannot name a model: expected lower-case letters, digits and "
-                "underscores, a letter first"
+                "underscores, beginning with a letter"
             )
         if self.matrix.shape != (3, 3):
             raise ModelError(f"{self.name}: a rotation matrix is 3x3, got {self.matrix.shape}")
@@ -186,11 +186,13 @@ class RotationModel:
                 raise ModelError(f"{self.name}: {constant} is both a coordinate and a constant")
         numbers = set().union(*(part.atoms(*_NUMBERS) for part in self._parts))
         if sp.I in numbers:
-            raise ModelError(f"{self.name}: a rotation is real; its matrix holds the number i")
+            raise ModelError(
+                f"{self.name}: a rotation is real, but the matrix contains the number i"
+            )
         for number in numbers - {sp.pi, sp.E}:
             raise ModelError(
-                f"{self.name}: the matrix holds the number {number}, of which the ring knows "
-                f"nothing; expected roots, as in {sp.expand_func(sp.GoldenRatio)}, or a symbol"
+                f"{self.name}: the matrix contains the number {number}, which is not in the ring; "
+                f"expected roots, as in {sp.expand_func(sp.GoldenRatio)}, or a symbol"
             )
 
     @property

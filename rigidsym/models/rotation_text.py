@@ -73,7 +73,7 @@ def rotation_from(
             _sequence(text), DEFAULT_ANGLES if names is None else names, passive=passive
         )
     if scalar_last and not (name in PARAMETRISATIONS and PARAMETRISATIONS[name].has_scalar):
-        raise ModelError(f"scalar-last applies only to quaternions, and {text} is none")
+        raise ModelError(f"scalar-last applies only to quaternions; {text} is not one")
     if model.request and name not in PRESETS:
         return model  # Euler angles know what asks for them
     kept = {key: value for key, value in asked.items() if value or key == "sequence"}
@@ -146,7 +146,7 @@ def turned_by(
     if values is None and "(" in text:
         turns = tuple(_turn(axis, angle, _constant) for axis, angle in parse_turns(text))
         if any(part.free_symbols for turn in turns for part in turn.components):
-            raise ExpressionError(f"{text}: an axis is expected to have components in numbers")
+            raise ExpressionError(f"{text}: expected an axis with numbers as components")
         return product_of(turns), ()
     model = rotation_from(text)
     if values is None:

@@ -168,7 +168,9 @@ def _members(*given: Mapping[str, Any]) -> int:
         if np.ndim(value) > (1 if name == OMEGA else 0)
     }
     if len(lengths) > 1:
-        raise ModelError(f"arrays of {' and '.join(map(str, sorted(lengths)))} motions")
+        raise ModelError(
+            f"expected arrays of one length, got {' and '.join(map(str, sorted(lengths)))}"
+        )
     return lengths.pop() if lengths else 1
 
 

@@ -146,7 +146,7 @@ def _solve(
     if not np.isfinite(squares).all():  # SciPy would look for a first step for ever
         raise DerivationError(
             f"the equations of motion give no finite rates at t = {at:.6g} s; expected a state "
-            "away from poles of the coordinates, and rates that double precision can square"
+            "away from poles of the coordinates, and rates whose squares do not overflow"
         )
     pole.terminal = True  # type: ignore[attr-defined]  # how SciPy is told to stop there
     solved = solve_ivp(reported, (at, times[-1]), start, t_eval=times, events=pole, **options)
@@ -166,7 +166,7 @@ def _exact(problem: Problem, times: Array) -> Trajectory:
     """The free body in elliptic functions."""
     attitude = Attitude(problem)
     if not attitude.is_free:
-        raise ModelError(f"{problem.derivation.name}: the exact solution is that of a free body")
+        raise ModelError(f"{problem.derivation.name}: expected a free body for the exact solution")
     start = problem.start
     omega, rotation = free_motion(
         problem.inertia, problem.omega(start), problem.rotation(start), times

@@ -134,7 +134,7 @@ class _Reader:
             table.fault("the theory is written for active rotations; remove passive", "theory")
         body, parameters = table.table("body"), table.table("parameters")
         if body is None and table.value("parameters") is not None:
-            table.fault("parameters go with a [body]", "parameters")
+            table.fault("parameters belong to a body; expected [body] as well", "parameters")
         choices = {
             "body": body and read_body(body, parameters, name, folder),
             **_read_dynamics(table, models),

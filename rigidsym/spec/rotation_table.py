@@ -29,7 +29,7 @@ def read_rotation(table: Table, name: str) -> list[RotationModel]:
         return _read_matrix(table, name)
     for key in _OF_MATRICES:
         if table.value(key) is not None:
-            table.fault("this key goes with matrix", key)
+            table.fault("only a rotation with matrix has this key", key)
     options: dict[str, Any] = {
         "passive": bool(table.flag("passive")),
         "scalar_last": bool(table.flag("scalar_last")),
@@ -54,7 +54,7 @@ def read_rotation(table: Table, name: str) -> list[RotationModel]:
 def _read_matrix(table: Table, name: str) -> list[RotationModel]:
     for key in _OF_SEQUENCES:
         if table.value(key) is not None:
-            table.fault("this key does not go with matrix", key)
+            table.fault("a rotation with matrix does not have this key", key)
     rows = _read_rows(table)
     coordinates = _read_names(table, "coordinates", _NAMES)
     if table.value("coordinates") is None:

@@ -66,5 +66,5 @@ def _connected(address: str) -> Iterator[Any]:
         ) from None
     with client:
         if not client.nthreads():
-            raise ClusterError(f"--scheduler {address}: its cluster has no workers now")
+            raise ClusterError(f"--scheduler {address}: the cluster has no workers")
         yield client

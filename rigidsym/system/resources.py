@@ -32,7 +32,7 @@ def folder(kind: str) -> Path:
         if (home / kind).is_dir():
             return home / kind
     places = " and ".join(str(home / kind) for home in _HOMES)
-    raise FileNotFoundError(f"rigidsym came without its {kind}: looked for {places}")
+    raise FileNotFoundError(f"rigidsym is installed without its {kind}: looked for {places}")
 
 
 def text(kind: str, name: str) -> str:
@@ -60,7 +60,7 @@ def overridden_by(own: Path) -> Iterator[None]:
     known = names(NOTES, ".jinja")
     if not any((own / f"{name}.jinja").is_file() for name in known):
         listed = ", ".join(f"{name}.jinja" for name in known)
-        raise TemplateFault(f"{own} holds none of the templates: {listed}")
+        raise TemplateFault(f"{own} contains none of the templates: {listed}")
     token = _OWN.set(own)
     try:
         yield

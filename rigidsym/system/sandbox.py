@@ -172,7 +172,7 @@ class SandboxedTemplates(ImmutableSandboxedEnvironment):
 
     def call_binop(self, _context: Context, operator: str, left: Any, right: Any) -> Any:
         if operator != "+":
-            raise SecurityError(f"templates place text; {operator} is not for them")
+            raise SecurityError(f"templates only place text; {operator} is not allowed")
         if all(hasattr(value, "__len__") for value in (left, right)):
             _check_length(len(left) + len(right))
         return left + right
@@ -224,7 +224,7 @@ def _joined(items: Iterable[Any], separator: str = "") -> str:
 def _printable(value: Any) -> Any:
     """What a template prints; a function, with its address in memory, is nothing to print."""
     if callable(value) and not isinstance(value, Undefined):
-        raise SecurityError("a function is no text")
+        raise SecurityError("a function is not text")
     return value
 
 

@@ -176,7 +176,7 @@ def _check_after_value(before: _Token | None, token: _Token, *, in_call: bool) -
         )
     if token.text == "," and not in_call:
         raise ExpressionError(
-            "a comma may only separate arguments of a function; decimals have a point",
+            "a comma only separates arguments of a function; write decimals with a point",
             column=token.start + 1,
         )
 

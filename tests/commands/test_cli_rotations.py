@@ -131,11 +131,14 @@ def test_a_matrix_that_is_no_rotation_is_refused_with_what_is_left(tmp_path):
         ),
         (
             '[rotation]\nmatrix = [["1","0","0"],["0","1","0"],["0","0","1+"]]\nangles = ["a"]\n',
-            ["rotation.angles: this key does not go with matrix", "rotation.coordinates: missing"],
+            [
+                "rotation.angles: a rotation with matrix does not have this key",
+                "rotation.coordinates: missing",
+            ],
         ),
         (
             '[rotation]\nsequence = "ZXZ"\ncoordinates = ["a"]\n',
-            ["rotation.coordinates: this key goes with matrix"],
+            ["rotation.coordinates: only a rotation with matrix has this key"],
         ),
     ],
 )

@@ -96,7 +96,7 @@ def test_kernels_without_a_note_are_possible(tmp_path):
 def test_a_derivation_file_has_its_own_names(tmp_path):
     done = run("page", "euler_zxz", "--angles", "a,b,c", "--out", str(tmp_path))
     assert isinstance(done.exception, RigidsymError)
-    assert str(done.exception) == "euler_zxz is a derivation file and has its own angles"
+    assert str(done.exception) == "euler_zxz is a derivation file; expected angles in the file"
     assert done.exception.exit_code == 2
 
 

@@ -76,20 +76,20 @@ def test_an_own_template_may_include_others(tmp_path: Path):
         ("{{ 1 / 0 }}", 1, "division by zero"),
         ("{{ title() }}", 1, "'str' object is not callable"),
         ("{% for i in range(999999) %}{% endfor %}", 1, "Range too big"),
-        ("{{ 9**9**9**9 }}", 1, "templates place text; ** is not for them"),
+        ("{{ 9**9**9**9 }}", 1, "templates only place text; ** is not allowed"),
         ("{% include 'a\x00b' %}", 1, "no template a\\x00b"),
         ("{{ 'a'.center(9999999999) }}", 1, "unsafe"),
         ("{{ 'a'.replace('a', title) }}", 1, "unsafe"),
-        ("{{ '%9999999999d' % 1 }}", 1, "templates place text; % is not for them"),
+        ("{{ '%9999999999d' % 1 }}", 1, "templates only place text; % is not allowed"),
         ("{{ 'a'|center(9999999999) }}", 1, "No filter named 'center'"),
         ("{{ '{:9999999999}'.format(1) }}", 1, "unsafe"),
         ("{{ lipsum(n=999999) }}", 1, "'lipsum' is undefined"),
         ("{{ ['a'].append('b') }}", 1, "access to attribute 'append'"),
         ("\n{% for x in 1 %}{% endfor %}", 2, "'int' object is not iterable"),
         ("{{ title|tojson }}", 1, "No filter named 'tojson'"),
-        ("\n{{ range }}", 2, "a function is no text"),
+        ("\n{{ range }}", 2, "a function is not text"),
         ("{{ ''.join }}", 1, "access to attribute 'join'"),
-        ("{{ 'a' * 9999999999 }}", 1, "templates place text; * is not for them"),
+        ("{{ 'a' * 9999999999 }}", 1, "templates only place text; * is not allowed"),
     ],
 )
 def test_a_fault_is_named_with_its_template_and_line(tmp_path: Path, template, line, said):
@@ -158,7 +158,7 @@ def test_a_template_that_is_no_text_is_named(tmp_path: Path):
 
 
 def test_a_folder_without_templates_is_an_error(tmp_path: Path):
-    with pytest.raises(TemplateFault, match=r"holds none of the templates: .*note\.tex\.jinja"):
+    with pytest.raises(TemplateFault, match=r"contains none of the templates: .*note\.tex\.jinja"):
         resources.overridden_by(tmp_path).__enter__()
 
 

@@ -195,8 +195,8 @@ def with_entry(row: int, column: int, value: float) -> np.ndarray:
             r"particle 7, counted from 0: expected finite numbers, got mass",
         ),
         (with_entry(7, 0, np.inf), r"particle 7, counted from 0"),
-        (with_entry(7, 0, -1.0), r"particle 7, counted from 0: the mass is -1 kg; expected none"),
-        (rows(20) * (-1, 1, 1, 1), r"the mass is -\S+ kg; expected none that is negative"),
+        (with_entry(7, 0, -1.0), r"particle 7, counted from 0: the mass is -1 kg; expected a mass"),
+        (rows(20) * (-1, 1, 1, 1), r"the mass is -\S+ kg; expected a mass that is not negative"),
         (rows(20) * (0, 1, 1, 1), r"the total mass is 0 kg; expected a positive mass"),
         (np.tile([1e308, 0, 0, 0], (3, 1)), r"the total mass is inf kg; expected a positive mass"),
         (rows(20)[:0], r"expected at least one particle, got none"),
@@ -227,7 +227,7 @@ def test_an_engineer_may_insist_on_a_negative_mass():
         ("m,x,y,z\n1,0,0,0\n1,0,zero,0\n", "line 3"),
         ("m,x,y,z\n1,0,0,0\n1,0,0\n", "line 3"),
         ("m,x,y\n1,0,0\n", r"cloud\.csv: no column z among m, x, y"),
-        ("m,x,y,z\n1,0,0,0\n\n# -\n-2,0,0,0\n", r"csv, line 5: the mass is -2 kg; expected none"),
+        ("m,x,y,z\n1,0,0,0\n\n# -\n-2,0,0,0\n", r"csv, line 5: the mass is -2 kg; expected a"),
         ("m,x,y,z\n1,0,0,0\n\n1,0,nan,0\n", r"csv, line 4: expected finite numbers, got mass 1"),
         ("m,x,y,z,z\n1,0,0,0,0\n", "two columns are named z"),
         ("x,y,z,masse\n0,0,0,1\n", r"column m or mass among x, y, z, masse; is masse the mass"),
@@ -303,7 +303,7 @@ def test_a_cluster_without_workers_is_refused(tmp_path):
     options = {"processes": False, "dashboard_address": None, "protocol": "inproc"}
     with (
         distributed.LocalCluster(n_workers=0, **options) as cluster,
-        pytest.raises(ClusterError, match="its cluster has no workers now"),
+        pytest.raises(ClusterError, match="the cluster has no workers"),
     ):
         inertia_of(tmp_path / "cloud.npy", scheduler=cluster.scheduler_address)
 
@@ -400,7 +400,7 @@ def test_open_torn_and_inverted_meshes_are_refused():
     with pytest.raises(BodyError, match="inside out: its volume is -6 m³"):
         mesh_inertia(Mesh(vertices=box.vertices, faces=box.faces[:, ::-1]), mass=1.0)
     flat = Mesh(vertices=box.vertices * (1, 1, 0), faces=box.faces)
-    with pytest.raises(BodyError, match="it holds no volume"):
+    with pytest.raises(BodyError, match="its volume is zero"):
         mesh_inertia(flat, mass=1.0)
     with pytest.raises(BodyError, match="expected either the mass or the density"):
         mesh_inertia(box)

@@ -82,7 +82,7 @@ def test_a_registered_folder_prints_and_loads():
 @pytest.mark.usefixtures("toy")
 def test_its_name_is_listed_and_not_taken_twice(tmp_path):
     assert list(targets.TARGETS)[-1] == "toy"
-    with pytest.raises(KernelError, match="there is a target toy already"):
+    with pytest.raises(KernelError, match="a target named toy exists already"):
         targets.register(tmp_path / "toy")
     with pytest.raises(KernelError, match=r"no target 'toi'; there is numpy, .*toy"):
         targets.check_target("toi")

@@ -274,9 +274,9 @@ def test_the_note_prints_scalars_and_their_proofs():
 
 def test_names_that_stand_for_two_things_are_refused():
     body = principal_moments(A, B, sp.Symbol("X"))
-    with pytest.raises(ModelError, match="X names two things"):
+    with pytest.raises(ModelError, match="X is a name both"):
         rs.derive("ZXZ", body=body)
-    with pytest.raises(ModelError, match="A names two things"):
+    with pytest.raises(ModelError, match="A is a name both"):
         rs.derive(rs.EulerAngles("ZXZ", ("A", "beta", "gamma")), body=BODIES["general"])
 
 

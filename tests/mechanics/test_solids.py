@@ -329,9 +329,9 @@ def test_a_solid_of_any_density_by_its_bounds():
     ("change", "fault"),
     [
         ({"bounds": ((0, a), (0, 1))}, "expected one to three coordinates, bounds for each"),
-        ({"element": sp.S.One}, "an element goes with lines and surfaces"),
+        ({"element": sp.S.One}, "lines and surfaces have an element"),
         ({"mass": M}, "expected either the mass or the density"),
-        ({"bounds": ((0, sp.Symbol("y")), (0, 1), (0, 1))}, "the bounds of x hold y"),
+        ({"bounds": ((0, sp.Symbol("y")), (0, 1), (0, 1))}, "the bounds of x contain y"),
     ],
 )
 def test_a_solid_that_is_none_is_refused(change, fault):
@@ -358,7 +358,9 @@ def test_a_wrong_element_is_refused_with_what_is_left():
         element=2 * a,
         mass=M,
     )
-    with pytest.raises(BodyError, match=r"is not that of the map; its square differs by 3\*a\*\*2"):
+    with pytest.raises(
+        BodyError, match=r"does not belong to the map; its square differs by 3\*a\*\*2"
+    ):
         moments_of(arc)
 
 

@@ -395,7 +395,7 @@ def test_a_potential_of_the_length_of_a_quaternion_is_refused():
 def test_rates_that_leave_the_condition_on_the_coordinates_are_refused():
     start = {"w": 1, "x": 0, "y": 0, "z": 0, "w_dot": 1, "x_dot": 0, "y_dot": 0, "z_dot": 0}
     values = {"A": 1, "B": 1.4, "C": 2, "k": 0.7}
-    with pytest.raises(rs.RigidsymError, match=r"rates do not keep w\*\*2 \+ x\*\*2"):
+    with pytest.raises(rs.RigidsymError, match=r"the rates violate w\*\*2 \+ x\*\*2"):
         bound("unit_quaternion", K * ALONG).simulate(start, values, 1.0)
 
 

@@ -141,7 +141,7 @@ def test_an_example_takes_from_the_first_what_it_does_not_name():
         ({"initial": {"theta": "1"}, "time": 1}, "finite numbers"),
         ({"parameters": {"A": "1"}, "time": 1}, "finite numbers"),
         ({"time": "1"}, "finite numbers"),
-        ({"parameters": NUMBERS | {"G": 1}, "time": 1}, "a value of G; known: A, B"),
+        ({"parameters": NUMBERS | {"G": 1}, "time": 1}, "unknown parameter G; known: A, B"),
         ({"initial": 1, "time": 1}, "initial values by name"),
         ({"start": {"theta": 1}, "time": 1}, "start; expected parameters, initial, time"),
     ],

@@ -135,7 +135,7 @@ def test_writing_twice_keeps_the_first_choice():
 
 
 def test_a_choice_that_is_none_is_refused():
-    with pytest.raises(ModelError, match="notation: rates is dot or fraction, and not 'dots'"):
+    with pytest.raises(ModelError, match="notation, rates: expected dot or fraction, got 'dots'"):
         derived("ZXZ").with_notation(rates="dots")
 
 
@@ -257,7 +257,7 @@ def test_a_file_and_the_command_line_name_the_frames(tmp_path: Path):
     spec = read_spec(text, source="top.toml", name="top")
     assert spec.notation.frames == ("inertial", "spacecraft")
     assert read_record(json.loads(json.dumps(spec.to_data()))) == spec
-    with pytest.raises(SpecError, match=r"line 4: notation\.frames: frames are two"):
+    with pytest.raises(SpecError, match=r"line 4: notation\.frames: frames: expected two"):
         read_spec(FILE + '[notation]\nframes = ["a"]\n', source="top.toml", name="top")
     run = CliRunner().invoke(
         cli.commands, ["derive", "ZXZ", "--frames", "ECI,craft", "--out", str(tmp_path)]

@@ -113,15 +113,18 @@ def test_the_command_simulates_a_grid_and_writes_every_kind_of_file(tmp_path):
     ("options", "message"),
     [
         (["--grid=theta=0.2:1.2"], "expected NAME=FROM:TO:COUNT"),
-        (["--grid=theta=0:1:2", "--ensemble=3"], "--grid and --ensemble: expected one of them"),
-        (["--spread=theta=1"], "--spread is for ensembles; add --ensemble or --grid"),
-        (["--ensemble=3", "--spread=phi=1"], "--spread phi: no value of it is given"),
+        (["--grid=theta=0:1:2", "--ensemble=3"], "expected --grid or --ensemble, not both"),
+        (["--spread=theta=1"], "--spread is for ensembles; expected --ens"),
+        (["--ensemble=3", "--spread=phi=1"], "--spread phi: expected its mean"),
         (["--ensemble=3", "--plot=top.svg"], "--plot and --animate show one motion"),
-        (["--ensemble=3", "--method=lie"], "an ensemble takes steps of fixed length"),
+        (["--ensemble=3", "--method=lie"], "an ensemble has its own integrator"),
         (["--grid=theta=0.2:1:0"], "expected NAME=FROM:TO:COUNT"),
         (["--ensemble=3", "--spread=theta=-1"], "--spread theta=-1: expected a standard deviation"),
         (["--ensemble=3", "--seed=-1"], "-1 is not in the range x>=0"),
-        (["--ensemble=3", "--out=x.foo"], "a result ends in .npy, .csv, .txt, .parquet, .pq, .npz"),
+        (
+            ["--ensemble=3", "--out=x.foo"],
+            "the ending .foo; expected .npy, .csv, .txt, .parquet, .pq, .npz",
+        ),
     ],
 )
 def test_what_an_ensemble_cannot_be_is_said(options, message, tmp_path):
@@ -147,7 +150,7 @@ def test_long_work_goes_without_a_compiler(top, monkeypatch, tmp_path):
 
 def test_arrays_of_different_lengths_are_refused(top):
     start = START | {"theta": TILTS, "psi_dot": [1.0, 2.0]}
-    with pytest.raises(rs.RigidsymError, match="arrays of 2 and 3 motions"):
+    with pytest.raises(rs.RigidsymError, match="arrays of one length, got 2 and 3"):
         top.simulate_many(start, TOP, 1.0)
 
 

@@ -131,7 +131,7 @@ def test_a_body_comes_back_from_its_data(text):
         ('[body]\ninertia = [[1, "b", 0], [0, 1, 0], [0, 0, 1]]', "I_xy − I_yx = b"),
         ("[body]\ninertia = [[1, 0, 0], [0, 1, 0]]", "three rows of three expressions"),
         ('[body]\nprincipal_moments = ["phi", 1, 1]', "also appears in the rotation"),
-        ('[rotation]\nsequence = "ZXZ"\n[parameters]\nA = {}', "parameters go with a [body]"),
+        ('[rotation]\nsequence = "ZXZ"\n[parameters]\nA = {}', "parameters belong to a body"),
         ('[body]\nprincipal_moments = ["A*", 1, 1]', "column 3: expected a number"),
     ],
 )

@@ -192,7 +192,10 @@ ZXZ = '[rotation]\nsequence = "ZXZ"\n'
             f"{ZXZ}[body]\nshape = 'sphere'\n[dynamics]\nmethod = 'newton'",
             "line 6: dynamics.method: no method 'newton'; known: lagrange, euler",
         ),
-        (f"{ZXZ}constraints = ['phi']", "line 3: rotation.constraints: this key goes with matrix"),
+        (
+            f"{ZXZ}constraints = ['phi']",
+            "line 3: rotation.constraints: only a rotation with matrix has this key",
+        ),
         (
             f"{ZXZ}[output]\nderivatives = ['angular_velocity_body by q']\n"
             "quantities = ['rotation_matrix']",
@@ -347,7 +350,8 @@ def test_faults_of_dynamics_are_placed():
     assert faults(text) == [
         "line 3: dynamics: forces act on a body; expected [body] as well",
         "line 4: dynamics.potential: column 4: expected a number, a name or (, found the end",
-        "line 5: dynamics.forces: a force on chi, which is none of phi, theta, psi",
+        "line 5: dynamics.forces: a force on chi, which is not a coordinate; expected phi, theta, "
+        "psi",
     ]
 
 
@@ -389,7 +393,7 @@ def test_entries_of_a_matrix_may_be_numbers():
         ("[1]", f"rotation.matrix[2][2]: {AN_ENTRY}, got a list"),
         ("nan", f"rotation.matrix[2][2]: {AN_ENTRY}, got a number"),
         ('"cos(psi"', "rotation.matrix[2][2]: "),
-        ('"1"]]\nsequence = "ZXZ"\n#', "rotation.sequence: this key does not go with matrix"),
+        ('"1"]]\nsequence = "ZXZ"\n#', "rotation.sequence: a rotation with matrix does not"),
         ("1, 0", "rotation.matrix: expected three rows of three expressions, got a list"),
     ],
 )
@@ -403,7 +407,7 @@ def test_a_wrong_entry_of_a_matrix_is_named(entry, fault):
 @pytest.mark.parametrize(
     ("example", "fault"),
     [
-        ("{ c = 1 }", "rotation.matrix: top: no c for an example"),
+        ("{ c = 1 }", "rotation.matrix: top: the example: unknown name c"),
         ('{ a = "b" }', "rotation.example.a: unknown name 'b'"),
         (
             "{ a = inf }",

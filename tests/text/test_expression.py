@@ -120,7 +120,7 @@ def test_declared_names_come_before_the_number_pi():
         (
             "1, 2",
             2,
-            "a comma may only separate arguments of a function; decimals have a point",
+            "a comma only separates arguments of a function; write decimals with a point",
         ),
         ("thta", 1, "unknown name 'thta'; did you mean theta?"),
         ("φ + ω", 5, "unknown name 'ω'; known: phi, theta, lambda, m, g"),

@@ -220,13 +220,13 @@ def test_an_ending_that_nobody_writes_is_exit_code_2(tmp_path, name, found):
     (tmp_path / "log.csv").write_text("1,2,3,4,5,6\n", encoding="utf-8")
     done = run("ZXZ", tmp_path / "log.csv", "--out", tmp_path / name)
     assert done.returncode == 2
-    assert f"{name} has {found}; a result ends in .npy, .csv, .txt, .parquet, .pq" in done.stderr
+    assert f"{name} has {found}; expected .npy, .csv, .txt, .parquet, .pq" in done.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["log.csv"]
 
 
 def test_unknown_numbers_are_refused(motion, table, tmp_path):
     np.save(tmp_path / "given.npy", table)
-    with pytest.raises(DataError, match="alpha is no input here"):
+    with pytest.raises(DataError, match="alpha is not an input"):
         evaluation(
             motion, VELOCITY, tmp_path / "given.npy", tmp_path / "r.npy", given={"alpha": 1.0}
         )
@@ -235,8 +235,8 @@ def test_unknown_numbers_are_refused(motion, table, tmp_path):
 @pytest.mark.parametrize(
     ("quantity", "options", "message"),
     [
-        (VELOCITY, {"given": {"phi": 1.0}}, "give all of phi, theta, psi as numbers, or none"),
-        (VELOCITY, {"keep": ("time",)}, "the columns have no names for --keep; --columns gives"),
+        (VELOCITY, {"given": {"phi": 1.0}}, "expected numbers for all of phi, theta, psi, or"),
+        (VELOCITY, {"keep": ("time",)}, "--keep needs names of columns; --columns gives"),
     ],
 )
 def test_a_request_that_no_file_satisfies_is_refused(
@@ -249,7 +249,7 @@ def test_a_request_that_no_file_satisfies_is_refused(
 
 def test_columns_that_an_npy_file_cannot_hold_are_refused(motion, tmp_path):
     result = tmp_path / "r.npy"
-    for name, message in (("12", ""), ("one", "does not hold texts"), ("9" * 17, "beyond 2\\^53")):
+    for name, message in (("12", ""), ("one", "has texts"), ("9" * 17, "beyond 2\\^53")):
         (tmp_path / "log.csv").write_text(f"phi,theta,psi,run\n1,2,3,{name}\n", encoding="utf-8")
         work = evaluation(motion, ("rotation_matrix",), tmp_path / "log.csv", result, keep=("run",))
         if message:

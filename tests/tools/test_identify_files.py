@@ -265,7 +265,7 @@ def test_missing_columns_are_named_with_the_nearest_that_are_there():
         by_name(["time", "rol", "pitch", "yaw", *MATRIX[:8], "r3"])
     assert "no column roll: did you mean rol" in str(error.value)
     assert "no column r33: did you mean r3" in str(error.value)
-    assert "--columns names the columns in their order" in str(error.value)
+    assert "--columns names the columns in order" in str(error.value)
     with pytest.raises(SampleError, match="no column omega1"):
         by_name(["a1", "a2", "a3", *MATRIX, "rate1", "rate2", "rate3"])
     with pytest.raises(SampleError, match="both a matrix and a quaternion"):

@@ -320,7 +320,7 @@ def test_a_line_without_end_is_refused_at_once(motion, tmp_path, kind):
     before = "yaw,pitch,roll\n1,2,3\n" if kind == "later" else ""
     (tmp_path / "log.csv").write_text(before + line[kind])
     start = time.process_time()
-    with pytest.raises(DataError, match="longer than 1 MB; expected one row a line"):
+    with pytest.raises(DataError, match="longer than 1 MB; expected one row per line"):
         matrices(motion, tmp_path / "log.csv")
     assert time.process_time() - start < 5
 

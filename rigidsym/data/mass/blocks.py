@@ -96,8 +96,8 @@ def cloud_of(
     lightest = min(found, key=lambda block: block.lightest)
     if lightest.lightest < 0 and not allow:
         raise BodyError(
-            f"{name(lightest.lightest_at)}: the mass is {lightest.lightest:g} kg; expected none "
-            "that is negative"
+            f"{name(lightest.lightest_at)}: the mass is {lightest.lightest:g} kg; expected a "
+            "mass that is not negative"
         )
     mass = fsum(block.mass for block in found)
     if not 0 < mass < inf:

@@ -63,7 +63,7 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
     if not path.is_file():
         raise BodyError(f"{path}: no such mesh")
     if path.suffix.lower() not in ENDINGS:
-        raise BodyError(f"{path}: the name of a mesh ends in {', '.join(ENDINGS)}")
+        raise BodyError(f"{path}: expected a mesh, a file that ends in {', '.join(ENDINGS)}")
     try:
         with np.errstate(all="ignore"), catch_warnings(action="ignore"):
             loaded = trimesh.load(path, force="mesh", process=True, skip_materials=True)
@@ -76,7 +76,7 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
         kind, size = path.suffix[1:].upper(), path.stat().st_size
         raise BodyError(f"{path}: its {size} bytes cannot be read as a mesh in {kind}") from None
     if not len(faces):
-        raise BodyError(f"{path}: no triangles in it")
+        raise BodyError(f"{path}: expected a mesh with triangles, found none")
     if not np.isfinite(vertices).all():
         wrong = int(np.argmin(np.isfinite(vertices).all(axis=1)))
         raise BodyError(f"{path}: vertex {wrong} is not finite: {vertices[wrong].tolist()}")
@@ -107,7 +107,7 @@ def mesh_inertia(
             raise BodyError(
                 f"mesh: the surface is inside out: its volume is {volume:.6g} m³; flip its faces"
                 if volume
-                else "mesh: it holds no volume"
+                else "mesh: its volume is zero"
             )
         corners = triangles.sum(axis=1)
         first = (six[:, None] * corners).sum(axis=0) * _SIMPLEX[1]
@@ -159,8 +159,8 @@ def check_closed(mesh: Mesh) -> None:
     if times.max() > 1:
         edge = int(found[np.argmax(times)])
         raise BodyError(
-            f"mesh: {int((times > 1).sum())} edges have two faces that run along them in the same "
-            f"direction, such as {_edge(edge, mesh)}: some faces are turned over"
+            f"mesh: some faces are turned over: {int((times > 1).sum())} edges have the same "
+            f"direction in both of their faces, such as {_edge(edge, mesh)}"
         )
     open_edges = np.setdiff1d(backward, found)
     if len(open_edges):

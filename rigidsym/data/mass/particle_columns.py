@@ -57,7 +57,7 @@ class ParticleColumns:
                 size = f"{Path(reader.source).stat().st_size} bytes" if reader.source else ""
                 raise BodyError(
                     f"{size or 'an array'} without a column named x, y, z or m; "
-                    "--columns names them in their order"
+                    "--columns names the columns in order"
                 )
             return cls._named(header)
         except DataError as error:
@@ -74,7 +74,7 @@ class ParticleColumns:
             near = get_close_matches(missing, others, n=1)
             raise BodyError(
                 f"no column {missing} among {', '.join(header.names)}; "
-                + (f"did you mean {near[0]}?" if near else "--columns names them in their order")
+                + (f"did you mean {near[0]}?" if near else "--columns names the columns in order")
             )
         if mass is None and (near := get_close_matches("mass", others, n=1)):
             names = ", ".join(header.names)

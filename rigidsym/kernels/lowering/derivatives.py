@@ -141,7 +141,7 @@ def _derivative(derivation: Derivation, request: DerivativeRequest) -> Derivativ
     step = replace(step, expression=derivation.spelled(step.expression))
     inputs = step.quantity.inputs
     if request.vector not in inputs:
-        raise KernelError(f"{request}: {request.quantity} takes {' and '.join(inputs)} alone")
+        raise KernelError(f"{request}: {request.quantity} depends only on {' and '.join(inputs)}")
     by = derivation.argument(request.vector)
     given = {"jvp": _tangent(by), "vjp": _cotangent(step)}.get(request.kind)
     vectors = map(derivation.argument, inputs)

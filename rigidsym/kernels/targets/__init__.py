@@ -75,7 +75,7 @@ def register(folder: Path) -> None:
     """
     name = folder.name
     if name in TARGETS:
-        raise KernelError(f"there is a target {name} already")
+        raise KernelError(f"a target named {name} exists already")
     if missing := [f for f in ("__init__.py", "printer.py") if not (folder / f).is_file()]:
         raise KernelError(f"{folder} is not the folder of a target: no {' and no '.join(missing)}")
     spec = spec_from_file_location(

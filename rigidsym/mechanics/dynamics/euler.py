@@ -39,13 +39,14 @@ class EulerEquations(Flow):
         """Raises ModelError for parts, for a frame that turns, and if there is no q̇ = U Ω′."""
         if forces.parts or forces.frame_rate:
             raise ModelError(
-                f"{model.name}: Euler's equations are those of one body in an inertial frame; "
+                f"{model.name}: Euler's equations hold for one body in an inertial frame; "
                 'expected method = "lagrange"'
             )
         rotation = Values(model)
         if rotation.inverse_body is None:
             raise ModelError(
-                f"{model.name}: Euler's equations need rates that follow from the angular velocity"
+                f"{model.name}: Euler's equations need coordinates whose rates follow from the "
+                "angular velocity"
             )
         inverse, divisor = rotation.inverse_body
         self._inverse = rotation.codec.decoded(inverse)

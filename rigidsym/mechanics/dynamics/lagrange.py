@@ -81,9 +81,9 @@ class Lagrange:
         values = Values(model)
         if model.pullback is not None or values.inverse_body is None or forces.parts:
             raise ModelError(
-                f"{model.name}: Lagrange's equations need free coordinates, such as the Euler "
-                "angles, or rates of one body that follow from its angular velocity; expected "
-                "such a rotation, or Euler's equations"
+                f"{model.name}: Lagrange's equations need independent coordinates, such as Euler "
+                "angles, or one body whose angular velocity determines the rates; expected such a "
+                'rotation, or method = "euler"'
             )
         above, below = values.inverse_body
         short = values.present.matrix(above, below)

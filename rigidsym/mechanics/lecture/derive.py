@@ -261,7 +261,9 @@ def with_theory(derivation: Derivation) -> Derivation:
     Raises ModelError for a passive presentation, which the lecture does not have.
     """
     if derivation.model.passive:
-        raise ModelError(f"{derivation.name}: the theory treats active rotations; leave passive")
+        raise ModelError(
+            f"{derivation.name}: the theory is written for active rotations; remove passive"
+        )
     return replace(derivation, theory=theory(), steps=tuple(_numbered(derivation.steps)))
 
 

@@ -56,7 +56,7 @@ class Moments:
 @singledispatch
 def moments_of(distribution: Distribution) -> Moments:
     """The moments of a distribution. Raises BodyError if it has none."""
-    raise BodyError(f"{type(distribution).__name__} is no distribution of mass")
+    raise BodyError(f"{type(distribution).__name__} is not a distribution of mass")
 
 
 @moments_of.register
@@ -140,7 +140,7 @@ def _(solid: Solid) -> Moments:
     work = _Integrals(codec, solid)
     measure, proofs = work.measure()
     if not measure:
-        raise BodyError(f"{solid.title}: its points lie in a plane, a line or a point")
+        raise BodyError(f"{solid.title}: its points are in a plane, on a line, or all the same")
     constant, varying = work.split(measure)
     weight = codec.ring.dot([(varying, codec.encode(density))])
     place = [codec.encode(entry) for entry in solid.place]
@@ -224,11 +224,11 @@ class _Integrals:
         residual = self.ring.reduce(element**2) - (tangents @ tangents.T).det()
         if residual:
             raise BodyError(
-                f"{self.solid.title}: the element {given} is not that of the map; its "
+                f"{self.solid.title}: the element {given} does not belong to the map; its "
                 f"square differs by {self.codec.decode(self.ring.reduce(residual))}"
             )
         if self._sign(element) < 0:
-            raise BodyError(f"{self.solid.title}: the element {given} is negative; turn its sign")
+            raise BodyError(f"{self.solid.title}: the element {given} is negative; change its sign")
         bounds = dict(zip(self.solid.coordinates, self.solid.bounds, strict=True))
         squared = RingMatrix.column(self.ring, [residual])
         return element, (self.prove.is_root(squared, given, bounds, _ELEMENT),)
@@ -313,7 +313,7 @@ def _(given: Polyhedron) -> Moments:
     value = codec.decode(volume)
     if value.is_number and value < 0:
         raise BodyError(
-            f"the surface is inside out: its volume is {float(value):.6g} m³; turn its faces over"
+            f"the surface is inside out: its volume is {float(value):.6g} m³; flip its faces"
         )
     scale = _scale(codec, given, volume)
     if given.density is not None:

@@ -94,7 +94,9 @@ def _check_names(arguments: Iterable[Argument], model: str) -> None:
     names = [name for argument in arguments for name in argument.names]
     twice = sorted(name for name, count in Counter(names).items() if count > 1)
     if twice:
-        raise ModelError(f"{model}: {twice[0]} names two things, of the rotation and of the body")
+        raise ModelError(
+            f"{model}: {twice[0]} is a name both in the rotation and in the body; rename one"
+        )
 
 
 def _parameters(model: RotationModel, body: RigidBody | None) -> tuple[Argument, ...]:

@@ -126,7 +126,7 @@ def _completed(
             continue
         count += 1
         if count > _MOST_PAIRS:
-            raise UnfinishedError("the conditions on the coordinates are too many")
+            raise UnfinishedError("there are too many conditions on the coordinates")
         up = ring.term_new(ring.monomial_div(common, lead), 1 / one.LC)
         down = ring.term_new(ring.monomial_div(common, other), -1 / two.LC)
         quotients, rest = (up * one + down * two).div([element for element, _ in basis])

@@ -178,7 +178,7 @@ class _FormulaWalk:
                 return _checked(one / other)
             case ast.Pow() if other in range(1, 9):
                 return reduce(lambda a, b: _checked(a * b), [one] * int(other))
-        raise ExpressionError("an operation that matrices do not have", column=column)
+        raise ExpressionError("this operation is not defined for matrices", column=column)
 
     def _call(self, name: str, values: list[Any], column: int) -> Any:
         if len(values) == 1 and isinstance(values[0], Sized):

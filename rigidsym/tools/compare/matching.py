@@ -80,12 +80,12 @@ class Comparison:
             return f"equal to {what} ({proof})"
         changes = "; ".join(repair.words for repair in self.repairs)
         if self.asked is None:
-            return f"close to {what}: {changes} (with this, {proof})"
+            return f"close to {what}: {changes} (with this change, {proof})"
         if self.as_it_stands:
             changes += f"; as it stands this is {self.as_it_stands}"
         is_changed = self.asked.quantity == self.found.quantity
         is_changed &= self.asked.rotation == self.found.rotation
-        proof = f"with this, {proof}" if is_changed else proof
+        proof = f"with this change, {proof}" if is_changed else proof
         return f"not {self.asked}: {changes}{'' if is_changed else self._in_names()} ({proof})"
 
     def _read(self) -> str:

@@ -148,7 +148,7 @@ def _opened(
 def _kept(header: ColumnNames | None, name: str) -> tuple[int, str]:
     """A column to keep, and its name in the file."""
     if header is None:
-        raise DataError("the columns have no names for --keep; --columns gives them")
+        raise DataError("--keep needs names of columns; --columns gives them")
     if (column := header.find([name])) is None:
         raise DataError(f"no column {name} among {header.listed}")
     return column, header.names[column]

@@ -32,11 +32,11 @@ def inputs_of(
     """
     known = [name for argument in arguments for name in argument.names]
     if strange := [name for name in given if name not in known]:
-        raise RequestError(f"{strange[0]} is no input here; {offer(strange[0], sorted(known))}")
+        raise RequestError(f"{strange[0]} is not an input; {offer(strange[0], sorted(known))}")
     free = [a for a in arguments if not set(a.names) <= given.keys()]
     if partly := [a for a in free if not given.keys().isdisjoint(a.names)]:
         raise RequestError(
-            f"give all of {', '.join(partly[0].names)} as numbers, or none and have them in columns"
+            f"expected numbers for all of {', '.join(partly[0].names)}, or columns for all of them"
         )
     columns = _by_order(free, width) if header is None else _by_name(free, header)
     found: dict[str, Input] = {}
@@ -86,7 +86,7 @@ def _by_name(arguments: Sequence[FunctionArgument], header: ColumnNames) -> tupl
             else:
                 columns.append(column)
     if missing:
-        remedy = "--columns names the columns in their order"
+        remedy = "--columns names the columns in order"
         if any(a.name == "q" and len(a.names) == 3 and {*a.names} <= {*missing} for a in arguments):
             remedy += (
                 ", or --angles the coordinates in the order of the turns, "

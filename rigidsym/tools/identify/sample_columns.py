@@ -87,7 +87,7 @@ def by_name(names: Sequence[str]) -> Columns:
     wanted = (*angles, *attitude, *((*rates, *omega) if has_velocity else ()))
     faults = _missing(wanted, header)
     if faults:
-        faults.append("--columns names the columns in their order, for a file with other names")
+        faults.append("--columns names the columns in order, if their names are others")
     if {_share(_nearest(groups, header), header) for groups in (MATRICES, QUATERNIONS)} == {1.0}:
         faults.append("both a matrix and a quaternion are named; leave one out")
     if faults:

@@ -50,7 +50,7 @@ def build(source: Path, *, portable: bool = False) -> Path:
     needed = [folder / text.format(name) for text in (*_SOURCES, "{}.h", "{}_c.py")]
     if missing := [str(path) for path in needed if not path.is_file()]:
         raise CheckError(
-            f"{', '.join(missing)}: not there; rigidsym derive --target c writes it, with arrays "
+            f"{', '.join(missing)}: not found; rigidsym derive --target c writes it, with arrays "
             "and both precisions"
         )
     library = folder / f"_{name}_c{sysconfig.get_config_var('EXT_SUFFIX')}"
@@ -93,8 +93,8 @@ def compiler() -> str:
         if found := shutil.which(name):
             return found
     raise MissingTool(
-        f"a Python module of C functions needs a C compiler, {', '.join(COMPILERS)}, not found "
-        "here; on Debian: apt install gcc python3-dev"
+        f"a Python module of C functions needs a C compiler, and none was found "
+        f"({', '.join(COMPILERS)}); on Debian: apt install gcc python3-dev"
     )
 
 
