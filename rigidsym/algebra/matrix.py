@@ -217,10 +217,39 @@ class RingMatrix:
                     found.append((rows, columns))
         return found
 
+    def right_inverse(self, bound: RingMatrix | None = None) -> Inverse | None:
+        """G (n, 3) and d with W G = d 1, for a rate matrix W (3, n); None if there is none.
+
+        With as many coordinates as dimensions it is the inverse; with more, the rates of least norm
+        are taken, W⁺ = Wᵀ (W Wᵀ)⁻¹. `bound` is the matrix J of the constraints on the rates,
+        J q̇ = 0; then J G = 0 as well.
+        """
+        count = self.shape[1]
+        if count < 3:
+            return None
+        if count == 3 and bound is None:
+            return _if_regular(self.adjugate(), self.det())
+        gram = self.gram()
+        least = _if_regular(self.T @ gram.adjugate(), gram.det())
+        if least is None or bound is None or (bound @ least[0]).is_zero():
+            return least
+        square = RingMatrix(self.ring, (*self.rows, *bound.rows))
+        if square.shape[0] != count:
+            return None
+        columns = square.adjugate().T.rows[:3]
+        return _if_regular(RingMatrix(self.ring, columns).T, square.det())
+
     def _minor(self, row: int, column: int) -> RingMatrix:
         """The matrix without one row and one column."""
         kept = [entries for place, entries in enumerate(self.rows) if place != row]
         return RingMatrix(self.ring, tuple(e[:column] + e[column + 1 :] for e in kept))
+
+
+Inverse = tuple[RingMatrix, PolyElement]  # G and d, for G/d
+
+
+def _if_regular(inverse: RingMatrix, determinant: PolyElement) -> Inverse | None:
+    return (inverse, determinant) if determinant else None
 
 
 def cross(ring: Ring, u: Row, v: Row) -> Row:

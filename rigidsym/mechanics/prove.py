@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
-from itertools import filterfalse
 from typing import NamedTuple
 
 import sympy as sp
@@ -20,9 +19,9 @@ from rigidsym.algebra.present import Rationals
 from rigidsym.algebra.ring import Quotient
 from rigidsym.algebra.signs import Bounds, sign_within
 from rigidsym.algebra.witness import Example, Rows, witness_for
-from rigidsym.errors import Defect, DerivationError, NotARotation
+from rigidsym.errors import Defect, DerivationError, NotARotation, RigidsymError
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Proof
+from rigidsym.mechanics.derivation import Proof, Status
 from rigidsym.models.rotation import Pullback, RotationModel
 from rigidsym.models.so3 import TIME
 
@@ -54,6 +53,10 @@ def consequence(proofs: Sequence[Proof], claim: Formula) -> Proof:
     return Proof(claim=claim, status=left.status, residual=left.residual)
 
 
+# a matrix, what it is to be zero for, and what the claim is divided by
+Claimed = tuple[RingMatrix, Formula, Iterable[PolyElement]]
+
+
 class Prover:
     """Decides claims about one subject in its ring."""
 
@@ -64,41 +67,60 @@ class Prover:
         self.witness = witness_for(codec, subject.name, subject.constraints, subject.example)
         self._values: dict[RingMatrix, Rows] = {}  # at a real point, of the factors of residuals
 
-    def vanishes(
-        self, residual: RingMatrix, claim: Formula, *, divided_by: PolyElement | None = None
-    ) -> Proof:
-        """The proof that a matrix is zero, and that its divisor is not.
+    def vanish(
+        self, claimed: Iterable[Claimed], *, error: type[RigidsymError] = DerivationError
+    ) -> tuple[Proof, ...]:
+        """The proofs that matrices are zero, and that their divisors are not.
 
         A residual that reduces to zero is also evaluated at a real point, from its factors and to
         50 digits; raises Defect if that value is not zero.
-        Raises DerivationError if the matrix is shown not to be zero. If the ring does not know
-        enough to tell, the proof is *unproved* and holds what is left.
+        Raises the error if a matrix is shown not to be zero. If the ring does not know enough to
+        tell, the proof is *unproved* and holds what is left.
         """
-        divisors = () if divided_by is None or divided_by == 1 else (divided_by,)
-        if residual.is_zero():
-            if self.subject.pullback is None and self.witness.disagrees(residual, self._values):
+        proofs, is_pulled_back = [], self.subject.pullback is not None
+        for residual, claim, divisors in claimed:
+            left: sp.ImmutableMatrix | None = None
+            if not residual.is_zero():
+                left = self._left(residual, claim, error)
+            elif not is_pulled_back and self.witness.disagrees(residual, self._values):
                 raise Defect(
                     f"{self.subject.name}: {claim.text} is proved, and yet is false at a point; "
                     "this is a defect of rigidsym, please report it"
                 )
-            return self._unless_zero(divisors, claim)
+            if left is None:
+                for divisor in divisors:  # if one may be zero everywhere, it is the residual
+                    if not self.witness.is_nonzero(divisor):
+                        left = self.codec.decoded(RingMatrix.column(self.codec.ring, [divisor]))
+                        break
+            status: Status = "exact" if left is None else "unproved"
+            proofs.append(Proof(claim=claim, status=status, residual=left))
+        return tuple(proofs)
+
+    def _left(
+        self, residual: RingMatrix, claim: Formula, error: type[RigidsymError]
+    ) -> sp.ImmutableMatrix | None:
+        """What is left of a residual that the ring does not reduce to zero; None if it is zero."""
         left = self.codec.decoded(residual)
         if self.subject.pullback is not None and self._pulled_back(left).is_zero():
-            return self._unless_zero(divisors, claim)
+            return None
         if any(map(self.witness.is_nonzero, residual.entries)):
-            raise DerivationError(
-                f"{self.subject.name}: {claim.text} is false; left over: {self._plain(left)}"
-            )
-        return Proof(claim=claim, status="unproved", residual=left)
+            fails = f"{claim.text} is false"
+            if error is NotARotation:
+                fails = f"not a rotation, since {claim.text} fails"
+            raise error(f"{self.subject.name}: {fails}; left over: {self._plain(left)}")
+        return left
+
+    def vanishes(
+        self, residual: RingMatrix, claim: Formula, *, divided_by: PolyElement | None = None
+    ) -> Proof:
+        """`vanish` for one claim."""
+        return self.vanish([(residual, claim, () if divided_by is None else (divided_by,))])[0]
 
     def cancel(self, quotients: Sequence[Quotient], claim: Formula) -> Proof:
         """The proof that quotients are zero, and that none of their divisors is."""
         numerators = RingMatrix.column(self.codec.ring, (q.numerator for q in quotients))
-        proof = self.vanishes(numerators, claim)
-        if not proof.is_exact:
-            return proof
-        below = dict.fromkeys(q.denominator for q in quotients if not q.denominator.is_ground)
-        return self._unless_zero(below, claim)
+        divisors = dict.fromkeys(q.denominator for q in quotients)
+        return self.vanish([(numerators, claim, divisors)])[0]
 
     def is_root(
         self,
@@ -117,16 +139,6 @@ class Prover:
             return Proof(claim=claim, status="unproved", residual=sp.ImmutableMatrix([[value]]))
         return proof
 
-    def is_rotation(self, residual: RingMatrix, claim: Formula) -> Proof:
-        """As `vanishes`, for the claims that make a matrix a rotation; raises NotARotation."""
-        try:
-            return self.vanishes(residual, claim)
-        except DerivationError as error:
-            raise NotARotation(
-                f"{self.subject.name}: not a rotation, since {claim.text} fails; "
-                f"left over: {self._plain(self.codec.decoded(residual))}"
-            ) from error
-
     def _pulled_back(self, left: sp.ImmutableMatrix) -> RingMatrix:
         """The residual in the ring of the functions that the coordinates are pulled back to."""
         codec, values = self._pullback
@@ -144,13 +156,6 @@ class Prover:
         given = [gen.expression for gen in self.codec.ring.generators if gen.expression.is_Symbol]
         inputs = [*pullback.coordinates, *given]
         return codec_for(inputs, constraints=pullback.constraints), values
-
-    def _unless_zero(self, divisors: Iterable[PolyElement], claim: Formula) -> Proof:
-        """Exact, unless a divisor may be zero everywhere; the divisor is then the residual."""
-        for divisor in filterfalse(self.witness.is_nonzero, divisors):
-            left = self.codec.decoded(RingMatrix.of(self.codec.ring, [[divisor]]))
-            return Proof(claim=claim, status="unproved", residual=left)
-        return Proof(claim=claim, status="exact")
 
     def _plain(self, left: sp.ImmutableMatrix) -> str:
         """The entries that are not zero, in the plain names of the coordinates."""

@@ -45,13 +45,13 @@ def test_the_recursion_is_the_expanded_form_in_the_ring(count, oblique):
     work, values = TurnByTurn(model), Values(model)
     found = dict(work.steps())
     for name, expanded in (
-        ("rotation_matrix", values.R),
-        ("angular_velocity_space", values.omega_space),
-        ("angular_velocity_body", values.omega_body),
+        ("rotation_matrix", values.turning.R),
+        ("angular_velocity_space", values.turning.omega_space),
+        ("angular_velocity_body", values.turning.omega_body),
         ("rate_matrix_space", values.rate_matrix_space),
         ("rate_matrix_body", values.rate_matrix_body),
-        ("angular_acceleration_space", values.omega_space.dt()),
-        ("angular_acceleration_body", values.omega_body.dt()),
+        ("angular_acceleration_space", values.turning.omega_space.dt()),
+        ("angular_acceleration_body", values.turning.omega_body.dt()),
     ):
         entries = map(values.codec.encode, spelled(work, found[name].expression))
         assert not any(e - x for e, x in zip(entries, expanded.entries, strict=True)), name
@@ -196,12 +196,12 @@ def test_a_body_on_a_long_chain_has_the_energy_and_momentum_of_the_expanded_rota
     assert all(step.proofs for step in motion.steps if step.quantity.name in ENERGY_QUANTITIES)
     assert motion.is_proved
     values = Values(model, motion.body)
-    omega, inertia = values.omega_body, values.codec.matrix(motion.body.inertia)
+    omega, inertia = values.turning.omega_body, values.codec.matrix(motion.body.inertia)
     encode = values.codec.encode
     assert encode(2 * motion.rotational_energy) == (omega.T @ inertia @ omega)[0, 0]
-    momentum = (values.R @ (inertia @ omega)).entries
+    momentum = (values.turning.R @ (inertia @ omega)).entries
     assert tuple(map(encode, motion.angular_momentum_rotation)) == momentum
-    turned = values.R @ inertia @ values.R.T
+    turned = values.turning.R @ inertia @ values.turning.R.T
     assert tuple(map(encode, motion.inertia_tensor_space)) == turned.entries
 
 

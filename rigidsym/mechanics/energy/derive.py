@@ -35,8 +35,8 @@ class _Energy:
 
     def __init__(self, values: Values) -> None:
         assert values.body is not None
-        self.values, self.body, self.codec = values, values.body, values.codec
-        self.ring = values.ring
+        self.body, self.codec = values.body, values.codec
+        self.ring, self.turning = values.codec.ring, values.turning
         self.present, self.prove = values.present, values.prove
         self.inertia = values.codec.matrix(self.body.inertia)
         self.mass = self.codec.encode(self.body.mass)
@@ -53,7 +53,7 @@ class _Energy:
     def _particle(self) -> tuple[RingMatrix, RingMatrix]:
         """x and ẋ of the generic particle."""
         place = self.codec.column(particles.IN_BODY)
-        return self.values.R @ place, self.values.R_dot @ place
+        return self.turning.R @ place, self.turning.R_dot @ place
 
     def _of_particles(self, summand: RingMatrix) -> RingMatrix:
         """Σ m of a summand."""
@@ -70,8 +70,8 @@ class _Energy:
         )
 
     def rotational_energy(self) -> Found:
-        values = self.values
-        turned = values.R.T @ values.omega_space  # for Ωᵀ (R I′ Rᵀ) Ω, from the outside inwards
+        turning = self.turning
+        turned = turning.R.T @ turning.omega_space  # for Ωᵀ (R I′ Rᵀ) Ω, from the outside inwards
         in_space = turned.T @ self.inertia @ turned
         _, velocity = self._particle
         summed = self._of_particles(self._scalar(self._square(velocity)))
@@ -106,23 +106,23 @@ class _Energy:
         )
 
     def angular_momentum_rotation_body(self) -> Found:
-        values = self.values
-        momentum = self.inertia @ values.omega_body
-        dotted = momentum.T @ values.omega_body - self._scalar(self._twice)
+        turning = self.turning
+        momentum = self.inertia @ turning.omega_body
+        dotted = momentum.T @ turning.omega_body - self._scalar(self._twice)
         return Found(
-            momentum_forms.in_body(self.present, self.inertia, values),
+            momentum_forms.in_body(self.present, self.inertia, turning),
             "The inertia tensor takes the angular velocity to the angular momentum.",
             (self.prove.vanishes(dotted, claims.TWICE_ENERGY_BODY),),
         )
 
     def angular_momentum_rotation(self) -> Found:
-        values = self.values
+        turning = self.turning
         momentum = self._momentum
-        turned = values.R @ (self.inertia @ (values.R.T @ values.omega_space))
-        dotted = momentum.T @ values.omega_space - self._scalar(self._twice)
+        turned = turning.R @ (self.inertia @ (turning.R.T @ turning.omega_space))
+        dotted = momentum.T @ turning.omega_space - self._scalar(self._twice)
         summed = self._of_particles(self._particle[0].cross(self._particle[1]))
         return Found(
-            momentum_forms.in_space(self.present, self.inertia, values),
+            momentum_forms.in_space(self.present, self.inertia, turning),
             "Rotating gives the components along the axes of space.",
             (
                 self.prove.vanishes(turned - momentum, claims.MOMENTUM_TURNS),
@@ -136,7 +136,7 @@ class _Energy:
         place, velocity = self._particle
         whole = (self.centre + place).cross(self.velocity + velocity)
         residual = self._of_particles(whole) - of_centre - self._momentum
-        rotation = momentum_forms.in_space(self.present, self.inertia, self.values)
+        rotation = momentum_forms.in_space(self.present, self.inertia, self.turning)
         return Found(
             sp.ImmutableMatrix(self.present.matrix(of_centre) + rotation),
             "Like the energy, the angular momentum is the sum of two parts.",
@@ -146,17 +146,17 @@ class _Energy:
     @cached_property
     def _momentum(self) -> RingMatrix:
         """L_R in space components, over the ring."""
-        return self.values.R @ (self.inertia @ self.values.omega_body)
+        return self.turning.R @ (self.inertia @ self.turning.omega_body)
 
     @cached_property
     def _twice(self) -> PolyElement:
         """2 E_R, over the ring."""
-        omega = self.values.omega_body
+        omega = self.turning.omega_body
         return (omega.T @ (self.inertia @ omega))[0, 0]
 
     @cached_property
     def _rotational(self) -> sp.Expr:
-        return half_form(self.present, self.inertia, self.values.omega_body)
+        return half_form(self.present, self.inertia, self.turning.omega_body)
 
     @cached_property
     def _translational(self) -> sp.Expr:
@@ -166,4 +166,4 @@ class _Energy:
         return (vector.T @ vector)[0, 0]
 
     def _scalar(self, element: PolyElement) -> RingMatrix:
-        return self.values.column([element])
+        return RingMatrix.column(self.ring, [element])

@@ -11,38 +11,38 @@ from sympy.polys.rings import PolyElement
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import Presenter
 from rigidsym.algebra.squares import agrees, shortest_of
-from rigidsym.mechanics.kinematics.workspace import Values
+from rigidsym.mechanics.kinematics.workspace import Turning
 
 _MOST_TERMS = 60  # of a component that is worth being presented multiplied out
 
 
-def in_body(present: Presenter, inertia: RingMatrix, values: Values) -> sp.ImmutableMatrix:
+def in_body(present: Presenter, inertia: RingMatrix, turning: Turning) -> sp.ImmutableMatrix:
     """I′Ω′, (3, 1): each moment times its component."""
-    rows = [_row(present, row, values.omega_body.entries) for row in inertia.rows]
-    return _shortest(present, [rows], inertia @ values.omega_body)
+    rows = [_row(present, row, turning.omega_body.entries) for row in inertia.rows]
+    return _shortest(present, [rows], inertia @ turning.omega_body)
 
 
-def in_space(present: Presenter, inertia: RingMatrix, values: Values) -> sp.ImmutableMatrix:
+def in_space(present: Presenter, inertia: RingMatrix, turning: Turning) -> sp.ImmutableMatrix:
     """R I′Ω′, (3, 1): multiplied out, row by row, or as b Ω + R (I′ − b 1) Ω′ for a moment b."""
-    momentum = values.R @ inertia @ values.omega_body
-    by_body = list(in_body(present, inertia, values))
-    forms = [_rotated(present, values.R, by_body), *_multiplied_out(present, momentum)]
-    forms += _about_a_moment(present, inertia, values)
+    momentum = turning.R @ inertia @ turning.omega_body
+    by_body = list(in_body(present, inertia, turning))
+    forms = [_rotated(present, turning.R, by_body), *_multiplied_out(present, momentum)]
+    forms += _about_a_moment(present, inertia, turning)
     return _shortest(present, forms, momentum)
 
 
 def _about_a_moment(
-    present: Presenter, inertia: RingMatrix, values: Values
+    present: Presenter, inertia: RingMatrix, turning: Turning
 ) -> Iterator[list[sp.Expr]]:
-    along = [present.element(entry) for entry in values.omega_space.entries]
+    along = [present.element(entry) for entry in turning.omega_space.entries]
     zero = inertia.ring.zero
     for moment in dict.fromkeys(inertia[k, k] for k in range(3)):
         rows = [
             [entry - (moment if j == k else zero) for k, entry in enumerate(row)]
             for j, row in enumerate(inertia.rows)
         ]
-        rest = [_row(present, tuple(row), values.omega_body.entries) for row in rows]
-        turned = _rotated(present, values.R, rest)
+        rest = [_row(present, tuple(row), turning.omega_body.entries) for row in rows]
+        turned = _rotated(present, turning.R, rest)
         base = present.element(moment)
         yield [base * entry + more for entry, more in zip(along, turned, strict=True)]
 

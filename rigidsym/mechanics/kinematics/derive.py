@@ -7,14 +7,16 @@ one algorithm for every rotation model (`Expanded`; lecture, eq. 15 and 16), or 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.matrix import RingMatrix, hat
+from rigidsym.errors import DerivationError, NotARotation
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Found, Proof, VectorForm
+from rigidsym.mechanics.derivation import Found, VectorForm
 from rigidsym.mechanics.kinematics.vector_forms import matrix_form, vector_form
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.kinematics import (
@@ -47,15 +49,14 @@ class Kinematics(ABC):
         The matrix is proved to be a rotation in any case: all else rests on it. Raises NotARotation
         if R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over.
         """
-        for name in QUANTITY_NAMES:
-            if not only or name in ("rotation_matrix", *only):
-                found = self.find(name)
-                if found is not None and (not only or name in only):
-                    yield name, found
+        rotation, *others = QUANTITY_NAMES
+        found = self.find([rotation])
+        found |= self.find([name for name in others if not only or name in only])
+        yield from ((name, step) for name, step in found.items() if not only or name in only)
 
     @abstractmethod
-    def find(self, name: str) -> Found | None:
-        """One quantity with its proofs; None if the model does not have it."""
+    def find(self, names: Sequence[str]) -> dict[str, Found]:
+        """Quantities with their proofs, but for those that the model does not have."""
 
     def inverse_symbol(self, frame: Frame) -> Formula:
         return frame.inverse if self.is_square else frame.right_inverse
@@ -67,6 +68,17 @@ def kind_and_frame(name: str) -> tuple[str, str]:
     return (kind, frame) if frame in FRAMES else (name, "")
 
 
+_INVERSE = ("inverse_rate_matrix", "rates_from_angular_velocity")
+
+
+class Fraction(NamedTuple):
+    """A quantity over a divisor, and the residuals of its laws: what vanishes if they hold."""
+
+    matrix: RingMatrix
+    below: PolyElement
+    residuals: list[RingMatrix]
+
+
 class Expanded(Kinematics):
     """The steps multiplied out, in the ring of the model."""
 
@@ -74,77 +86,76 @@ class Expanded(Kinematics):
         super().__init__(values.model)
         self.values = values
 
-    def find(self, name: str) -> Found | None:
-        found = self._value(name)
-        if found is None:
-            return None
-        matrix, below = found
-        proofs = [self._holds(law, claim, matrix, below) for law, claim in self.laws[name]]
-        form = self._form(name, matrix, below) if self.model.vector else None
-        if form is not None:
-            proofs.append(form.proof)
-        shown = self.values.present.matrix(matrix, below)
-        return Found(shown, self._because(name), tuple(proofs), form)
+    def find(self, names: Sequence[str]) -> dict[str, Found]:
+        found = self._worked_out(names)
+        claimed = [
+            (residual, claim, (quantity.below,))
+            for name, quantity in found.items()
+            for residual, (_, claim) in zip(quantity.residuals, self.laws[name], strict=True)
+        ]
+        is_rotation = "rotation_matrix" in found
+        prove, matrix = self.values.prove.vanish, self.values.present.matrix
+        proofs = iter(prove(claimed, error=NotARotation if is_rotation else DerivationError))
+        shown = [matrix(quantity.matrix, quantity.below) for quantity in found.values()]
+        steps: dict[str, Found] = {}
+        for (name, quantity), expression in zip(found.items(), shown, strict=True):
+            proved = [next(proofs) for _ in quantity.residuals]
+            form = self._form(name, quantity) if self.model.vector else None
+            proved += [form.proof] if form else []
+            steps[name] = Found(expression, self._because(name), tuple(proved), form)
+        return steps
 
-    def _value(self, name: str) -> tuple[RingMatrix, PolyElement] | None:
-        """The quantity as a matrix over a divisor."""
-        values, (kind, frame) = self.values, kind_and_frame(name)
-        if kind == "inverse_rate_matrix":
-            return values.inverse(frame)
-        if kind == "rates_from_angular_velocity":
-            inverse = values.inverse(frame)
-            return inverse and (inverse[0] @ values.argument(f"omega_{frame}"), inverse[1])
-        match kind:
-            case "rotation_matrix":
-                matrix = self._shown(values.R)
-            case "rotation_rate":
-                matrix = self._shown(values.R_dot)
-            case "spin_matrix":
-                matrix = self._spin
-            case "angular_velocity":
-                matrix = values.omega(frame)
-            case "rate_matrix":
-                matrix = values.rate_matrix(frame)
-            case "angular_acceleration":
-                matrix = values.alpha_space if frame == "space" else values.omega_body.dt()
-            case _:
-                raise LookupError(f"no rule finds {kind}")
-        return matrix, values.ring.one
+    def _worked_out(self, names: Sequence[str]) -> dict[str, Fraction]:
+        """The quantities, each with what vanishes if its laws hold, in their order."""
+        values, passive, spin = self.values, self.model.passive, self._spin
+        R, R_dot, active, omega_space, omega_body = values.turning
+        omegas = {"space": omega_space, "body": omega_body}
+        rates = {"space": values.rate_matrix_space, "body": values.rate_matrix_body}
+        kinds = [kind_and_frame(name) for name in names]
+        inverses = {f: values.inverse(f) for kind, f in kinds if kind in _INVERSE}
+        given = {name: values.argument(name) for name in ("q_dot", "omega_space", "omega_body")}
+        one, unit = values.codec.ring.one, RingMatrix.identity(values.codec.ring, 3)
+        found: dict[str, Fraction] = {}
+        for name, (kind, frame) in zip(names, kinds, strict=True):
+            omega, below = omegas.get(frame, omega_space), one
+            match kind:
+                case "rotation_matrix":
+                    matrix = R.T if passive else R
+                    left = [matrix.gram() - unit, RingMatrix.column(R.ring, [R.det() - 1])]
+                case "rotation_rate":
+                    matrix, left = R_dot.T if passive else R_dot, [spin + spin.T]
+                case "spin_matrix":
+                    matrix, left = spin, [spin + spin.T]
+                    left += [spin + hat(omega_body)] if passive else []
+                case "angular_velocity":
+                    matrix = omega
+                    left = [active - hat(omega) if frame == "space" else R @ omega - omega_space]
+                case "rate_matrix":
+                    matrix = rates[frame]
+                    left = [matrix @ given["q_dot"] - omega]
+                case "angular_acceleration":
+                    matrix = omega.dt()
+                    if frame == "space":
+                        left = [active.dt() - hat(matrix)]
+                    else:
+                        left = [R @ matrix - omega_space.dt()]
+                case _:
+                    inverse = inverses[frame]
+                    if inverse is None:
+                        continue
+                    matrix, below = inverse
+                    whole = unit
+                    if kind == "rates_from_angular_velocity":
+                        whole = given[f"omega_{frame}"]
+                        matrix = matrix @ whole
+                    left = [rates[frame] @ matrix - whole.scale(below)]
+            found[name] = Fraction(matrix, below, left)
+        return found
 
-    def _holds(self, law: str, claim: Formula, matrix: RingMatrix, below: PolyElement) -> Proof:
-        prove, residual = self.values.prove, self._residual(law, matrix, below)
-        if law in ("orthogonal", "proper"):
-            return prove.is_rotation(residual, claim)
-        return prove.vanishes(residual, claim, divided_by=below)
-
-    def _residual(self, law: str, found: RingMatrix, below: PolyElement) -> RingMatrix:
-        """What vanishes if a law of a quantity, found / below, holds."""
-        values, (kind, frame) = self.values, kind_and_frame(law)
-        match law:
-            case "orthogonal":
-                return self._shown(values.R).gram() - values.one
-            case "proper":
-                return values.column([values.R.det() - 1])
-            case "skew":
-                return self._spin + self._spin.T
-            case "passive_operator":
-                return self._spin + hat(values.omega_body)
-            case "angular_velocity_space":
-                return values.spin - hat(values.omega_space)
-            case "angular_velocity_body":
-                return values.R @ values.omega_body - values.omega_space
-            case "angular_acceleration_space":
-                return values.spin.dt() - hat(found)
-            case "angular_acceleration_body":
-                return values.R @ found - values.alpha_space
-        if kind == "rate_matrix":
-            return found @ values.argument("q_dot") - values.omega(frame)
-        whole = values.one if kind == "inverse_rate_matrix" else values.argument(f"omega_{frame}")
-        return values.rate_matrix(frame) @ found - whole.scale(below)
-
-    def _form(self, name: str, matrix: RingMatrix, below: PolyElement) -> VectorForm | None:
+    def _form(self, name: str, quantity: Fraction) -> VectorForm | None:
         """The quantity as a function of the vector of the coordinates, if it is one."""
         prove, vector, (kind, where) = self.values.prove, self.model.vector, kind_and_frame(name)
+        matrix, below = quantity.matrix, quantity.below
         if kind == "rotation_matrix":
             return matrix_form(prove, vector, matrix, below, self.symbol)
         frame = FRAMES.get(where, SPACE)
@@ -160,14 +171,11 @@ class Expanded(Kinematics):
         given = frame.omega, self.values.argument(f"omega_{where}")
         return matrix_form(prove, vector, *inverse, RATES, to=given)
 
-    def _shown(self, matrix: RingMatrix) -> RingMatrix:
-        return matrix.T if self.model.passive else matrix
-
     @cached_property
     def _spin(self) -> RingMatrix:
         """dR/dt Rᵀ, or dA/dt Aᵀ of A = Rᵀ."""
-        values = self.values
-        return values.R_dot.T @ values.R if self.model.passive else values.spin
+        turning = self.values.turning
+        return turning.R_dot.T @ turning.R if self.model.passive else turning.spin
 
     # How each follows, in words
 

@@ -67,7 +67,10 @@ class TurnByTurn(Kinematics):
         self._proved: dict[str, list[Proof]] = {}  # of the laws of the turns
         self._made: dict[str, OrthogonalRows] = {}
 
-    def find(self, name: str) -> Found | None:
+    def find(self, names: Sequence[str]) -> dict[str, Found]:
+        return {name: found for name in names if (found := self._found(name)) is not None}
+
+    def _found(self, name: str) -> Found | None:
         expression = self._expression(name)
         if expression is None:
             return None

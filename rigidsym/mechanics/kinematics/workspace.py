@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import cache, cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import sympy as sp
-from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.configuration import configurations
-from rigidsym.algebra.matrix import RingMatrix, hat, unhat
+from rigidsym.algebra.matrix import Inverse, RingMatrix, hat, unhat
 from rigidsym.algebra.present import Presenter, presenter_for
-from rigidsym.algebra.ring import Ring
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities.arguments import arguments_of
 from rigidsym.models.parametrisations import DirectionCosines
@@ -22,11 +20,19 @@ from rigidsym.models.rotation import RotationModel
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
 
-Inverse = tuple[RingMatrix, PolyElement]  # G and d, for G/d
+
+class Turning(NamedTuple):
+    """R and the angular velocity, over a ring."""
+
+    R: RingMatrix
+    R_dot: RingMatrix
+    spin: RingMatrix  # dR/dt Rᵀ
+    omega_space: RingMatrix
+    omega_body: RingMatrix
 
 
 class Values:
-    """R, dR/dt, Ω, Ω′, W, W′ and the inverses of one model, each worked out when asked for."""
+    """R, dR/dt, Ω, Ω′, W, W′ and the inverses of one model, worked out when asked for."""
 
     def __init__(
         self,
@@ -65,77 +71,45 @@ class Values:
     def present(self) -> Presenter:
         return presenter_for(self.codec)
 
-    @property
-    def ring(self) -> Ring:
-        return self.codec.ring
-
     @cached_property
-    def one(self) -> RingMatrix:
-        return RingMatrix.identity(self.ring, 3)
-
-    @cached_property
-    def R(self) -> RingMatrix:
-        return self.codec.matrix(self.model.matrix)
-
-    @cached_property
-    def R_dot(self) -> RingMatrix:
-        return self.R.dt()
-
-    @cached_property
-    def spin(self) -> RingMatrix:
-        """dR/dt Rᵀ."""
-        return self.R_dot @ self.R.T
-
-    @cached_property
-    def omega_space(self) -> RingMatrix:
-        return unhat(self.spin)
-
-    @cached_property
-    def omega_body(self) -> RingMatrix:
-        if self.model.pullback is not None:  # RᵀΩ would not become shorter in this ring
-            return unhat(self.R.T @ self.R_dot)
-        return self.R.T @ self.omega_space
-
-    @cached_property
-    def alpha_space(self) -> RingMatrix:
-        return self.omega_space.dt()
+    def turning(self) -> Turning:
+        """R → dR/dt → Ω → Ω′ (lecture, eq. 15 and 16)."""
+        rotation = self.codec.matrix(self.model.matrix)
+        rate, back = rotation.dt(), rotation.T
+        spin = rate @ back
+        space = unhat(spin)
+        # for the ring of a pullback, RᵀΩ would not become shorter
+        body = back @ space if self.model.pullback is None else unhat(back @ rate)
+        return Turning(rotation, rate, spin, space, body)
 
     @cached_property
     def rate_matrix_space(self) -> RingMatrix:
-        return self._jacobian(self.omega_space)
+        return self._jacobian(self.turning.omega_space)
 
     @cached_property
     def rate_matrix_body(self) -> RingMatrix:
-        return self._jacobian(self.omega_body)
+        return self._jacobian(self.turning.omega_body)
 
     @cached_property
     def inverse_space(self) -> Inverse | None:
-        entries = self._entry_rates(lambda skew: skew @ self.R)
-        return entries or right_inverse(self.rate_matrix_space, self.bound)
+        return self._entry_rates("space") or self.rate_matrix_space.right_inverse(self.bound)
 
     @cached_property
     def inverse_body(self) -> Inverse | None:
-        entries = self._entry_rates(lambda skew: self.R @ skew)
-        return entries or right_inverse(self.rate_matrix_body, self.bound)
-
-    # The same, by the name of the frame: "space" or "body"
-
-    def omega(self, frame: str) -> RingMatrix:
-        return self.omega_space if frame == "space" else self.omega_body
-
-    def rate_matrix(self, frame: str) -> RingMatrix:
-        return self.rate_matrix_space if frame == "space" else self.rate_matrix_body
+        return self._entry_rates("body") or self.rate_matrix_body.right_inverse(self.bound)
 
     def inverse(self, frame: str) -> Inverse | None:
+        """By the name of the frame: "space" or "body"."""
         return self.inverse_space if frame == "space" else self.inverse_body
 
-    def _entry_rates(self, rate_of: Callable[[RingMatrix], RingMatrix]) -> Inverse | None:
+    def _entry_rates(self, frame: str) -> Inverse | None:
         """The columns dR/dt of unit angular velocities, where the coordinates are R's entries."""
         if tuple(self.model.matrix) != self.model.coordinates:
             return None
-        units = [self.column(row) for row in self.one.rows]
-        columns = [rate_of(hat(unit)).entries for unit in units]
-        return RingMatrix(self.ring, tuple(columns)).T, self.ring.one
+        ring, rotation = self.codec.ring, self.turning.R
+        operators = [hat(RingMatrix.column(ring, e)) for e in RingMatrix.identity(ring, 3).rows]
+        rates = [skew @ rotation if frame == "space" else rotation @ skew for skew in operators]
+        return RingMatrix(ring, tuple(rate.entries for rate in rates)).T, ring.one
 
     @cached_property
     def bound(self) -> RingMatrix | None:
@@ -147,14 +121,12 @@ class Values:
 
     def _jacobian(self, omega: RingMatrix) -> RingMatrix:
         """∂Ω/∂q̇, by the generators of the rates themselves: a constraint may relate them."""
-        return omega.jacobian([self.ring.index[q] for q in self.arguments["q_dot"].symbols])
+        index = self.codec.ring.index
+        return omega.jacobian([index[q] for q in self.arguments["q_dot"].symbols])
 
     def argument(self, name: str) -> RingMatrix:
         """The components of an argument as a column."""
         return self.codec.column(self.arguments[name].symbols)
-
-    def column(self, entries: Iterable[PolyElement]) -> RingMatrix:
-        return RingMatrix.column(self.ring, entries)
 
 
 class NamedRotation(Values):
@@ -184,44 +156,8 @@ class NamedRotation(Values):
         return Prover(self.names(), self.codec)
 
     @cached_property
-    def R(self) -> RingMatrix:
-        return self.codec.matrix(self.names().matrix)
-
-    @cached_property
-    def R_dot(self) -> RingMatrix:
-        return self.R @ hat(self.omega_body)
-
-    @cached_property
-    def omega_space(self) -> RingMatrix:
-        return self.R @ self.omega_body
-
-    @cached_property
-    def omega_body(self) -> RingMatrix:
-        return self.codec.column(self.velocity)
-
-
-def right_inverse(matrix: RingMatrix, bound: RingMatrix | None) -> Inverse | None:
-    """G (n, 3) and d with W G = d 1, for a rate matrix W (3, n); None if there is none.
-
-    With as many coordinates as dimensions it is the inverse; with more, the rates of least norm
-    are taken, W⁺ = Wᵀ (W Wᵀ)⁻¹. `bound` is the matrix J of the constraints on the rates, J q̇ = 0;
-    then J G = 0 as well.
-    """
-    count = matrix.shape[1]
-    if count < 3:
-        return None
-    if count == 3 and bound is None:
-        return _if_regular(matrix.adjugate(), matrix.det())
-    gram = matrix.gram()
-    least = _if_regular(matrix.T @ gram.adjugate(), gram.det())
-    if least is None or bound is None or (bound @ least[0]).is_zero():
-        return least
-    square = RingMatrix(matrix.ring, (*matrix.rows, *bound.rows))
-    if square.shape[0] != count:
-        return None
-    columns = square.adjugate().T.rows[:3]
-    return _if_regular(RingMatrix(matrix.ring, columns).T, square.det())
-
-
-def _if_regular(inverse: RingMatrix, determinant: PolyElement) -> Inverse | None:
-    return (inverse, determinant) if determinant else None
+    def turning(self) -> Turning:
+        rotation = self.codec.matrix(self.names().matrix)
+        body = self.codec.column(self.velocity)
+        space = rotation @ body
+        return Turning(rotation, rotation @ hat(body), hat(space), space, body)

@@ -11,6 +11,7 @@ from functools import cached_property
 
 import sympy as sp
 
+from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import Rationals
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Found
@@ -230,14 +231,16 @@ class _Inertia:
     def inertia_tensor_space(self) -> Found:
         values = self.values
         body = values.codec.matrix(self.body.inertia)
-        space = values.R @ (body @ values.R.T)
-        trace = values.column([sum((space[k, k] - body[k, k] for k in range(3)), values.ring.zero)])
+        ring, R = values.codec.ring, values.turning.R
+        space = R @ (body @ R.T)
+        rest = sum((space[k, k] - body[k, k] for k in range(3)), ring.zero)
+        trace = RingMatrix.column(ring, [rest])
         prove = values.prove
         return Found(
             values.present.matrix(space),
             "A tensor is rotated from both sides.",
             (
-                prove.vanishes(values.R.T @ (space @ values.R) - body, claims.BACK),
+                prove.vanishes(R.T @ (space @ R) - body, claims.BACK),
                 prove.vanishes(trace, claims.TRACE),
             ),
         )

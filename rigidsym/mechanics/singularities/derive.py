@@ -47,8 +47,9 @@ class _Study:
         # rank, kernel and minors are the same in every frame: between the middle ones of the turns
         # each axis has been moved by few turns, and W is shortest
         matrices = [turn.matrix for turn in model.turns[: len(model.turns) // 2]]
-        rotation, rates, one = values.R, values.rate_matrix_space, values.one
-        to_space = reduce(operator.matmul, map(codec.matrix, matrices)) if matrices else one
+        rotation, rates = values.turning.R, values.rate_matrix_space
+        one = RingMatrix.identity(codec.ring, 3)
+        to_space = reduce(operator.matmul, map(codec.matrix, matrices), one)
         self.to_both = RingMatrix(codec.ring, (*to_space.rows, *(rotation.T @ to_space).rows))
         here = to_space.T @ rates
         self.whole = RingMatrix(codec.ring, (*here.rows, *(bound.rows if bound else ())))
