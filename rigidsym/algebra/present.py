@@ -229,35 +229,6 @@ class Rationals:
         return Quotient.sum(self.ring, parts)
 
 
-def halved(
-    entries: Sequence[sp.Expr], given: Iterable[sp.Expr], constraints: Sequence[sp.Expr] = ()
-) -> list[sp.Expr]:
-    """The entries over half of each angle whose 1 ± cos divides, proved equal.
-
-    1 − cos θ = 2 sin² θ/2 keeps its digits where it vanishes; over the half angle the quotient
-    loses what its two sides have in common, sin θ/(1 − cos θ) = cot θ/2.
-    `given` are the expressions that the entries were derived from.
-    """
-    angles = dict.fromkeys(angle for entry in entries for angle in _vanishing(entry))
-    if not angles:
-        return list(entries)
-    codec = codec_for([*given, *(sp.sin(angle / 2) for angle in angles)], constraints=constraints)
-    present = presenter_for(codec)
-    return [present.quotient(codec.encode_quotient(entry)) for entry in entries]
-
-
-@lru_cache(maxsize=4096)  # of the same entries for every language
-def _vanishing(entry: sp.Expr) -> tuple[sp.Expr, ...]:
-    """The angles of the divisors a ± a cos θ."""
-    found = []
-    for power in entry.atoms(sp.Pow):
-        number, rest = power.base.as_coeff_Add()
-        size, cosine = rest.as_coeff_Mul()
-        if power.exp.is_negative and isinstance(cosine, sp.cos) and abs(size) == abs(number):
-            found.append(cosine.args[0])
-    return tuple(found)
-
-
 class _Expressions(dict[int, sp.Expr]):
     """The expression at each place of a monomial: generators, then folded sums."""
 

@@ -13,8 +13,9 @@ from helpers.witness import TOLERANCE, mp, number, paths, values_along
 from rigidsym.algebra import present
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.present import Presenter, Rationals, halved, presenter_for
+from rigidsym.algebra.present import Presenter, Rationals, presenter_for
 from rigidsym.algebra.ring import Quotient
+from rigidsym.algebra.stable_forms import halved
 from rigidsym.errors import AlgebraError
 from rigidsym.models.so3 import time_function
 

@@ -12,9 +12,8 @@ import sympy as sp
 from helpers.samples import ROTATIONS
 from helpers.witness import mp
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.present import halved
 from rigidsym.algebra.series import FIRST_SERIES, closed_form, series_of, taylor
-from rigidsym.algebra.stumpff import Stumpff, at_zero, rewriter_of
+from rigidsym.algebra.stable_forms import Stumpff, at_zero, halved, rewriter_of
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import time_function
 from rigidsym.motion import derive

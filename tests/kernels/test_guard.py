@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 
-from rigidsym.algebra.stumpff import Stumpff
+from rigidsym.algebra.stable_forms import Stumpff
 from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names

@@ -322,19 +322,19 @@ def test_a_wrong_product_in_the_ring_is_a_failure(monkeypatch):
 @pytest.mark.parametrize("rotation", ["ZXZ", "unit_quaternion", "rotation_vector", "axis_angle"])
 def test_every_claim_of_a_derivation_is_evaluated(monkeypatch, rotation):
     seen, values = [], []
-    vanishes, disagrees = Prover.vanishes, Witness.disagrees
+    vanish, disagrees = Prover.vanish, Witness.disagrees
 
     def evaluated(self, residual, known):
         values.append(residual)
         return disagrees(self, residual, known)
 
-    def claimed(self, residual, claim, **given):
-        proof = vanishes(self, residual, claim, **given)
-        seen.extend([claim] * (values[-1:] == [residual]))
-        return proof
+    def claimed(self, claims, **given):
+        proofs = vanish(self, claims, **given)
+        seen.extend(claim for residual, claim, _ in claims if residual in values)
+        return proofs
 
     monkeypatch.setattr(Witness, "disagrees", evaluated)
-    monkeypatch.setattr(Prover, "vanishes", claimed)
+    monkeypatch.setattr(Prover, "vanish", claimed)
     found = rs.derive(rotation)
     assert {proof.claim for proof in found.proofs} <= set(seen)
 

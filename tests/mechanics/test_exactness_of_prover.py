@@ -125,7 +125,7 @@ def test_a_message_names_coordinates_and_their_rates_plainly():
         "sample: a = b is false; left over: x + x_dot in row 1, column 1; x_ddot in row 1, column 3"
     )
     with pytest.raises(NotARotation, match=r"since a = b fails; left over: x$"):
-        prover.is_rotation(column(prover.codec, x), CLAIM)
+        prover.vanish([(column(prover.codec, x), CLAIM, ())], error=NotARotation)
 
 
 def test_what_follows_from_claims_is_as_exact_as_they_are():

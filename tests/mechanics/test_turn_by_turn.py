@@ -148,7 +148,7 @@ def test_a_wrong_definition_is_not_proved():
     work.recursion._groups["P3"][symbol] += symbol
     assert any(not r.is_zero() for _, r in residuals(work.recursion, "product"))
     with pytest.raises(rs.RigidsymError, match="is false"):
-        work.find("rotation_matrix")
+        work.find(["rotation_matrix"])
 
 
 def test_operations_and_definitions_grow_linearly():

@@ -7,7 +7,7 @@ to an angle is per degree.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import pi
 
 import sympy as sp
@@ -49,13 +49,13 @@ def powers_in(unit: str, count: int) -> list[int]:
     return powers if len(powers) == count else powers * count
 
 
-def powers_of(step: Step, argument: Callable[[str], Argument]) -> list[int]:
+def powers_of(step: Step, arguments: Mapping[str, Argument]) -> list[int]:
     """Of the angle in the unit of each entry of a quantity."""
     quantity = step.quantity
     name = quantity.name.removesuffix("_space").removesuffix("_body")
     if name not in _OF_ENTRIES:
         return powers_in(quantity.unit, len(step.expression))
-    rows, *columns = ([int(is_angle(u)) for u in argument(v).units] for v in _OF_ENTRIES[name])
+    rows, *columns = ([int(is_angle(u)) for u in arguments[v].units] for v in _OF_ENTRIES[name])
     return [row - column for row in rows for column in (columns[0] if columns else [0])]
 
 

@@ -14,10 +14,8 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 import sympy as sp
-from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.present import halved
-from rigidsym.algebra.stumpff import Rewriter, Stumpff, at_zero, rewriter_of
+from rigidsym.algebra.stable_forms import Stumpff, at_zero, stable_forms
 from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.cse import Graph, Weighted
 from rigidsym.kernels.lowering.degrees import (
@@ -70,10 +68,10 @@ def lower(
     kernels = _Lowering(derivation, Names(reserved), degrees=degrees)
     # a tensor given in numbers takes no arguments, and is no function
     steps = (*derivation.steps, *derivation.functions.values())
-    found = tuple(kernels.of_step(step) for step in steps if step.quantity.inputs)
+    found = kernels.of_steps([step for step in steps if step.quantity.inputs])
     found += tuple(kernels.margin())
     found += tuple(map(kernels.of_derivative, derivatives))
-    found += tuple(map(kernels.of_step, added.steps))
+    found += kernels.of_steps(added.steps)
     found += tuple(map(kernels.of_function, added.functions))
     used = {argument.name for kernel in found for argument in kernel.arguments}
     model = derivation.model
@@ -126,6 +124,7 @@ class _Lowering:
         self._in_degrees: set[str] = set()  # the names of components in degrees
         self._known: dict[sp.Expr, str] = {}  # the names of components
         self.arguments: dict[str, ir.KernelArgument] = {}
+        self._vectors = {vector.name: vector for vector in derivation.arguments}
         for vector in derivation.arguments:
             self._argument(vector)
         self._definitions = {d.symbol: d.expression for d in derivation.definitions}
@@ -158,28 +157,37 @@ class _Lowering:
     def _unit(self, unit: str) -> str:
         return unit.replace("rad", "deg") if self._has_degrees else unit
 
-    def of_step(self, step: Step) -> ir.Kernel:
-        """The kernel of one quantity."""
-        quantity = step.quantity
-        entries = self.rewritten(map(self._over_squares, step.expression))
-        if self._has_degrees:
-            entries = in_degrees(entries, powers_of(step, self.derivation.argument))
-        return self._kernel(
-            quantity.name,
-            list(map(self.derivation.argument, quantity.inputs)),
-            entries,
-            shape=step.shape,
-            equation=step.number or None,
-            symbol=quantity.symbol.text,
-            definition=quantity.definition.text,
-            about=quantity.about,
-            unit=self._unit(quantity.unit),
-        )
+    def of_steps(self, steps: Sequence[Step]) -> tuple[ir.Kernel, ...]:
+        """The kernels of quantities."""
+        shapes = [step.shape for step in steps]
+        forms = self._stable(map(self._over_squares, step.expression) for step in steps)
+        texts = [(s.quantity.symbol.text, s.quantity.definition.text) for s in steps]
+        found = []
+        for step, shape, entries, (symbol, definition) in zip(
+            steps, shapes, forms, texts, strict=True
+        ):
+            quantity = step.quantity
+            if self._has_degrees:
+                entries = in_degrees(entries, powers_of(step, self._vectors))
+            found.append(
+                self._kernel(
+                    quantity.name,
+                    [self._vectors[name] for name in quantity.inputs],
+                    entries,
+                    shape=shape,
+                    equation=step.number or None,
+                    symbol=symbol,
+                    definition=definition,
+                    about=quantity.about,
+                    unit=self._unit(quantity.unit),
+                )
+            )
+        return tuple(found)
 
     def of_derivative(self, derivative: Derivative) -> ir.Kernel:
         """The kernel of a value and its derivative, one after the other."""
         step, count = derivative.step, len(derivative.step.expression)
-        entries = self.rewritten([*step.expression, *derivative.jacobian()])
+        (entries,) = self._stable([[*step.expression, *derivative.jacobian()]])
         if self._has_degrees:
             entries = in_degrees(entries, self._powers(derivative))
         entries = [*entries[:count], *derivative.results(entries[count:])]
@@ -200,7 +208,7 @@ class _Lowering:
 
     def _powers(self, derivative: Derivative) -> list[int]:
         """Of the angle in the units of the value's entries, and of those of its Jacobian."""
-        rows = powers_of(derivative.step, self.derivation.argument)
+        rows = powers_of(derivative.step, self._vectors)
         columns = [int(is_angle(unit)) for unit in derivative.by.units]
         return [*rows, *(row - column for row in rows for column in columns)]
 
@@ -253,16 +261,16 @@ class _Lowering:
         found = self.derivation.singularities
         if found is None or (found.is_solved and not any(p.places for p in found.points)):
             return
-        minors = self.rewritten(found.minors)
+        (minors,) = self._stable([found.minors])
         scale, about = _scaled(minors, found)
         if len(minors) == 1:
             value = sp.Abs(minors[0] / scale, evaluate=False)
         else:
             value = sp.sqrt(sp.Add(*(minor**2 for minor in minors)))
         is_free = self._symbols(value).isdisjoint(self.derivation.model.constants)
-        inputs = map(self.derivation.argument, ("q",) if is_free else ("q", "parameters"))
+        inputs = [self._vectors[n] for n in (("q",) if is_free else ("q", "parameters"))]
         symbol = _SYMBOLS.get(found.measure, "√Σ minors²") + ("" if scale == 1 else f"/({scale})")
-        yield self._kernel(MARGIN, list(inputs), [value], shape=(), symbol=symbol, about=about)
+        yield self._kernel(MARGIN, inputs, [value], shape=(), symbol=symbol, about=about)
 
     def _symbols(self, expression: sp.Expr) -> set[sp.Basic]:
         """Those of the expression and of what it is defined by."""
@@ -301,17 +309,10 @@ class _Lowering:
         inputs = [symbol for vector in self.derivation.arguments for symbol in vector.symbols]
         return [*self.derivation.model.matrix, *inputs, *_roots(self.derivation)]
 
-    @cached_property
-    def _rewriter(self) -> Rewriter | None:
-        return rewriter_of(self._given, self.derivation.model.constraints)
-
-    def rewritten(self, entries: Iterable[sp.Expr]) -> list[sp.Expr]:
-        """The entries in forms that keep their digits where they can: see `algebra`."""
-        plain = list(entries)
-        if self._rewriter is None:
-            return halved(plain, self._given, self.derivation.model.constraints)
-        moving = ((e, self._rewriter.rewritten(e) if e.has(AppliedUndef) else None) for e in plain)
-        return [old if new is None else new for old, new in moving]  # a new one may be zero
+    def _stable(self, groups: Iterable[Iterable[sp.Expr]]) -> list[list[sp.Expr]]:
+        """Groups of entries in forms that keep their digits where they can."""
+        lists = [list(entries) for entries in groups]
+        return stable_forms(lists, self._given, self.derivation.model.constraints)
 
     def _kernel(
         self, name: str, vectors: Sequence[Vector], entries: Iterable[sp.Expr], **words: Any

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 import sympy as sp
 
-from rigidsym.algebra.stumpff import Stumpff
+from rigidsym.algebra.stable_forms import Stumpff
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.cse import CHOICE, Factors, Graph, Weighted
 from rigidsym.kernels.lowering.degrees import DEGREE, FACTORS

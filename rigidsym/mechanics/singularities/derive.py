@@ -10,7 +10,7 @@ import sympy as sp
 
 from rigidsym.algebra.matrix import RingMatrix, primitive
 from rigidsym.algebra.present import presenter_for
-from rigidsym.algebra.stumpff import at_zero, rewriter_for
+from rigidsym.algebra.stable_forms import at_zero, rewriter_for
 from rigidsym.algebra.zeros import FallingRank, Stratum, matrix_at
 from rigidsym.mechanics.derivation import Measure, Singularities, Singularity
 from rigidsym.mechanics.kinematics.workspace import Values

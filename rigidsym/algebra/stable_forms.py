@@ -1,13 +1,14 @@
-"""Quotients with removable singularities at n = 0, n = √(v·v), written without them.
+"""Forms that keep their digits where a divisor vanishes: Stumpff functions and half angles.
 
-An expression in sin n, cos n and 1/n without a singularity at n = 0 is a polynomial in the Stumpff
+Quotients with removable singularities at n = 0, n = √(v·v), are written without them. An
+expression in sin n, cos n and 1/n without a singularity at n = 0 is a polynomial in the Stumpff
 functions c_k of `series.py` and in the other generators. The form found is put back into the ring,
 and must be equal there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -32,6 +33,22 @@ class Stumpff(sp.Function):
     """The Stumpff function c_k of n², unevaluated: Stumpff(k, n²)."""
 
     nargs = 2
+
+
+def stable_forms(
+    groups: Iterable[Sequence[sp.Expr]],
+    given: Sequence[sp.Expr],
+    constraints: Sequence[sp.Expr] = (),
+) -> list[list[sp.Expr]]:
+    """Groups of entries in Stumpff functions if there is a norm, else over half angles.
+
+    An entry without such a form stays as it is. `given` are the expressions that the entries were
+    derived from.
+    """
+    rewriter = rewriter_of(given, constraints)
+    if rewriter is None:
+        return [halved(entries, given, constraints) for entries in groups]
+    return [[rewriter.stable(entry) for entry in entries] for entries in groups]
 
 
 def at_zero(form: sp.Expr) -> sp.Expr:
@@ -69,6 +86,35 @@ def _is_root(expression: sp.Expr) -> bool:
     return bool(expression.is_Pow and expression.exp == sp.Rational(1, 2))
 
 
+def halved(
+    entries: Sequence[sp.Expr], given: Iterable[sp.Expr], constraints: Sequence[sp.Expr] = ()
+) -> list[sp.Expr]:
+    """The entries over half of each angle whose 1 ± cos divides, proved equal.
+
+    1 − cos θ = 2 sin² θ/2 keeps its digits where it vanishes; over the half angle the quotient
+    loses what its two sides have in common, sin θ/(1 − cos θ) = cot θ/2.
+    `given` are the expressions that the entries were derived from.
+    """
+    angles = dict.fromkeys(angle for entry in entries for angle in _vanishing(entry))
+    if not angles:
+        return list(entries)
+    codec = codec_for([*given, *(sp.sin(angle / 2) for angle in angles)], constraints=constraints)
+    present = presenter_for(codec)
+    return [present.quotient(codec.encode_quotient(entry)) for entry in entries]
+
+
+@lru_cache(maxsize=4096)  # of the same entries for every language
+def _vanishing(entry: sp.Expr) -> tuple[sp.Expr, ...]:
+    """The angles of the divisors a ± a cos θ."""
+    found = []
+    for power in entry.atoms(sp.Pow):
+        number, rest = power.base.as_coeff_Add()
+        size, cosine = rest.as_coeff_Mul()
+        if power.exp.is_negative and isinstance(cosine, sp.cos) and abs(size) == abs(number):
+            found.append(cosine.args[0])
+    return tuple(found)
+
+
 @lru_cache(maxsize=32)
 def rewriter_for(codec: Codec) -> Rewriter | None:
     """The rewriter of a ring with sines, cosines and the inverse of one norm; else None."""
@@ -100,6 +146,11 @@ class Rewriter:
         others = [g.expression for k, g in enumerate(codec.ring.generators) if k not in special]
         self._plain = codec_for([*self._symbols, *others, sp.Rational(1, 2)], order=0)
         self._wholes: dict[PolyElement, sp.Expr | None] = {}
+
+    def stable(self, entry: sp.Expr) -> sp.Expr:
+        """The entry in terms of `Stumpff` if it moves and has such a form; else as it is."""
+        found = self.rewritten(entry) if entry.has(AppliedUndef) else None
+        return entry if found is None else found  # which may be zero
 
     def rewritten(self, expression: sp.Expr) -> sp.Expr | None:
         """The expression in terms of `Stumpff`, proved equal; None if a singularity remains.
