@@ -123,10 +123,12 @@ def _displayed(
 def _is_broken(shown: Display, equation: Equation, width: float) -> bool:
     if equation.matrix is None and equation.scalar is None:
         return False
+    if shown.lines == 1 or shown.width > width:
+        return shown.width > width
     lines = min(len(equation.sides), 2)
     if equation.matrix is not None:
         lines = len(listed_entries(equation.names, equation.matrix))
-    return shown.lines > lines or shown.width > width
+    return shown.lines > lines
 
 
 @lru_cache(maxsize=512)

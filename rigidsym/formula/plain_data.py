@@ -18,14 +18,14 @@ def plain_data(data: Any, names: Names) -> Any:
     match data:
         case Formula():
             return data.markup
-        case Mapping():
-            return {key: plain_data(value, names) for key, value in data.items()}
         case list() | tuple():
             return [plain_data(value, names) for value in data]
         case sp.MatrixBase():
             return plain_data(data.tolist(), names)
         case sp.Basic():
             return _text(data.xreplace(names))
+        case Mapping():
+            return {key: plain_data(value, names) for key, value in data.items()}
     return data
 
 

@@ -194,9 +194,11 @@ class Assignment(NamedTuple):
     value: Expression
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Kernel:
     """One quantity as a function of vectors: assignments in order, then the outputs by rows.
+
+    A kernel equals only itself, so that what is printed of it can be kept.
 
     Raises KernelError where a name is used before it is defined or defined twice, a call stands
     inside an expression, or the number of outputs does not fit the shape.

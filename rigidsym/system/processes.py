@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -59,6 +60,7 @@ def _copies(
 
     context = get_context("fork")
     running, ends = [], []
+    gc.freeze()  # no search for cycles touches, and so copies, the memory that all share
     try:
         for share in shares:
             here, there = context.Pipe(duplex=False)
@@ -71,6 +73,7 @@ def _copies(
             ends.append(here)
         yield ends
     finally:
+        gc.unfreeze()
         for copy in running:
             copy.terminate()
             copy.join(_PATIENCE)

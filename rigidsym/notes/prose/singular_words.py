@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from math import prod, radians, sin
 
 import sympy as sp
@@ -87,7 +88,7 @@ def failures(derivation: Derivation, found: Singularities) -> Iterator[Text]:
     letters = letters_of(derivation.arguments, model=derivation.model)
     yield _zeros(found, derivation, letters)
     if len(found.points) == 1 and len(found.points[0].places) > _MOST_PLACES:
-        yield ("There ", *_loss(found.points[0], derivation, letters))
+        yield ("There ", *_loss(found.points[0], derivation.model.coordinates, letters))
         return
     yield from (singular(point, derivation) for point in found.points[:_MOST_POINTS])
     more = len(found.points) - _MOST_POINTS
@@ -224,18 +225,18 @@ def singular(point: Singularity, derivation: Derivation) -> Text:
     """What is lost at a singular point, and what remains determined."""
     letters = letters_of(derivation.arguments, model=derivation.model)
     head = ("At ", *_at(point, letters), " ") if point.places else ("Everywhere ",)
-    return (*head, *_loss(point, derivation, letters))
+    return (*head, *_loss(point, derivation.model.coordinates, letters))
 
 
-def _loss(point: Singularity, derivation: Derivation, letters: Letters) -> Text:
+@lru_cache(maxsize=64)  # a page repeats its note
+def _loss(point: Singularity, coordinates: tuple[sp.Expr, ...], letters: Letters) -> Text:
     if not point.rank:
         return ("the body does not turn, whatever the rates are.",)
-    return (*_determined(point, derivation, letters), *_lost(point, letters), ".")
+    return (*_determined(point, coordinates, letters), *_lost(point, letters), ".")
 
 
-def _determined(point: Singularity, derivation: Derivation, letters: Letters) -> Text:
+def _determined(point: Singularity, coordinates: tuple[sp.Expr, ...], letters: Letters) -> Text:
     idle = point.null_rates
-    coordinates = derivation.model.coordinates
     if not all(entry.is_number for entry in idle):
         moved = [q for q, row in zip(coordinates, idle.tolist(), strict=True) if any(row)]
         names = listed(_markups(moved, letters))

@@ -7,6 +7,7 @@ orientation and one of many call it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from math import prod
 from types import ModuleType
 
@@ -62,8 +63,6 @@ def bare(kernels: Sequence[Kernel]) -> str:
 
 
 def _module(about: Sequence[remarks.Paragraph], kernels: Sequence[Kernel]) -> str:
-    line, output = _WIDTH - len("  const ;"), _WIDTH - len("  out[at + 10] = ;")
-    fitted = [narrowed(kernel, _show, line=line, output=output) for kernel in kernels]
     called, last = functions_of(kernels), last_order(kernels)
     has_guards = any(kernel.guards for kernel in kernels)
     of_math = called.intersection(FUNCTIONS) - {"eps"}
@@ -73,7 +72,7 @@ def _module(about: Sequence[remarks.Paragraph], kernels: Sequence[Kernel]) -> st
         .get_template(TEMPLATE)
         .render(
             about=_comment(about),
-            functions=list(map(_function, fitted)),
+            functions=list(map(_function, kernels)),
             imports=", ".join(sorted(of_math)),
             series=[_entry(order) for order in range(FIRST_SERIES, last + 1)],
             has_series=last >= 0,
@@ -108,8 +107,11 @@ def _show(expression: Expression) -> str:
     return infix(expression, _FORMS)
 
 
+@lru_cache(maxsize=64)  # all pages compare with the same conventions
 def _function(kernel: Kernel) -> dict[str, object]:
     """The pieces of text that the template places."""
+    line, output = _WIDTH - len("  const ;"), _WIDTH - len("  out[at + 10] = ;")
+    kernel = narrowed(kernel, _show, line=line, output=output)
     names = Names([*kernel.components, *(a.name for a in kernel.assignments), "out", "at"])
     arguments = kernel.arguments
     vectors = [names.fresh(argument.name) for argument in arguments]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from textwrap import wrap
 
 WIDTH = 88
@@ -57,6 +58,9 @@ def docstring(paragraphs: Sequence[str | Sequence[str]], indent: int = 0) -> str
 
 def filled(paragraph: str | Sequence[str], width: int) -> list[str]:
     """The lines of a paragraph."""
-    if not isinstance(paragraph, str):
-        return list(paragraph)
+    return list(_wrapped(paragraph, width) if isinstance(paragraph, str) else paragraph)
+
+
+@lru_cache(maxsize=1024)  # modules of one kind have most paragraphs in common
+def _wrapped(paragraph: str, width: int) -> list[str]:
     return wrap(paragraph, width, break_long_words=False, break_on_hyphens=False)
