@@ -183,6 +183,11 @@ def _ensemble(motion: Motion, options: SimulationOptions) -> None:
         raise click.UsageError("an ensemble has its own integrator; leave --method out")
     if options.grid and options.ensemble is not None:
         raise click.UsageError("expected --grid or --ensemble, not both")
+    if options.ensemble is not None and not options.spread:
+        raise click.UsageError(
+            f"--ensemble {options.ensemble}: all motions would be the same; expected "
+            "--spread NAME=NUMBER, the standard deviation of what varies"
+        )
     generator = np.random.default_rng(options.seed)
     initial, constants, t_end = _given(motion, options)
     names = {name for each in motion.arguments if each.name == "parameters" for name in each.names}

@@ -26,6 +26,7 @@ from rigidsym.simulation.solver import with_motion
 _ANGLE = 0.05  # radians that the fastest body turns in a step
 _BLOCK = 512  # motions whose stages stay in the cache
 _WORTH_COMPILING = 1_000_000  # steps of a motion
+_NAMED = 5  # motions in a message
 _FEW = 256  # motions: a step of fewer takes NumPy no less time
 
 Block = tuple[Array, Array | None]  # initial states, and parameters of all or of each
@@ -43,16 +44,21 @@ class Ensemble:
     t: Array  # (n,), s
     states: Array  # (n, m, k)
     drift: Mapping[str, Array]  # (m,) of each first integral: the largest relative change
+    varied: Mapping[str, Array]  # (m,) of each parameter or initial value beside the state
 
     def __repr__(self) -> str:
         return self.report()
 
     @property
     def ended(self) -> str:
-        """Why motions have no state at the end, if some have none."""
-        lost = int(np.count_nonzero(~np.isfinite(self.states[-1]).all(axis=1)))
-        why = f"{lost} of the motions reached a pole of the coordinates or overflowed"
-        return why if lost else ""
+        """Why motions have no state at the end, and which, if some have none."""
+        lost = np.flatnonzero(~np.isfinite(self.states[-1]).all(axis=1)) + 1
+        members = self.states.shape[1]
+        named = ", ".join(map(str, lost[:_NAMED])) + (", ..." if len(lost) > _NAMED else "")
+        why = "reached a pole of the coordinates or overflowed"
+        if len(lost) == 1:
+            return f"motion {named} of {members} {why}"
+        return f"{len(lost)} of {members} motions {why}: {named}" if len(lost) else ""
 
     def report(self) -> str:
         """How many motions there are, and the largest drift of each first integral."""
@@ -68,8 +74,9 @@ class Ensemble:
         return "\n".join(lines)
 
     def columns(self) -> dict[str, Array]:
-        """The first and the last state of each motion, and its drift."""
-        found = {f"{name}_start": self.states[0, :, k] for k, name in enumerate(self.names)}
+        """What was varied, the first and the last state of each motion, and its drift."""
+        found = dict(self.varied)
+        found |= {f"{name}_start": self.states[0, :, k] for k, name in enumerate(self.names)}
         found |= {f"{name}_end": self.states[-1, :, k] for k, name in enumerate(self.names)}
         return found | {f"drift_{name}": values for name, values in self.drift.items()}
 
@@ -98,10 +105,12 @@ def simulate_ensemble(
     if not (np.isfinite(t_end) and t_end > 0):
         raise ModelError(f"the end time is {t_end}; expected a positive number of seconds")
     members = _members(initial, parameters)
-    first = Problem(with_motion(derivation), *_of(0, initial, parameters))
+    called = f"motion 1 of {members}"
+    first = Problem(with_motion(derivation), *_of(0, initial, parameters), called=called)
     first.check_bodies(members, parameters)
     start = first.state_of(initial)
     start = np.broadcast_to(start, (members, start.shape[-1]))
+    first.check_rotations(start)
     constants = np.array(first.constants, float)
     if first.constants and any(map(np.ndim, parameters.values())):
         constants = first.parameters_of(members, parameters)
@@ -140,6 +149,11 @@ def simulate_ensemble(
         t=times,
         states=states,
         drift={name: values.max(axis=0) for name, values in changes.items()},
+        varied={
+            name: np.broadcast_to(value, members).astype(float)
+            for name, value in {**initial, **parameters}.items()
+            if name not in (OMEGA, *first.names["y"]) and np.ndim(value)
+        },
     )
 
 

@@ -31,9 +31,11 @@ class Problem:
         derivation: Derivation,
         initial: Mapping[str, Any],
         parameters: Mapping[str, float],
+        *,
+        called: str = "the motion",
     ) -> None:
         """Raises ModelError for names that are missing or unknown, and for an impossible body."""
-        self.derivation = derivation
+        self.derivation, self.called = derivation, called
         self.names = {a.name: a.names for a in derivation.arguments}
         self.coordinates = self.names["q"]
         self.count = len(self.coordinates)
@@ -45,12 +47,8 @@ class Problem:
         self.kernels: ModuleType = generate(derivation, "numpy", conversions=alone).load()
         self.constants = self.given("state_derivative")
         self.start = self.state_of(initial)
-        rotation = self.rotation(self.start)
-        left = [*(rotation @ rotation.T - np.eye(3)).ravel(), *self._bound(self.start)]
-        if np.abs(left).max() > _UNIT:
-            values = ", ".join(f"{n} = {initial[n]}" for n in self.coordinates)
-            raise ModelError(f"{derivation.name}: no rotation has the coordinates {values}")
-        changes = map(abs, self._bound(self.start, order=1))
+        self.check_rotations(self.start[None])
+        changes = map(abs, self._changes(self.start))
         if max(changes, default=0) > _UNIT * np.abs(self.start).max():
             bounds = " and ".join(f"{as_typed(c)} = 0" for c in derivation.model.constraints)
             raise ModelError(
@@ -58,16 +56,47 @@ class Problem:
                 f"{OMEGA}"
             )
 
-    def _bound(self, y: Array, order: int = 0) -> list[float]:
-        """What the conditions on the coordinates, or their rates, leave over."""
+    def check_rotations(self, states: Array) -> None:
+        """Raises ModelError for the first of the states, (m, k), whose R is no rotation."""
+        rotation = self.rotation(states)
+        left = np.abs(rotation @ np.swapaxes(rotation, 1, 2) - np.eye(3)).max(axis=(1, 2))
+        left = np.maximum(left, self._off(states[:, : self.count]))
+        for k in np.flatnonzero(left > _UNIT)[:1]:
+            which = f"motion {k + 1} of {len(states)}: " if len(states) > 1 else ""
+            q = zip(self.coordinates, states[k].tolist(), strict=False)
+            values = ", ".join(f"{name} = {value:.15g}" for name, value in q)
+            raise ModelError(
+                f"{self.derivation.name}: {which}no rotation has the coordinates {values}"
+            )
+
+    def _off(self, q: Array) -> Array:
+        """How far the conditions on the coordinates are from 0 at most, (m,)."""
         model = self.derivation.model
-        names = map(sp.Symbol, self.names.get("parameters", ()))
-        state = [*model.coordinates, *(sp.diff(q, TIME) for q in model.coordinates)]
-        values = dict(zip(state, y.tolist(), strict=False))
-        values |= dict(zip(names, self.parameters, strict=True))
-        if order and self.is_euler:
+        found = np.zeros(len(q))
+        for condition in model.constraints:
+            fixed = condition.xreplace(self._constants)
+            if fixed.is_polynomial(*model.coordinates):
+                terms = sp.Poly(fixed, *model.coordinates).terms()
+                off = sum(float(factor) * np.prod(q**powers, axis=1) for powers, factor in terms)
+            else:
+                rows = (dict(zip(model.coordinates, row, strict=True)) for row in q.tolist())
+                off = np.array([float(fixed.xreplace(row)) for row in rows])
+            found = np.maximum(found, np.abs(off))
+        return found
+
+    def _changes(self, y: Array) -> list[float]:
+        """The rates of the conditions on the coordinates."""
+        if self.is_euler:
             return []
-        return [float(sp.diff(c, TIME, order).xreplace(values)) for c in model.constraints]
+        model = self.derivation.model
+        state = [*model.coordinates, *(sp.diff(q, TIME) for q in model.coordinates)]
+        values = dict(zip(state, y.tolist(), strict=False)) | self._constants
+        return [float(sp.diff(c, TIME).xreplace(values)) for c in model.constraints]
+
+    @property
+    def _constants(self) -> dict[sp.Basic, float]:
+        names = map(sp.Symbol, self.names.get("parameters", ()))
+        return dict(zip(names, self.parameters, strict=True))
 
     def _parameters(self, given: Mapping[str, float]) -> list[float]:
         constants = self.names.get("parameters", ())
@@ -137,9 +166,11 @@ class Problem:
             raise ModelError(f"{OMEGA}: expected three components, got {initial[OMEGA]}")
         if OMEGA in initial and not self.is_euler:
             given = self.kernels.rates_from_angular_velocity_body(q, given, *self.angles)
-            if not np.isfinite(given).all():
+            lost = np.flatnonzero(~np.isfinite(given).all(axis=-1))
+            if len(lost):
+                which = f"motion {lost[0] + 1} of {len(given)}" if given.ndim > 1 else self.called
                 raise ModelError(
-                    f"{self.derivation.name}: the motion starts at a pole of the coordinates, "
+                    f"{self.derivation.name}: {which} starts at a pole of the coordinates, "
                     f"where the rates do not follow from {OMEGA}; expected rates, or a rotation "
                     "without this pole, such as unit_quaternion"
                 )

@@ -106,7 +106,9 @@ def test_the_command_simulates_a_grid_and_writes_every_kind_of_file(tmp_path):
     call(*given, "--out=grid.parquet", cwd=tmp_path)
     from pyarrow import parquet
 
-    assert parquet.read_table(tmp_path / "grid.parquet")["theta_start"].to_pylist()[-1] == 1.2
+    table = parquet.read_table(tmp_path / "grid.parquet")
+    assert table["theta_start"].to_pylist()[-1] == 1.2
+    assert table["m"].to_pylist() == [1.0, 1.5, 2.0] * 5
 
 
 @pytest.mark.parametrize(
@@ -116,6 +118,7 @@ def test_the_command_simulates_a_grid_and_writes_every_kind_of_file(tmp_path):
         (["--grid=theta=0:1:2", "--ensemble=3"], "expected --grid or --ensemble, not both"),
         (["--spread=theta=1"], "--spread is for ensembles; expected --ens"),
         (["--ensemble=3", "--spread=phi=1"], "--spread phi: expected its mean"),
+        (["--ensemble=3"], "--ensemble 3: all motions would be the same; expected --spread"),
         (["--ensemble=3", "--plot=top.svg"], "--plot and --animate show one motion"),
         (["--ensemble=3", "--method=lie"], "an ensemble has its own integrator"),
         (["--grid=theta=0.2:1:0"], "expected NAME=FROM:TO:COUNT"),
@@ -137,6 +140,23 @@ def test_each_body_of_an_ensemble_can_be(top):
     for name, values in (("C", [0.7, 2.7, 2.8]), ("A", [1.3, -1.0, 0.1])):
         with pytest.raises(BodyError, match=r"^motion 2 of 3: "):
             top.simulate_many(START | {"theta": TILTS}, TOP | {name: np.array(values)}, 0.1)
+
+
+def test_motions_that_reach_a_pole_are_named(top):
+    upright = START | {"theta": np.array([0.5, 0.0, 0.9, 0.0])}
+    found = top.simulate_many(upright, TOP, 0.1, samples=2)
+    assert found.ended.startswith("2 of 4 motions reached a pole")
+    assert found.ended.endswith(": 2, 4")
+    given = {"phi": 0, "theta": upright["theta"], "psi": 0, "angular_velocity_body": [0, 1, 9]}
+    with pytest.raises(rs.RigidsymError, match="motion 2 of 4 starts at a pole"):
+        top.simulate_many(given, TOP, 0.1)
+
+
+def test_each_motion_of_an_ensemble_starts_with_a_rotation():
+    free = rs.derive("unit_quaternion", body=rs.principal_moments(*MOMENTS), potential=0)
+    start = {"w": [1, 1, 2], "x": 0, "y": 0, "z": 0, "angular_velocity_body": [0, 0, 1]}
+    with pytest.raises(rs.RigidsymError, match="motion 3 of 3: no rotation has the coordinates"):
+        free.simulate_many(start, {}, 0.1)
 
 
 def test_long_work_goes_without_a_compiler(top, monkeypatch, tmp_path):

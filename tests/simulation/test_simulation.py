@@ -309,7 +309,10 @@ time = 3
     [
         ((), "the motion ended at t = 0.2"),
         (("--method=lie",), "the body turns too fast for steps"),
-        (("--ensemble=2",), "2 of the motions reached a pole of the coordinates or overflowed"),
+        (
+            ("--ensemble=2", "--spread=theta=0.01"),
+            "2 of 2 motions reached a pole of the coordinates or overflowed: 1, 2",
+        ),
     ],
 )
 def test_a_motion_without_end_is_written_as_far_as_it_goes(options, message, tmp_path):
