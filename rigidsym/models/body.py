@@ -15,13 +15,13 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.angles import not_exact
 from rigidsym.errors import BodyError
 from rigidsym.models.distribution import Distribution
-from rigidsym.models.rotation import Citation, book
+from rigidsym.models.rotation import SOURCES, Citation
 from rigidsym.models.so3 import TIME, symbolic
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _AXES = ("x", "y", "z")
 _SPACE = r" \qquad "
-SOURCE = book("Landau 32")
+SOURCE = SOURCES["Landau 32"]
 _ROUNDING = 1e-12  # of the sum of the moments: what arithmetic in double precision leaves
 
 

@@ -9,11 +9,11 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.angles import is_identically_zero
 from rigidsym.errors import ModelError
-from rigidsym.models.rotation import Citation, RotationModel, Turn, book, product_of
+from rigidsym.models.rotation import SOURCES, Citation, RotationModel, Turn, product_of
 from rigidsym.models.so3 import AXES
 
 _NUMBERS = ("Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
-_SOURCE = book("Goldstein 4.4")
+_SOURCE = SOURCES["Goldstein 4.4"]
 
 
 def chain(

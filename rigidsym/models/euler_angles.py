@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rigidsym.errors import ModelError
-from rigidsym.models.rotation import DIEBEL, RotationModel, Turn, book, product_of
+from rigidsym.models.rotation import SOURCES, RotationModel, Turn, product_of
 from rigidsym.models.so3 import AXES, time_functions
 from rigidsym.text.names import lettered
 
@@ -20,7 +20,6 @@ EULER_SEQUENCES = tuple(s.upper() for s in AXIS_SEQUENCES) + AXIS_SEQUENCES
 DEFAULT_ANGLES = ("phi", "theta", "psi")
 
 DIGITS = str.maketrans("123", "XYZ")  # of a sequence, which are letters in upper case
-_ZXZ_SOURCE = book("Landau 35")
 
 
 def EulerAngles(
@@ -50,7 +49,7 @@ def EulerAngles(
         coordinates=coordinates,
         matrix=product_of(turns),
         turns=turns,
-        source=_ZXZ_SOURCE if letters == "ZXZ" else DIEBEL,
+        source=SOURCES["Landau 35" if letters == "ZXZ" else "Diebel 5"],
         passive=passive,
         request={
             "sequence": letters,

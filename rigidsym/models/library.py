@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from rigidsym.models import parametrisations
-from rigidsym.models.rotation import Citation, RotationModel, book, lecture
+from rigidsym.models.rotation import SOURCES, Citation, RotationModel, lecture
 
 
 class Entry(NamedTuple):
@@ -62,13 +62,13 @@ PRESETS: Mapping[str, Preset] = {
     "goldstein": Preset(
         "ZXZ",
         "Goldstein's Euler angles, his matrix A from space to body axes",
-        book("Goldstein 4.4 (4.46)"),
+        SOURCES["Goldstein 4.4 (4.46)"],
         passive=True,
     ),
     "landau_lifshitz": Preset(
         "ZXZ",
         "the Euler angles of Landau and Lifshitz",
-        book("Landau 35"),
+        SOURCES["Landau 35"],
     ),
     "aerospace": Preset(
         "ZYX",

@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.models.rotation import Citation, Pullback, RotationModel, book
+from rigidsym.models.rotation import SOURCES, Citation, Pullback, RotationModel
 from rigidsym.models.so3 import hat, rodrigues, rotation_of, time_functions
 from rigidsym.text.names import lettered
 
@@ -222,7 +222,7 @@ def DirectionCosines(names: Sequence[str] = _COSINES, *, passive: bool = False) 
         "The coordinates are the nine entries of R, row by row.",
         entries,
         sp.Matrix(3, 3, entries),
-        book("Goldstein 4.2"),
+        SOURCES["Goldstein 4.2"],
         passive=passive,
         pullback=Pullback(coordinates=tuple(quaternion.matrix), constraints=quaternion.constraints),
     )

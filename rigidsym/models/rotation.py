@@ -51,13 +51,22 @@ def lecture(equation: str = "", section: str = "") -> Citation:
     return Citation(text=LECTURE, equation=equation, section=section)
 
 
-def book(place: str) -> Citation:
+def _cited(place: str) -> Citation:
     """A place in a book: "Landau 35", or with an equation "Landau 32 (32.12)"."""
-    name, section, *equation = place.split()
+    name, section, *equation = place.split(" ", 2)
     return Citation(_BOOKS[name], "".join(equation).strip("()"), f"section {section}")
 
 
-DIEBEL = book("Diebel 5")
+_PLACES = """
+Diebel 5; Murray 2.4; Murray 4.3;
+Goldstein 1.2; Goldstein 1.4; Goldstein 4.2; Goldstein 4.4; Goldstein 4.4 (4.46); Goldstein 4.9;
+Goldstein 5.2; Goldstein 5.3; Goldstein 5.5; Goldstein 5.7; Goldstein 8.1;
+Landau 8; Landau 31; Landau 32; Landau 32 (32.12); Landau 33; Landau 35
+"""
+SOURCES = {place: _cited(place) for place in map(str.strip, _PLACES.split(";"))}
+
+
+_ALONG = dict(zip(AXES, map(tuple, sp.eye(3).tolist()), strict=True))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,24 +79,19 @@ class Turn:
     axis: str  # x, y, z, or how the axis is printed
     angle: sp.Expr  # radians; quotients in it that cancel are gone
     components: tuple[sp.Expr, ...] = ()  # of the axis, if it is not a coordinate axis
+    rate: sp.Expr = field(init=False, repr=False, compare=False)  # time derivative of the angle
+    direction: tuple[sp.Expr, ...] = field(init=False, repr=False, compare=False)  # along x, y, z
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "angle", symbolic(self.angle, "the angle of a turn"))
+        angle = symbolic(self.angle, "the angle of a turn")
         if not self.components and self.axis not in AXES:
             raise ModelError(f"{self.axis!r} is not an axis: expected x, y, z or components")
         if self.components and len(self.components) != 3:
             raise ModelError(f"an axis has three components, got {len(self.components)}")
-        object.__setattr__(self, "angle", reduced(sp.sympify(self.angle)))
-
-    @property
-    def rate(self) -> sp.Expr:
-        """The time derivative of the angle."""
-        return rate_of(self.angle)
-
-    @property
-    def direction(self) -> tuple[sp.Expr, ...]:
-        """The components of the axis along x, y, z."""
-        return self.components or tuple(sp.Integer(self.axis == name) for name in AXES)
+        angle = angle if isinstance(angle, AppliedUndef) else reduced(angle)
+        object.__setattr__(self, "angle", angle)
+        object.__setattr__(self, "rate", rate_of(angle))
+        object.__setattr__(self, "direction", self.components or _ALONG[self.axis])
 
     @property
     def matrix(self) -> sp.ImmutableMatrix:
@@ -162,6 +166,8 @@ class RotationModel:
     request: Mapping[str, Any] = field(
         default_factory=dict, hash=False
     )  # what asks for it in a file
+    # the symbols in R or its conditions that do not move: fixed angles, parts of an axis
+    constants: tuple[sp.Symbol, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if not _MODULE_NAME.fullmatch(self.name):
@@ -176,6 +182,7 @@ class RotationModel:
                 f"{self.name}: a model needs at least one coordinate, a function of time as phi(t)"
             )
         self._check_coordinates()
+        object.__setattr__(self, "constants", _constants(self._parts))
         self._check_constants()
         self._check_turns()
 
@@ -247,11 +254,6 @@ class RotationModel:
         plain = {q: sp.Symbol(q.func.__name__) for q in self.coordinates}
         parts = (constraint.xreplace(plain).as_coeff_Add() for constraint in self.constraints)
         return tuple(f"{rest} = {-number}" for number, rest in parts)
-
-    @property
-    def constants(self) -> tuple[sp.Symbol, ...]:
-        """The symbols in R or its conditions that do not move: fixed angles, parts of an axis."""
-        return _constants(self._parts)
 
     @property
     def names(self) -> set[str]:

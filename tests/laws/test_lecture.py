@@ -14,7 +14,7 @@ from helpers.witness import agree, evaluate, paths, values_along
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.library import PRESETS
-from rigidsym.models.rotation import book, lecture
+from rigidsym.models.rotation import SOURCES, lecture
 from rigidsym.models.so3 import elementary, hat
 
 phi, theta, psi = dynamicsymbols("phi theta psi")
@@ -157,8 +157,8 @@ def test_sources_are_published_books_and_the_lecture_for_its_own_angles():
     def source(name):
         return MOTION.step(name).quantity.source
 
-    assert source("rotation_matrix") == MODEL.source == book("Landau 35")
-    assert source("spin_matrix") == source("angular_velocity_body") == book("Murray 2.4")
+    assert source("rotation_matrix") == MODEL.source == SOURCES["Landau 35"]
+    assert source("spin_matrix") == source("angular_velocity_body") == SOURCES["Murray 2.4"]
     assert PRESETS["lecture_angles"].source == lecture("17", "section 3.2")
 
 

@@ -17,7 +17,7 @@ from rigidsym.mechanics.derivation import Derivation, Place, Proof, Singularity
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.matrices import given
-from rigidsym.models.rotation import LECTURE, Citation, RotationModel, book
+from rigidsym.models.rotation import LECTURE, SOURCES, Citation, RotationModel
 from rigidsym.models.so3 import elementary, time_function
 from rigidsym.motion import QUANTITIES
 from rigidsym.notes.document.document import (
@@ -160,7 +160,7 @@ def test_every_claim_stands_in_the_table_of_proofs(motion):
 
 def test_every_source_of_a_step_is_listed(motion):
     cited = {step.quantity.source.text for step in motion.steps if step.quantity.source}
-    cited |= {motion.model.source.text, book("Landau 31").text} | (
+    cited |= {motion.model.source.text, SOURCES["Landau 31"].text} | (
         {GOLDSTEIN.text} if len(motion.model.turns) > 1 else set()
     )
     assert cited == set(_note(motion).document.sources)

@@ -95,9 +95,11 @@ _EULER = read_table(
     """,
     {"torque_body": (TORQUE,), "energy": (ENERGY, formula(_PLUS, ROTATIONAL, POTENTIAL))},
 )
+_FROM_TORQUE = "angular_acceleration_from_torque"
 EULER_QUANTITIES = {
-    name: _EULER.get(name) or DYNAMICS_QUANTITIES[name]
-    for name in ("potential_energy", *_EULER, "angular_acceleration_from_torque")
+    "potential_energy": DYNAMICS_QUANTITIES["potential_energy"],
+    **_EULER,
+    _FROM_TORQUE: DYNAMICS_QUANTITIES[_FROM_TORQUE],
 }
 
 FLOW_QUANTITIES = read_table(

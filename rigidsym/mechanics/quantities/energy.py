@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula, transpose_of
+from rigidsym.formula.tree import transpose_of
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_SPACE, MASS
 from rigidsym.mechanics.quantities.table import read_table
@@ -24,11 +24,8 @@ MOMENTUM_ROTATION = formula(r"\mathbf{L}_R")
 MOMENTUM_BODY = formula(r"\mathbf{L}'_R")
 
 
-def half_product(omega: Formula, inertia: Formula) -> Formula:
-    """½ Ωᵀ I Ω."""
-    return formula(r"\tfrac{1}{2}\,#1\,#2\,#3", transpose_of(omega), inertia, omega)
-
-
+_HALF_PRODUCT = r"\tfrac{1}{2}\,#1\,#2\,#3"  # ½ Ωᵀ I Ω
+_OF_BODY = formula(_HALF_PRODUCT, transpose_of(BODY.omega), INERTIA, BODY.omega)
 _HALF_SQUARE = formula(r"\tfrac{1}{2} #1\,|#2|^2", MASS, CENTRE_VELOCITY)
 _ARM = formula(r"#1\times(#2\,#3)", CENTRE, MASS, CENTRE_VELOCITY)
 
@@ -51,7 +48,7 @@ ENERGY_QUANTITIES = read_table(
     """,
     {
         "translational_energy": (TRANSLATIONAL, _HALF_SQUARE),
-        "rotational_energy": (ROTATIONAL, half_product(BODY.omega, INERTIA)),
+        "rotational_energy": (ROTATIONAL, _OF_BODY),
         "kinetic_energy": (KINETIC, formula("#1 + #2", TRANSLATIONAL, ROTATIONAL)),
         "angular_momentum_centre": (MOMENTUM_CENTRE, _ARM),
         "angular_momentum_rotation_body": (MOMENTUM_BODY, formula("#1#2", INERTIA, BODY.omega)),
@@ -97,7 +94,9 @@ _SUM = formula(r"{\textstyle\sum_i} m_i")
 _ROTATED = formula(r"(#1\,#2\,#3)", ROTATION, INERTIA, transpose_of(ROTATION))
 _HALF_SUM, _ARMS = r"\tfrac{1}{2} #1\,|#2|^2", r"#1\,#2\times#3"  # ½ Σ mᵢ |v|², Σ mᵢ x × v
 TRANSLATION_OF_PARTICLES = formula(f"{_HALF_SUM} = #3", _SUM, CENTRE_VELOCITY, TRANSLATIONAL)
-BOTH_FORMS = formula("#1 = #2", half_product(SPACE.omega, _ROTATED), ROTATIONAL)
+BOTH_FORMS = formula(
+    f"{_HALF_PRODUCT} = #4", transpose_of(SPACE.omega), _ROTATED, SPACE.omega, ROTATIONAL
+)
 ROTATION_OF_PARTICLES = formula(f"{_HALF_SUM} = #3", _SUM, _PARTICLE_VELOCITY, ROTATIONAL)
 ENERGY_SPLITS = formula(f"{_HALF_SUM} = #3 + #4", _SUM, _VELOCITY, TRANSLATIONAL, ROTATIONAL)
 MOMENTUM_OF_CENTRE = formula(f"{_ARMS} = #4", _SUM, CENTRE, CENTRE_VELOCITY, MOMENTUM_CENTRE)

@@ -80,6 +80,7 @@ BODY = Frame(
     right_inverse=formula(r"\mathbf{W}'^{+}"),
 )
 
+_SLOPES = r"\frac{\partial #1}{\partial #2}"
 _OF_ROTATION = read_table(
     """
     rotation_matrix                    matrix  -        q                -
@@ -115,21 +116,12 @@ _OF_ROTATION = read_table(
         "spin_matrix": (_ACTIVE.spin, formula(r"\mathbf{C}(#1)", SPACE.omega)),
         "angular_velocity_space": (SPACE.omega, formula(r"\mathbf{C}^{-1}(#1)", _ACTIVE.spin)),
         "angular_velocity_body": (BODY.omega, formula("#1#2", transpose_of(ROTATION), SPACE.omega)),
-        **{
-            name: formulas
-            for frame in (SPACE, BODY)
-            for name, formulas in {
-                f"rate_matrix_{frame.name}": (
-                    frame.matrix,
-                    formula(r"\frac{\partial #1}{\partial #2}", frame.omega, RATES),
-                ),
-                f"inverse_rate_matrix_{frame.name}": (frame.inverse,),
-                f"rates_from_angular_velocity_{frame.name}": (
-                    RATES,
-                    formula("#1#2", frame.inverse, frame.omega),
-                ),
-            }.items()
-        },
+        "rate_matrix_space": (SPACE.matrix, formula(_SLOPES, SPACE.omega, RATES)),
+        "inverse_rate_matrix_space": (SPACE.inverse,),
+        "rates_from_angular_velocity_space": (RATES, formula("#1#2", SPACE.inverse, SPACE.omega)),
+        "rate_matrix_body": (BODY.matrix, formula(_SLOPES, BODY.omega, RATES)),
+        "inverse_rate_matrix_body": (BODY.inverse,),
+        "rates_from_angular_velocity_body": (RATES, formula("#1#2", BODY.inverse, BODY.omega)),
         "angular_acceleration_space": (ALPHA, Rate(SPACE.omega)),
         "angular_acceleration_body": (
             ALPHA_BODY,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rigidsym.formula.reader import formula
-from rigidsym.formula.tree import Formula, bracketed, transpose_of
+from rigidsym.formula.tree import Bracket, Formula, transpose_of
 from rigidsym.mechanics.quantities.kinematics import ROTATION
 from rigidsym.mechanics.quantities.table import read_table
 
@@ -41,12 +41,10 @@ def summed(integral: Formula) -> Formula:
     return formula(whole.replace(r"\mathbf{x}'", r"\mathbf{x}'_i"))
 
 
-def moved(mass: Formula, by: Formula) -> Formula:
-    """M (|d|² 1 − d dᵀ)."""
-    return formula(r"#1\,(|#2|^2\,\mathbf{1} - #3 #3^{\mathsf T})", mass, by, bracketed(by))
-
-
-_STEINER = formula("#1 + #2", INERTIA, moved(MASS, formula(r"\mathbf{p}-\mathbf{c}")))
+# I′ + M (|d|² 1 − d dᵀ), the theorem of parallel axes
+STEINER = r"#1 + #2\,(|#3|^2\,\mathbf{1} - #4 #4^{\mathsf T})"
+_DISTANCE = formula(r"\mathbf{p}-\mathbf{c}")
+_STEINER = formula(STEINER, INERTIA, MASS, _DISTANCE, Bracket(_DISTANCE))
 _FORM = formula(r"#2\,#1\,#3", POINT_TENSOR, transpose_of(DIRECTION), DIRECTION)
 _TURNED = formula(r"#1\,#2\,#3", ROTATION, INERTIA, transpose_of(ROTATION))
 
@@ -87,12 +85,12 @@ INERTIA_QUANTITIES = read_table(
     },
 )
 BODY_ALONE = "body"  # asks for all that a body has without a rotation
-OF_BODY_ALONE = tuple(name for name, q in INERTIA_QUANTITIES.items() if "q" not in q.inputs)
+OF_BODY_ALONE = INERTIA_QUANTITIES.keys() - {"inertia_tensor_space"}  # which depends on q
 
 # Claims.
 
 SYMMETRIC = formula("#1 = #2", INERTIA, transpose_of(INERTIA))
-ABOUT_ORIGIN = formula("#1 = #2 + #3", ORIGIN_TENSOR, INERTIA, moved(MASS, formula(r"\mathbf{c}")))
+ABOUT_ORIGIN = formula(f"#5 = {STEINER}", INERTIA, MASS, CENTRE, CENTRE, ORIGIN_TENSOR)
 OF_PARTS = formula(
     r"\mathbf{I}' = \sum_k \left(\mathbf{R}_k\mathbf{I}'_k\mathbf{R}_k^{\mathsf T} "
     r"+ m_k(|\mathbf{d}_k|^2\,\mathbf{1} - \mathbf{d}_k\mathbf{d}_k^{\mathsf T})"

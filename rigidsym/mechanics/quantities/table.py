@@ -9,7 +9,7 @@ from typing import cast
 
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.mechanics.derivation import Quantity, Shape
-from rigidsym.models.rotation import book
+from rigidsym.models.rotation import SOURCES
 
 Formulas = Mapping[str, tuple[Formula, ...]]  # name: symbol and, if there is one, definition
 _COLUMNS = re.compile(r" {2,}")
@@ -35,6 +35,6 @@ def read_table(text: str, formulas: Formulas) -> Mapping[str, Quantity]:
             inputs=tuple(inputs.strip("-").split()),
             shape=cast(Shape, shape),
             definition=definition[0] if definition else NOTHING,
-            source=None if source == "-" else book(source),
+            source=None if source == "-" else SOURCES[source],
         )
     return MappingProxyType(found)

@@ -11,7 +11,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Rate, Symbol, equal, joined, row
 from rigidsym.mechanics.quantities.kinematics import PRESENTED
-from rigidsym.models.rotation import Turn, book
+from rigidsym.models.rotation import SOURCES, Turn
 from rigidsym.models.so3 import hat
 from rigidsym.notes.document.document import (
     Cited,
@@ -32,7 +32,7 @@ from rigidsym.notes.prose.words import (
     POSITION_RATE,
 )
 
-_TURNING = Cited(book("Landau 31"))
+_TURNING = Cited(SOURCES["Landau 31"])
 _SHORTHAND = words(
     r"With the abbreviations $s_\alpha$ for $\sin\alpha$ and $c_\alpha$ for $\cos\alpha$,"
 )

@@ -20,7 +20,7 @@ from rigidsym.formula.tree import (
     row,
 )
 from rigidsym.mechanics.quantities.kinematics import SPACE
-from rigidsym.models.rotation import RotationModel, book
+from rigidsym.models.rotation import SOURCES, RotationModel
 from rigidsym.notes.document.document import (
     Cited,
     Equation,
@@ -36,7 +36,7 @@ from rigidsym.notes.figure.scene import scene_of
 
 PROPER = ("precession", "nutation", "spin")
 TAIT_BRYAN = ("yaw", "pitch", "roll")
-GOLDSTEIN = book("Goldstein 4.9")
+GOLDSTEIN = SOURCES["Goldstein 4.9"]
 _MOST_WRITTEN = 3  # axes that are written out
 
 

@@ -18,7 +18,7 @@ from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.quantities.arguments import POINT
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
-from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, MASS, moved
+from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, MASS, STEINER
 from rigidsym.models.body import Parameter, RigidBody, given_inertia
 
 Parts = Sequence[tuple[sp.Symbol, sp.Expr]]  # names with what they stand for
@@ -29,7 +29,7 @@ _MOMENTS = sp.symbols("I_1:4")
 OFFSET = tuple(sp.Symbol(f"d_{axis}") for axis in "xyz")
 _DISTANCE = formula(r"\mathbf{d}")
 OFFSET_IS = formula(r"\mathbf{d} = \mathbf{p} - \mathbf{c}")
-_STEINER = formula("#1 + #2", INERTIA, moved(MASS, _DISTANCE))
+_STEINER = formula(STEINER, INERTIA, MASS, _DISTANCE, _DISTANCE)
 _TURNED = formula(r"\boldsymbol{\Omega}")
 
 
