@@ -71,7 +71,7 @@ def kind_and_frame(name: str) -> tuple[str, str]:
 _INVERSE = ("inverse_rate_matrix", "rates_from_angular_velocity")
 
 
-class Fraction(NamedTuple):
+class WorkedOut(NamedTuple):
     """A quantity over a divisor, and the residuals of its laws: what vanishes if they hold."""
 
     matrix: RingMatrix
@@ -105,7 +105,7 @@ class Expanded(Kinematics):
             steps[name] = Found(expression, self._because(name), tuple(proved), form)
         return steps
 
-    def _worked_out(self, names: Sequence[str]) -> dict[str, Fraction]:
+    def _worked_out(self, names: Sequence[str]) -> dict[str, WorkedOut]:
         """The quantities, each with what vanishes if its laws hold, in their order."""
         values, passive, spin = self.values, self.model.passive, self._spin
         R, R_dot, active, omega_space, omega_body = values.turning
@@ -115,7 +115,7 @@ class Expanded(Kinematics):
         inverses = {f: values.inverse(f) for kind, f in kinds if kind in _INVERSE}
         given = {name: values.argument(name) for name in ("q_dot", "omega_space", "omega_body")}
         one, unit = values.codec.ring.one, RingMatrix.identity(values.codec.ring, 3)
-        found: dict[str, Fraction] = {}
+        found: dict[str, WorkedOut] = {}
         for name, (kind, frame) in zip(names, kinds, strict=True):
             omega, below = omegas.get(frame, omega_space), one
             match kind:
@@ -149,10 +149,10 @@ class Expanded(Kinematics):
                         whole = given[f"omega_{frame}"]
                         matrix = matrix @ whole
                     left = [rates[frame] @ matrix - whole.scale(below)]
-            found[name] = Fraction(matrix, below, left)
+            found[name] = WorkedOut(matrix, below, left)
         return found
 
-    def _form(self, name: str, quantity: Fraction) -> VectorForm | None:
+    def _form(self, name: str, quantity: WorkedOut) -> VectorForm | None:
         """The quantity as a function of the vector of the coordinates, if it is one."""
         prove, vector, (kind, where) = self.values.prove, self.model.vector, kind_and_frame(name)
         matrix, below = quantity.matrix, quantity.below
