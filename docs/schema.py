@@ -57,28 +57,28 @@ def number(about: str) -> Schema:
 
 def schema() -> Schema:
     properties = {
-        "title": text("heading of the note, one line; by default that of the rotation"),
+        "title": text("heading of the note, one line; by default the name of the rotation"),
         "theory": flag("begin the note with the equations that hold for every body and rotation"),
         "rotation": _rotation(),
         "parameters": {
             "type": "object",
-            "description": "what is known of the symbols of the body, one entry each",
+            "description": "properties of the symbols of the body, one table for each",
             "additionalProperties": _parameter(),
         },
         "body": _body(),
         "dynamics": obj(
-            "What acts on the body, which turns about a fixed point.",
+            "The forces on a body that turns about a fixed point.",
             {
                 "potential": text('potential energy V(q), in joules: "m*g*l*cos(theta)"'),
                 "forces": _by_name("generalised forces by coordinate, which may depend on rates"),
                 "torque": _three("torque in body components, N m, with omega_body_1 and so on"),
                 "frame_rate": _three("angular velocity of the frame of reference, constant in it"),
                 "method": text("form of the equations", "lagrange", "euler"),
-                "first_integrals": _by_name("claims that are proved: what is constant, by name"),
+                "first_integrals": _by_name("constants of the motion by name, to be proved"),
                 "parts": {
                     "type": "array",
-                    "description": "what moves with the body: rotation and principal_moments of "
-                    "another body about the fixed point, or velocity and mass of a particle",
+                    "description": "other moving parts: rotation and principal_moments of a body "
+                    "about the fixed point, or velocity and mass of a particle",
                     "items": obj(
                         "another body or a particle",
                         {
@@ -91,13 +91,13 @@ def schema() -> Schema:
                 },
                 "examples": {
                     "type": "array",
-                    "description": "motions that the note draws; simulate begins with the first",
+                    "description": "motions that the note draws; simulate uses the first",
                     "items": obj(
-                        "a motion; it takes from the first one what it does not name",
+                        "a motion; values that it does not name are those of the first",
                         {
                             "parameters": _numbers("values of the constants, by name"),
-                            "initial": _numbers("coordinates and rates at t = 0, else 0"),
-                            "time": {"type": "number", "description": "its length in seconds"},
+                            "initial": _numbers("coordinates and rates at t = 0; others are 0"),
+                            "time": {"type": "number", "description": "its duration in seconds"},
                         },
                     ),
                 },
@@ -110,7 +110,7 @@ def schema() -> Schema:
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "rigidsym derivation file",
-        **obj("A rotation, a body, and what to print.", properties),
+        **obj("A rotation, a body, and the output.", properties),
         "anyOf": [{"required": ["rotation"]}, {"required": ["body"]}],
     }
 
@@ -141,18 +141,18 @@ def _rotation() -> Schema:
         "The rotation; without it, the angles of the lecture, ZXZ.",
         {
             "sequence": sequence,
-            "angles": texts("names of the coordinates, in their order"),
-            "constants": texts("names in turns that are constants"),
+            "angles": texts("names of the coordinates, in order"),
+            "constants": texts("names in `sequence` that are constants"),
             "scalar_last": flag("order quaternions as (x, y, z, w)"),
             "matrix": listed(
-                "R itself: three rows of three entries", listed("a row", NUMBER, 3), 3
+                "your own R: three rows of three entries", listed("a row", NUMBER, 3), 3
             ),
-            "coordinates": texts("the names in `matrix` that move"),
-            "constraints": texts("expressions in the coordinates of `matrix` that are zero"),
+            "coordinates": texts("names in `matrix` that are coordinates"),
+            "constraints": texts("expressions in the coordinates of `matrix` that vanish"),
             "example": {
                 "type": "object",
                 "description": "exact values of coordinates and constants of `matrix`, by name, "
-                "for which the constraints hold, in case none are found",
+                "that satisfy the constraints, in case a search finds none",
                 "additionalProperties": NUMBER,
             },
             "passive": flag("present Rᵀ, from space to body components"),
@@ -167,7 +167,7 @@ def _parameter() -> Schema:
             "positive": flag("whether its value is positive"),
             "about": text("what it means"),
             "unit": text("its unit"),
-            "value": {"type": "number", "description": "its value, where numbers are printed"},
+            "value": {"type": "number", "description": "its value in numerical results"},
         },
     )
 
@@ -187,22 +187,24 @@ def _distribution() -> Schema:
         "density": number("the density, instead of the mass"),
         "vertices": listed("corners of a polyhedron", triple),
         "faces": listed("its faces, each a list of corner numbers", {"type": "array"}),
-        "coordinates": texts("of a given solid: the names of its coordinates"),
-        "place": listed("of a given solid: the position in terms of them", NUMBER, 3),
-        "bounds": listed("of a given solid: a pair for each coordinate, the outermost first", {}),
-        "element": number("of a given solid: the volume element, by default the Jacobian"),
+        "coordinates": texts("names of the coordinates of a given solid"),
+        "place": listed("x, y, z of a given solid in terms of its coordinates", NUMBER, 3),
+        "bounds": listed(
+            "bounds of a given solid, a pair for each coordinate, the outermost first", {}
+        ),
+        "element": number("length or area element of a given line or surface"),
         "particles": either(
             "point masses, or a file of them",
             {"type": "string"},
             {"type": "array", "items": particle},
         ),
-        "columns": texts("the columns of a file of particles"),
+        "columns": texts("names of the columns of a file of particles, in order"),
         "mesh": text("a closed mesh: an STL, OBJ or PLY file"),
-        "scale": number("of a mesh: metres in one unit of the file"),
+        "scale": number("length unit of a mesh in metres"),
         "inertia": listed("the inertia tensor, three rows", listed("a row", NUMBER, 3), 3),
         "centre": listed("the centre of mass, with `inertia`", NUMBER, 3),
         "outline": obj(
-            "what the body looks like, with `inertia`: records have it in place of a mesh",
+            "the shape to draw, with `inertia`; records contain it instead of a mesh",
             {
                 "corners": listed("three coordinates each", {"type": "array"}),
                 "faces": listed("each a list of corner numbers", {"type": "array"}),
@@ -224,9 +226,9 @@ def _body() -> Schema:
         {
             **_distribution(),
             "label": text("its name in the note"),
-            "at": listed("where its origin is moved", NUMBER, 3),
+            "at": listed("the position of its origin", NUMBER, 3),
             "turned": either(
-                "a rotation at rest, applied before `at`",
+                "a constant rotation, applied before the shift by `at`",
                 {"type": "string"},
                 obj(
                     "A rotation by name.",
@@ -242,7 +244,7 @@ def _body() -> Schema:
             **_distribution(),
             "parts": listed("a composite of such tables", part),
             "principal_moments": listed("the three principal moments", NUMBER, 3),
-            "allow": flag("accept a body that is not physical"),
+            "allow": flag("accept an unphysical body"),
         },
     )
 
@@ -258,33 +260,35 @@ def _notation() -> Schema:
 def _text() -> Schema:
     names = "by the name of a quantity or the title of a section"
     return obj(
-        "Your own words in the note: formulas between dollar signs, [key] for one of the sources.",
+        "Your own words in the note; formulas are between dollar signs, [key] cites a source.",
         {
             "author": text("author of the note"),
-            "course": text("the course it is for"),
-            "date": text("its date"),
-            "omit": texts("quantities and sections that are left out"),
-            "before": _by_name(f"what is said before, {names}"),
-            "after": _by_name(f"what is said after, {names}"),
-            "sources": _by_name("your own sources by key; the key lecture names the lecture notes"),
+            "course": text("course"),
+            "date": text("date"),
+            "omit": texts("quantities and sections to leave out"),
+            "before": _by_name(f"sentences before, {names}"),
+            "after": _by_name(f"sentences after, {names}"),
+            "sources": _by_name(
+                "your own sources by key; the key lecture replaces the lecture notes"
+            ),
         },
     )
 
 
 def _output() -> Schema:
     return obj(
-        "What to print.",
+        "The output.",
         {
-            "quantities": texts("all by default; see Quantities", *VOCABULARY.quantities),
+            "quantities": texts("quantities to derive, all by default", *VOCABULARY.quantities),
             "kernels": texts("languages of the functions, numpy by default", *VOCABULARY.kernels),
             **{name: _target(name) for name in VOCABULARY.target_options},
             "note": texts("formats of the note, tex and html by default", *VOCABULARY.note),
-            "style": text("of the note, lecture by default", *VOCABULARY.styles),
-            "language": text("of the note, en by default", *VOCABULARY.languages),
+            "style": text("style of the note, lecture by default", *VOCABULARY.styles),
+            "language": text("language of the note, en by default", *VOCABULARY.languages),
             "conversions": flag("add functions to and from quaternions and matrices"),
             "derivatives": texts('Jacobians, such as "angular_velocity_body by q"'),
-            "degrees": flag("functions take and return degrees, in files NAME_deg"),
-            "certificates": flag("add NAME.cert.json, NAME.v and NAME.lean"),
+            "degrees": flag("print functions that take and return degrees, in files NAME_deg"),
+            "certificates": flag("add certificates: NAME.cert.json, NAME.v and NAME.lean"),
         },
     )
 
@@ -296,13 +300,13 @@ def _target(name: str) -> Schema:
         else text(f"{OPTIONS[name, key]}, by default {values[0]}", *map(str, values))
         for key, values in VOCABULARY.target_options[name].items()
     }
-    return obj(f"What the files of the language {name} contain.", properties)
+    return obj(f"Options of the target {name}.", properties)
 
 
 OPTIONS = {
-    ("c", "precision"): "types of the functions",
-    ("c", "arrays"): "add functions of many orientations; they make the Python module",
-    ("c", "libm"): "call sin, cos and atan2 of <math.h> instead of own functions",
+    ("c", "precision"): "precision of the functions",
+    ("c", "arrays"): "add functions of many orientations, which a Python module needs",
+    ("c", "libm"): "call sin, cos and atan2 of <math.h> instead of built-in functions",
 }
 
 
