@@ -57,7 +57,7 @@ def offered(name: str) -> str:
 class Motion(Derivation):
     """A derivation and the notation in which it is printed; every quantity is an attribute.
 
-    It can print kernels and notes, which do not know of each other.
+    It prints kernels, notes and pages, and simulates motions.
     """
 
     notation: Notation = DEFAULT
@@ -88,15 +88,15 @@ class Motion(Derivation):
     ) -> KernelModule:
         """The functions in one language: `.source`, `.load()`, `.write(path)`.
 
-        `conversions` adds those to and from the unit quaternion and the matrix, and
+        `conversions` adds conversions to and from the unit quaternion and the matrix, and
         `unwrap`. `derivatives` adds functions that return a quantity and its derivative:
         {"angular_velocity_body": ("q", "q_dot")} adds `angular_velocity_body_jacobian_q` and
-        `angular_velocity_body_jacobian_q_dot`; "q jvp" and "q vjp" are products with a vector.
+        `angular_velocity_body_jacobian_q_dot`; "q jvp" and "q vjp" give products with a vector.
         With `degrees`, angles are in degrees, rates and angular velocities in deg/s, angular
-        accelerations in deg/s^2, as arguments and as results; all else stays in SI units. The name
-        of the module then ends in _deg.
-        `options` are those of the target: `kernels("c", precision="double", arrays=False,
-        libm=True)` is lean C for firmware.
+        accelerations in deg/s^2, as arguments and as results; other quantities remain in SI units.
+        The name of the module then ends in _deg.
+        `options` depend on the target: `kernels("c", precision="double", arrays=False, libm=True)`
+        prints lean C for firmware.
         Raises KernelError for an unknown target, option or derivative.
         """
         return generate(
@@ -111,7 +111,7 @@ class Motion(Derivation):
     def equality(self, left: sp.MatrixBase, right: sp.MatrixBase) -> Proof:
         """The proof that two matrices in coordinates, rates and other inputs are equal.
 
-        Raises DerivationError, with what is left over, if they are not.
+        Raises DerivationError, with the residual, if they are not.
         """
         return identity(left - right, Words("equality"), self.name, self.model.constraints)
 
@@ -131,13 +131,13 @@ class Motion(Derivation):
         text: OwnText | None = None,
         language: str = "en",
     ) -> Note:
-        """The document of the derivation: `.latex()`, `.html()`, `.markdown()`, `.notebook()`.
+        """The note on the derivation: `.latex()`, `.html()`, `.markdown()`, `.notebook()`.
 
         `style` is "lecture", which explains, "paper", which is terse, or "audit", which shows every
         identity and, with `with_kernels`, the function of the NumPy module beside its equation.
-        `conversions` adds a section on the unit quaternion and the matrix; `text` adds sentences,
-        sources and a byline of your own, and leaves parts out. `language` is "en" or "de"; own
-        text stays as it is.
+        `conversions` adds a section on the unit quaternion and the matrix; `text` adds your own
+        sentences, sources and byline, and leaves parts out. `language` is "en" or "de"; your own
+        text is not translated.
         """
         from rigidsym.notes.note import note
 
@@ -160,7 +160,7 @@ class Motion(Derivation):
     ) -> Trajectory:
         """The motion from t = 0 to `t_end` seconds, with the drift of its first integrals.
 
-        `initial` holds coordinates and rates by name (theta, theta_dot), `parameters` every
+        `initial` contains coordinates and rates by name (theta, theta_dot), `parameters` every
         constant; for the options see `rigidsym.simulation.solver.simulate`.
         """
         from rigidsym.simulation.solver import simulate
@@ -196,7 +196,7 @@ class Motion(Derivation):
     ) -> str:
         """One HTML file that needs no network: the note, and a figure with sliders.
 
-        `start` holds initial values by name, of coordinates, rates and constants, in SI units;
+        `start` contains initial values of coordinates, rates and constants by name, in SI units;
         `language` is "en" or "de".
         """
         from rigidsym.page.print_page import print_page
@@ -265,23 +265,26 @@ def derive(
 ) -> Motion:
     """Derive and prove the kinematics of a rotation; `only` names the quantities wanted.
 
-    A rotation may be a text, as on the command line: "ZXZ", "z(phi) x(theta)", "quaternion". With
-    a `body`, its kinetic energy and angular momentum follow, in principal axes or any others; a
-    description or a distribution of mass is integrated first.
-    With a `potential` V(q, t) or `forces` by coordinate ("theta": "-c*theta_dot") its equations of
-    motion about a fixed point follow; the inertia tensor is then about that point. The same
-    follows from a `torque` in body components. `method` is "lagrange", with the state (q, q̇)
-    and constraint forces that do no work, or "euler", with the state (q, Ω′);
-    `first_integrals` are claims to be proved, by name; `parts` move with the body: {"rotation",
-    "principal_moments"} or {"velocity", "mass"}; `frame_rate` is the angular velocity of the frame
-    that R is measured in. `examples` are motions that the note draws, {"parameters", "initial",
-    "time"}; each takes from the first what it does not name.
+    A rotation may be a text, as on the command line: "ZXZ", "z(phi) x(theta)", "quaternion".
+
+    A `body` adds its kinetic energy and angular momentum, in principal or any other axes; a shape
+    or another distribution of mass is integrated first.
+
+    A `potential` V(q, t), `forces` by coordinate ("theta": "-c*theta_dot") or a `torque` in body
+    components adds the equations of motion about a fixed point; the inertia tensor is then about
+    that point. `method` is "lagrange", with the state (q, q̇) and constraint forces that do no
+    work, or "euler", with the state (q, Ω′). `first_integrals` are claims by name, to be proved.
+    `parts` are other moving parts, {"rotation", "principal_moments"} or {"velocity", "mass"}.
+    `frame_rate` is the angular velocity of the frame of reference. `examples` are motions that the
+    note draws, {"parameters", "initial", "time"}; values that an example does not name are those
+    of the first.
+
     `theory` adds equations 1 to 16 of the lecture, which hold for every body and rotation.
     `timeout` limits the time, in seconds.
 
-    Raises NotARotation if R Rᵀ ≠ 1 or det R ≠ 1, showing what is left over; AlgebraError for
-    expressions that the ring cannot hold; QuantityError for an unknown quantity; LimitReached
-    when the time is up; TypeError for arguments of the wrong type.
+    Raises NotARotation, with the residual, if R Rᵀ ≠ 1 or det R ≠ 1; AlgebraError for expressions
+    that exact algebra cannot represent; QuantityError for an unknown quantity; LimitReached when
+    the time is up; TypeError for arguments of the wrong type.
     """
     rotation = rotation_from(model) if isinstance(model, str) else model
     if not isinstance(rotation, RotationModel):
@@ -327,7 +330,7 @@ def kernels(
 ) -> ModuleType:
     """The functions of a rotation, loaded: `rs.kernels("ZYX").angular_velocity_body(q, q_dot)`.
 
-    `derive`, `Motion.kernels` and `load` in one step; raises what they raise.
+    This is `derive`, `Motion.kernels` and `load` in one step, and raises the same errors.
     """
     motion = derive(model, only, body=body)
     module = motion.kernels(

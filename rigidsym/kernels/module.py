@@ -17,7 +17,7 @@ from rigidsym.system.files import write_text
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class KernelModule:
-    """The functions of one derivation, as the texts of one file or more."""
+    """The functions of one derivation, as the text of one or more files."""
 
     name: str  # of the derivation
     target: str
@@ -49,8 +49,8 @@ class KernelModule:
     def write(self, path: str | Path) -> Path:
         """Write the files, each whole or not at all, and return the path of the main one.
 
-        In a folder that exists they take their own names. Else the path is that of the main file,
-        or, if that needs the others, that of a folder to be made.
+        If `path` is a folder, the files keep their names. Otherwise `path` names the main file; if
+        that needs other files, a new folder.
         """
         place = Path(path)
         if TARGETS[self.target].stands_alone and not place.is_dir():

@@ -37,10 +37,10 @@ OF_RATES = frozenset(  # the quantities that the singularities are about
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Proof:
-    """One claim and what became of it.
+    """One claim and the result of its proof.
 
-    *exact*: the residual reduces to zero in the ring. *unproved*: it does not, and the ring does
-    not know all relations, so that nothing is decided; the residual is what is left over.
+    *exact*: the residual reduces to zero in the ring. *unproved*: the residual does not reduce to
+    zero, but the ring does not contain all relations, so that the claim is undecided.
     """
 
     claim: Formula  # R Rᵀ = 1
@@ -127,7 +127,7 @@ class StepPrinter(Protocol):
 
 
 class Found(NamedTuple):
-    """What the derivation of one quantity comes to, before it is a numbered step."""
+    """The result of deriving one quantity, before it is a numbered step."""
 
     expression: sp.ImmutableMatrix
     because: str
@@ -302,9 +302,9 @@ class Derivation:
         raise QuantityError(f"{self.name} has no quantity {quantity!r}; {offer(quantity, names)}")
 
     def select(self, names: Sequence[str]) -> Self:
-        """The derivation with only these quantities, numbered anew in the order of the steps.
+        """The derivation with only these quantities, renumbered in the order of the steps.
 
-        Singularities go with the rates. Raises QuantityError for a name that is not here.
+        Singularities belong to the rates. Raises QuantityError for a name that is not here.
         """
         chosen = {self.step(name).quantity.name for name in names}
         kept = [step for step in self.steps if step.quantity.name in chosen]
@@ -313,7 +313,7 @@ class Derivation:
         return replace(self, steps=numbered, singularities=kept_singularities)
 
     def spelled(self, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-        """The matrix in inputs only, with what is named put in for its name."""
+        """The matrix in terms of inputs only, after named quantities are substituted."""
         values: dict[sp.Symbol, sp.Expr] = {}
         for definition in self.definitions:
             values[definition.symbol] = definition.expression.xreplace(values)
@@ -321,14 +321,14 @@ class Derivation:
 
     @property
     def subject(self) -> str:
-        """What it is about, in words."""
+        """What the derivation is about, in words."""
         if self.theory:
             return "The equations of the lecture, each with its proof"
         return "Kinematics of a rotation" if self.body is None else "Motion of a rigid body"
 
     @property
     def about_fixed_point(self) -> bool:
-        """Whether the given inertia tensor is about a fixed point, and nothing about the centre."""
+        """Whether the inertia tensor is about a fixed point instead of the centre of mass."""
         names = {step.quantity.name for step in self.steps}
         return (
             self.forces is not None

@@ -47,8 +47,8 @@ class Parameter:
 class RigidBody:
     """The mass, the centre of mass and the inertia tensor about it, in axes fixed in the body.
 
-    The inertia tensor is that of the lecture, section 2.2: products of inertia with a minus sign.
-    Raises BodyError for what no distribution of mass has; `allow` lets unphysical numbers pass.
+    The off-diagonal entries of the inertia tensor are the products of inertia with a minus sign
+    (lecture, section 2.2). Raises BodyError for an unphysical body; `allow` accepts it.
     """
 
     name: str  # lower case, digits, underscores
@@ -88,11 +88,11 @@ class RigidBody:
 
     @property
     def values(self) -> dict[sp.Symbol, sp.Float]:
-        """The parameters that are known in numbers."""
+        """The parameters with a value, and their values."""
         return {p.symbol: sp.Float(p.value, 17) for p in self.parameters if p.value is not None}
 
     def in_numbers(self, expression: Any) -> Any:
-        """An expression or a matrix with the parameters that have a value put in."""
+        """An expression or a matrix after the known values are substituted."""
         return expression.xreplace(self.values)
 
     def _check_symbols(self) -> None:
@@ -185,9 +185,9 @@ def _check_inertia(name: str, inertia: sp.MatrixBase) -> None:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class BodyDescription:
-    """A body as a file or a user describes it: where its mass is, and what its names stand for.
+    """A body as a file or a user describes it: its distribution of mass and its parameters.
 
-    Nothing is integrated yet, so that a description is cheap; `derive` makes the RigidBody of it.
+    Nothing is integrated yet, so a description is cheap; `derive` makes a RigidBody of it.
     """
 
     distribution: Distribution
@@ -209,10 +209,10 @@ def principal_moments(
     parameters: Sequence[Parameter] = (),
     allow: bool = False,
 ) -> RigidBody:
-    """A body whose axes are its principal axes: general, symmetric (A = B) or spherical.
+    """A body given by its principal moments A, B, C (kg m²), along its principal axes.
 
-    The moments (kg m²) are about the centre of mass; the mass is the symbol M where none is given.
-    `parameters` describes symbols beyond what their places say. Raises BodyError.
+    The moments are about the centre of mass, or about the fixed point if there are forces. The
+    mass is the symbol M by default. `parameters` describes further symbols. Raises BodyError.
     """
     moments = [symbolic(moment, "a principal moment") for moment in (A, B, C)]
     total = sp.Symbol("M") if mass is None else symbolic(mass, "the mass")
@@ -231,7 +231,7 @@ def principal_moments(
 
 
 def general_inertia(*, mass: sp.Expr | None = None, name: str = "body") -> RigidBody:
-    """A body with any inertia tensor: the six symbols I_11, I_12, I_13, I_22, I_23, I_33."""
+    """A body with a general inertia tensor: the symbols I_11, I_12, I_13, I_22, I_23, I_33."""
     total = sp.Symbol("M") if mass is None else symbolic(mass, "the mass")
     entries = sp.ImmutableMatrix(3, 3, lambda i, j: sp.Symbol(f"I_{min(i, j) + 1}{max(i, j) + 1}"))
     return given_inertia(entries, mass=total, name=name)

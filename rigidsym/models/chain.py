@@ -26,11 +26,11 @@ def chain(
 ) -> RotationModel:
     """R as a product of turns, left to right as given: R = R_1 R_2 ... R_n.
 
-    The coordinates are the functions of time in the angles, in the order in which they come up; an
-    angle may be a constant, or any combination of coordinates and constants. Components of an axis
-    that are symbols bring the condition that the axis is a unit vector.
+    The coordinates are the functions of time in the angles, in order of appearance; an angle may be
+    a constant, or any combination of coordinates and constants. If components of an axis are
+    symbols, the axis is a unit vector by an added condition.
 
-    Raises ModelError where there is no turn, or none with a coordinate.
+    Raises ModelError if there is no turn, or none with a coordinate.
     """
     if isinstance(turns, str):
         raise ModelError(f"expected a list of rs.Turn; for a text use rs.rotation_from({turns!r})")

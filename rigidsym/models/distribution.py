@@ -30,7 +30,7 @@ class Particle:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Particles:
-    """Point masses held together by nothing that has mass."""
+    """A rigid set of point masses."""
 
     particles: tuple[Particle, ...]
 
@@ -44,12 +44,12 @@ class Particles:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Solid:
-    """A line, a surface or a volume, by a map from coordinates within bounds to its points.
+    """A line, a surface or a volume: a map from coordinates within bounds to its points.
 
-    The bounds of a coordinate may hold those before it. `element` is the length or the area that
-    belongs to a unit of the coordinates; of a volume it is derived, as the determinant of the map.
-    Where the `mass` is given, the density is uniform; otherwise `density` (kg per m, m² or m³) may
-    hold the coordinates, and x, y, z.
+    The bounds of a coordinate may contain the coordinates before it. `element` is the length or
+    area element of a line or surface; the volume element is derived, as the Jacobian determinant.
+    If the `mass` is given, the density is uniform; `density` (kg per m, m² or m³) may contain the
+    coordinates, and x, y, z.
     """
 
     title: str
@@ -84,9 +84,9 @@ class Solid:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Polyhedron:
-    """A solid of uniform density, bounded by plane faces; each named by its corners in order.
+    """A solid of uniform density, bounded by plane faces.
 
-    Seen from outside, the corners of a face go round against the clock.
+    A face is a list of its corners, counterclockwise as seen from outside.
     """
 
     vertices: tuple[sp.ImmutableMatrix, ...]  # (3, 1) each
@@ -121,7 +121,7 @@ class Polyhedron:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Part:
-    """A distribution with a place of its own: turned about its origin, then moved by `at`."""
+    """A part of a composite body: turned about its origin, then moved by `at`."""
 
     what: Distribution
     at: sp.ImmutableMatrix = HERE  # (3, 1), m
@@ -132,7 +132,7 @@ class Part:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Composite:
-    """Parts put together."""
+    """A body composed of parts."""
 
     parts: tuple[Part, ...]
     conditions: tuple[sp.Expr, ...] = ()  # each vanishes: on the symbols in the turns

@@ -29,11 +29,10 @@ def given(
 ) -> RotationModel:
     """Your own R(q), 3x3, in functions of time; it is proved to be a rotation when derived.
 
-    Without `coordinates` they are the functions of time in the matrix, in alphabetical order.
-    `example` holds exact values of coordinates and constants, by name, that satisfy the
-    constraints, in case none are found: {"a": sp.Rational(3, 5)}.
-    Raises ModelError for a matrix that is not 3x3 or has no coordinate, and for an example that
-    is none.
+    By default, `coordinates` are the functions of time in the matrix, in alphabetical order.
+    `example` gives exact values of coordinates and constants, by name, that satisfy the
+    constraints, in case a search finds none: {"a": sp.Rational(3, 5)}.
+    Raises ModelError for a matrix that is not 3x3 or has no coordinate, and for an invalid example.
     """
     try:
         entries = [symbolic(entry, f"{name}: an entry") for entry in sp.flatten(matrix)]

@@ -1,7 +1,7 @@
 """Rotations by quaternions, by axis and angle, by vectors along the axis, and by nine cosines.
 
 With n the angle of a turn about the unit axis e, a quaternion w + v with v = (x, y, z) is
-cos(n/2) + sin(n/2) e, scalar first unless the last is asked for. Three parameters are the
+cos(n/2) + sin(n/2) e, scalar first unless `scalar_last` is set. Three parameters are the
 components of one vector: n e (rotation vector), tan(n/2) e (Gibbs) or tan(n/4) e (modified
 Rodrigues parameters).
 """
@@ -66,7 +66,7 @@ def UnitQuaternion(
     scalar_last: bool = False,
     passive: bool = False,
 ) -> RotationModel:
-    """A quaternion with w² + v·v = 1, a relation of the ring: cos(n/2) + sin(n/2) e.
+    """A unit quaternion, w² + v·v = 1: w = cos(n/2), v = sin(n/2) e.
 
     `names` are (w, x, y, z) in this order; `scalar_last` makes the coordinates (x, y, z, w).
     Raises ModelError for bad names.
@@ -90,10 +90,10 @@ def UnitQuaternion(
 def CayleyKlein(
     names: Sequence[str] = ("a", "b", "c", "d"), *, passive: bool = False
 ) -> RotationModel:
-    """α = a + i b and β = c + i d with |α|² + |β|² = 1, of the matrix ((α, β), (−β*, α*)).
+    """The Cayley-Klein parameters α = a + i b and β = c + i d with |α|² + |β|² = 1.
 
-    The rotation is that of the unit quaternion w = a, z = b, y = c, x = d, by the Pauli matrices:
-    Q = w 1 + i (x σ₁ + y σ₂ + z σ₃). Raises ModelError for bad names.
+    With the Pauli matrices, Q = ((α, β), (−β*, α*)) = w 1 + i (x σ₁ + y σ₂ + z σ₃) belongs to the
+    unit quaternion w = a, z = b, y = c, x = d. Raises ModelError for bad names.
     """
     a, b, c, d = coordinates = _coordinates(names, 4)
     shown = [lettered(q.func.__name__) for q in coordinates]
@@ -116,7 +116,7 @@ def CayleyKlein(
 def AxisAngle(
     names: Sequence[str] = ("e1", "e2", "e3", "phi"), *, passive: bool = False
 ) -> RotationModel:
-    """The turn by an angle (radians) about a unit axis, both free to move.
+    """A turn by an angle (radians) about a unit axis, both functions of time.
 
     `names` are the three components of the axis and the angle. Raises ModelError for bad names.
     """
@@ -211,8 +211,8 @@ def ModifiedRodrigues(
 def DirectionCosines(names: Sequence[str] = _COSINES, *, passive: bool = False) -> RotationModel:
     """The nine entries of R, row by row; dR/dt = C(Ω) R are Poisson's equations.
 
-    Every rotation is that of a unit quaternion, so that claims are proved after R is written as
-    one; the forms that are shown stay in the entries. Raises ModelError for bad names.
+    Results are written in the entries; claims are proved with the entries as functions of a unit
+    quaternion, which represents every rotation. Raises ModelError for bad names.
     """
     entries = _coordinates(names, 9)
     quaternion = UnitQuaternion(names=[f"{names[0]}_quaternion_{k}" for k in "wxyz"])

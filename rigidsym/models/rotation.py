@@ -47,7 +47,7 @@ _BOOKS = {
 
 
 def lecture(equation: str = "", section: str = "") -> Citation:
-    """A place in the lecture notes."""
+    """A citation of the lecture notes."""
     return Citation(text=LECTURE, equation=equation, section=section)
 
 
@@ -145,7 +145,7 @@ class RotationModel:
     """Coordinates q(t) and the rotation R(q) they stand for.
 
     R takes body components to space components: x = R x' (lecture, eq. 15). With `passive` the
-    derivation presents the transpose, the direction cosine matrix; R itself stays what it is.
+    derivation presents the transpose, the direction cosine matrix; R itself is the same.
     """
 
     name: str  # names files and the generated module: lower case, digits, underscores
@@ -235,7 +235,7 @@ class RotationModel:
 
     @property
     def presentation(self) -> str:
-        """A sentence: whether the matrix that is shown takes body or space components."""
+        """A sentence that says which components the presented matrix takes to which."""
         if self.passive:
             return (
                 "Passive: the matrix shown is A = Rᵀ, the direction cosine matrix; "

@@ -44,9 +44,9 @@ def rotation_from(
     scalar_last: bool = False,
     passive: bool = False,
 ) -> RotationModel:
-    """The model in a text: an Euler sequence, turns, a parametrisation, a preset.
+    """The rotation that a text describes: an Euler sequence, turns, a parametrisation, a preset.
 
-    `names` are those of the coordinates; turns name theirs themselves. In turns a name is a
+    `names` are names of the coordinates; turns contain their names. In turns, a name is a
     coordinate, unless it is among `constants` or ends in 0 (`alpha0`, but not `a_10`), and
     the components of an axis are constants. Raises ModelError or ExpressionError, which say what
     was expected.

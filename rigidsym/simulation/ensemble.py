@@ -93,14 +93,14 @@ def simulate_ensemble(
     mapped: Mapped | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Ensemble:
-    """Motions from t = 0 to `t_end` seconds, by steps of order 8 and of the same length for all.
+    """Motions from t = 0 to `t_end` seconds, in steps of order 8 of the same length for all.
 
-    `initial` and `parameters` are those of `simulate`; each value may be an array, (m,), or for
-    angular_velocity_body (m, 3). Without a `step` in seconds, the fastest body turns 0.05 rad in
-    one. The drift shows whether this was short enough. `target` is that of the kernels, "numpy" or
-    "c"; without it, c for long work if there is a compiler. `mapped` applies a function to the
-    blocks elsewhere than in threads of this process. Raises ModelError as `simulate` does, and for
-    arrays whose lengths differ.
+    `initial` and `parameters` are as for `simulate`, but each value may be an array, (m,), or for
+    angular_velocity_body (m, 3). `step` is in seconds; by default, the fastest body turns 0.05 rad
+    in a step. The drift shows whether this was short enough. `target` is "numpy" or "c"; by
+    default, long simulations use C if there is a compiler. `mapped` applies a function to blocks of
+    bodies, for example on a cluster, instead of threads of this process. Raises ModelError as
+    `simulate` does, and for arrays whose lengths differ.
     """
     if not (np.isfinite(t_end) and t_end > 0):
         raise ModelError(f"the end time is {t_end}; expected a positive number of seconds")

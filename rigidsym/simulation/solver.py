@@ -39,11 +39,12 @@ def simulate(
 ) -> Trajectory:
     """The motion from t = 0 to `t_end`, in seconds; without forces, that of the free body.
 
-    `initial` holds the coordinates by name (theta), with their rates (theta_dot) or the body
+    `initial` contains the coordinates by name (theta), with their rates (theta_dot) or the body
     components of the angular velocity (angular_velocity_body), and `parameters` the constants.
-    `method` is one of SciPy's, "lie" for steps in the rotation group, which keep the angular
-    momentum of a free body to rounding, or "exact" for a free body in elliptic functions. A motion
-    that comes to a pole of the coordinates goes on as a quaternion, and says so.
+    `method` is an integrator of SciPy, "lie" for steps in the rotation group, which conserve the
+    angular momentum of a free body up to rounding, or "exact" for a free body in elliptic
+    functions. Near a pole of the coordinates the integration continues with a quaternion, and the
+    report says so.
     Raises ModelError for names that are missing or unknown, and if the derivation has no
     equations of motion; MissingExtra without SciPy.
     """

@@ -14,11 +14,11 @@ class Trajectory(Samples):
     """A motion at n times, of k coordinates; SI units, angles in radians."""
 
     def plot(self, path: str | Path) -> Path:
-        """Pictures of the motion: PNG, SVG or PDF by the ending. Needs Matplotlib."""
+        """Draw the motion into a PNG, SVG or PDF file. Needs Matplotlib."""
         return save_plot(Path(path), self)
 
     def animate(self, path: str | Path, progress: Callable[[float], None] | None = None) -> Path:
-        """An animation: GIF with Matplotlib, or MP4 with ffmpeg too (the extra `video`)."""
+        """Animate the motion as GIF, which needs Matplotlib, or MP4, which also needs ffmpeg."""
         return save_animation(Path(path), self, progress)
 
     def __repr__(self) -> str:

@@ -36,9 +36,9 @@ def inertia_of(
     `particles` is an array (n, 4) of m, x, y, z or (n, 3) of x, y, z with 1 kg each, in kg and m,
     a structured array, a Dask array of this shape, or the path of an NPY, CSV or Parquet file;
     `columns` names the columns if their order differs. Units in their names are converted. An NPY
-    file is read in one pass, in bounded memory; with `scheduler`, the address of a Dask cluster
-    whose workers see the file, they read it. Raises BodyError for NaN, a total mass that is not
-    positive and, unless `allow`, negative masses.
+    file is read in one pass, in bounded memory; with `scheduler`, the address of a Dask cluster,
+    its workers read the file. Raises BodyError for NaN, a total mass that is not positive and,
+    unless `allow` is set, negative masses.
     """
     if hasattr(particles, "dask"):
         return cloud_of(_of_dask(particles, columns), allow=allow)

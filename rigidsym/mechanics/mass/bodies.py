@@ -54,7 +54,7 @@ def body_of(
     parameters: Sequence[Parameter] = (),
     allow: bool = False,
 ) -> RigidBody:
-    """The body that a distribution of mass makes, with the inertia tensor about its centre.
+    """The rigid body with a distribution of mass; the inertia tensor is about its centre of mass.
 
     `parameters` describes the symbols. Raises BodyError if the mass is zero, and for unphysical
     numbers unless `allow` is set.
@@ -115,8 +115,8 @@ def solid(
     """A shipped solid as a rigid body: `solid("cylinder", radius=a, height=h)`.
 
     Lengths (m) that are not given are symbols; so is the mass M (kg), unless there is a density
-    (kg per m, m² or m³). Raises BodyError for an unknown shape or length, and for lengths that are
-    numbers and not positive.
+    (kg per m, m² or m³). Raises BodyError for an unknown shape or length, and for numbers that are
+    not positive.
     """
     chosen = shape_of(shape)
     unknown = set(lengths) - {length.key for length in chosen.lengths}

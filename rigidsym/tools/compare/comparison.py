@@ -35,7 +35,7 @@ def compare(
 
     `formula` is a text in Python, SymPy, C, MATLAB or LaTeX, a matrix, rows of texts, or a Python
     function of the coordinates (and rates), which is called with numbers. Without `rotation` the
-    conventions of the catalogue are tried. Raises ExpressionError for a text that is no formula.
+    conventions of the catalogue are tried. Raises ExpressionError for a text that is not a formula.
     """
     if callable(formula):
         return _of_function(formula, _goal(rotation, quantity))
@@ -166,9 +166,9 @@ def checked(
         @rigidsym.checked("ZYX", "rate_matrix_body")
         def test_rate_matrix(q): ...
 
-    pytest calls tests without arguments; with arguments the function computes as before. A
-    function that takes SymPy symbols is proved, another one is compared at random points.
-    The comparison raises AssertionError, which says what is wrong.
+    pytest calls tests without arguments; with arguments the function computes as before. If the
+    function accepts SymPy symbols, the answer is proved; otherwise it is compared at random
+    points. If the function is wrong, the AssertionError says what is wrong.
     """
 
     def decorate(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -28,7 +28,7 @@ _NEAR = 0.6  # share of entries that must be right for a formula to be close to 
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """What a formula is, and what makes it right."""
+    """The quantity that a formula is, or the repairs that make it right."""
 
     formula: sp.ImmutableMatrix
     asked: KnownQuantity | None  # what it should be
@@ -45,7 +45,7 @@ class Comparison:
         return self.found is not None and not self.repairs
 
     def record(self) -> dict[str, Any]:
-        """For JSON."""
+        """The comparison as plain data for JSON."""
         found = self.found
         return {
             "equal": self.is_equal,

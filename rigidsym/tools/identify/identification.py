@@ -27,15 +27,15 @@ def identify(
 ) -> Identification:
     """Every convention that reproduces these samples.
 
-    `angles` (n, 3) or (3,) in any order and unit; `matrix` (n, 3, 3), or `quaternion`
-    (n, 4), scalar first or last; `rates` (n, 3) of the angles together with `omega` (n, 3), the
-    angular velocity. `names` are those of the angles, for the report. `tolerance` in radians
-    (and as a share of the largest |Ω|); without it, what the digits of the data allow. A memory
-    map is read in chunks. `matrix` and `quaternion` may be a Rotation of SciPy.
+    `angles` (n, 3) or (3,) are in any order and unit; `matrix` is (n, 3, 3), or `quaternion`
+    (n, 4), scalar first or last; `rates` (n, 3) of the angles go with `omega` (n, 3), the angular
+    velocity. `names` are names of the angles, for the report. `tolerance` is in radians, and a
+    fraction of the largest |Ω|; by default it follows from the digits of the data. A memory map is
+    read in chunks. `matrix` and `quaternion` may be a Rotation of SciPy.
 
-    If no plain reading fits, the axes of space and body are permuted and reversed (NED and ENU,
-    FRD and FLU), and constant misalignments are tried. If nothing fits, `fits` is false and
-    `nearest` is the nearest reading.
+    If no reading of the data as they are fits, the axes of space and body are permuted and reversed
+    (NED and ENU, FRD and FLU), and constant misalignments are tried. If nothing fits, `fits` is
+    false and `nearest` is the nearest reading.
     Raises SampleError for samples that are not finite, not rotations, or of the wrong shape.
     """
     given = {"angles": angles, "matrix": matrix, "quaternion": quaternion}
@@ -53,9 +53,9 @@ def identify_file(
 ) -> Identification:
     """The same for an NPY, Parquet or text file, which is read in chunks.
 
-    `columns` names the columns if the file does not, with `-` for one to leave out. Samples in
-    which a number is missing are an error, unless `drops_missing`. `progress` is called with the
-    share of the file that is done.
+    `columns` names the columns if the file does not, with `-` for a column to leave out. A sample
+    that lacks a number is an error, unless `drops_missing`. `progress` is called with the fraction
+    of the file that is done.
     """
     source = from_file(Path(path), columns, drops_missing=drops_missing)
     return identify_source(source, tolerance=tolerance, progress=progress)
