@@ -276,11 +276,9 @@ _UNITS = {
     "product of inertia, with its sign": "kg m^2",
     "coordinate of the centre of mass": "m",
 }
-_ENTRIES = tuple(
-    "moment of inertia" if place in (0, 4, 8) else "product of inertia, with its sign"
-    for place in range(9)
-)
-_SIGNED = {"product of inertia, with its sign", "coordinate of the centre of mass"}
+_MOMENT, _PRODUCT = "moment of inertia", "product of inertia, with its sign"
+_ENTRIES = (*(_MOMENT, _PRODUCT, _PRODUCT, _PRODUCT) * 2, _MOMENT)  # row by row
+_SIGNED = {_PRODUCT, "coordinate of the centre of mass"}
 
 
 def described(given: Sequence[Parameter], *slots: tuple[sp.Expr, str]) -> tuple[Parameter, ...]:

@@ -13,7 +13,7 @@ from rigidsym.errors import ModelError, offer
 from rigidsym.models.rotation import RotationModel
 
 OMEGA = "angular_velocity_body"
-OMEGA_COMPONENTS = tuple(f"{OMEGA}_{k}" for k in (1, 2, 3))
+OMEGA_COMPONENTS = (f"{OMEGA}_1", f"{OMEGA}_2", f"{OMEGA}_3")
 _KEYS = ("parameters", "initial", "time")
 
 

@@ -20,7 +20,7 @@ from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 
 METHODS = ("lagrange", "euler")
-OMEGA_BODY = tuple(sp.Symbol(f"Omega_body_{k}") for k in (1, 2, 3))
+OMEGA_BODY = sp.symbols("Omega_body_1:4")
 _LONG, _ALIKE = 4, 0.8  # letters of a name, and the share that two names have in common
 _NONE: Mapping[Any, sp.Expr] = MappingProxyType({})
 

@@ -30,7 +30,7 @@ _GOLDSTEIN = Citation(text="H. Goldstein, Classical Mechanics (1950)", section="
 _SCALAR = {False: "scalar first", True: "scalar last"}
 _QUATERNION = "unit_quaternion({0}, {1}, {2}, {3})"
 _SQUARE = "{0}**2 + {1}**2 + {2}**2"
-_COSINES = tuple(f"r{row}{column}" for row in (1, 2, 3) for column in (1, 2, 3))
+_COSINES = ("r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33")
 
 
 def Quaternion(

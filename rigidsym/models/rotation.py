@@ -88,9 +88,13 @@ class Turn:
             raise ModelError(f"{self.axis!r} is not an axis: expected x, y, z or components")
         if self.components and len(self.components) != 3:
             raise ModelError(f"an axis has three components, got {len(self.components)}")
-        angle = angle if isinstance(angle, AppliedUndef) else reduced(angle)
+        if isinstance(angle, AppliedUndef) and angle.args == (TIME,):  # a coordinate, most often
+            rate = sp.Derivative(angle, TIME)
+        else:
+            angle = reduced(angle)
+            rate = rate_of(angle)
         object.__setattr__(self, "angle", angle)
-        object.__setattr__(self, "rate", rate_of(angle))
+        object.__setattr__(self, "rate", rate)
         object.__setattr__(self, "direction", self.components or _ALONG[self.axis])
 
     @property
