@@ -21,8 +21,8 @@ from benchmarks.measure import Spread, interleaved, peak_memory, progress, ratio
 from benchmarks.peers import PEERS, Array, Task, in_plain_symbols
 from benchmarks.report import Cell, Column, Figure, Table, spread_columns
 from rigidsym.kernels.lowering.lower import lower
-from rigidsym.kernels.operations import count
 from rigidsym.kernels.targets import TARGETS
+from rigidsym.kernels.targets.text.remarks import count
 from rigidsym.motion import Motion, derive
 from rigidsym.system.resources import folder
 

@@ -52,7 +52,7 @@ FORMULAS = ("tests/notes/test_formula.py", "tests/notes/test_pens.py")
 TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the quickest first
     "rigidsym.algebra.ring": RING,
     "rigidsym.algebra.matrix": (*RING, PROOFS[0]),
-    "rigidsym.algebra.adjoin": (FORMS, CODEC),
+    "rigidsym.algebra.generators": (FORMS, CODEC),
     "rigidsym.algebra.codec": (FORMS, CODEC),
     "rigidsym.algebra.shorten": PRESENT,
     "rigidsym.algebra.present": PRESENT,

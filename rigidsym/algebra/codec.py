@@ -10,20 +10,18 @@ from operator import mul
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.adjoin import (
+from rigidsym.algebra.generators import (
+    Combination,
     GeneratorSet,
     Kind,
     as_sine_cosine,
+    coefficients,
+    combination,
+    cosine_sine_of_pi,
     is_highest,
     is_uncertain,
     rate_of,
     roots_of,
-)
-from rigidsym.algebra.angles import (
-    Combination,
-    coefficients,
-    combination,
-    cosine_sine_of_pi,
 )
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import Generator, Quotient, Ring

@@ -19,9 +19,8 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.adjoin import TIME
-from rigidsym.algebra.angles import is_identically_zero
 from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.generators import TIME, is_identically_zero
 from rigidsym.algebra.real_values import NotReal, RealValues, Unknown, arithmetic
 from rigidsym.errors import AlgebraError, ModelError
 

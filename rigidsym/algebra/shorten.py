@@ -24,7 +24,7 @@ from typing import NamedTuple
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.angles import is_sum_of
+from rigidsym.algebra.generators import is_sum_of
 from rigidsym.algebra.ring import Monomial, Ring
 
 _MOST_STEPS = 60

@@ -14,7 +14,7 @@ from itertools import combinations
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.adjoin import is_time_function
+from rigidsym.algebra.generators import is_time_function
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import Presenter
 from rigidsym.algebra.ring import Quotient

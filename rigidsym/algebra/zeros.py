@@ -17,10 +17,9 @@ from typing import Any, NamedTuple
 import sympy as sp
 from sympy.polys.rings import PolyElement
 
-from rigidsym.algebra.adjoin import TIME
-from rigidsym.algebra.angles import angle_of
 from rigidsym.algebra.codec import Codec
 from rigidsym.algebra.configuration import configurations
+from rigidsym.algebra.generators import TIME, angle_of
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import Monomial
 from rigidsym.algebra.shorten import shortest

@@ -30,8 +30,8 @@ from rigidsym.mechanics.derivation import (
     Singularities,
     Step,
 )
-from rigidsym.mechanics.kinematics.derive import Expanded
-from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn, is_shorter
+from rigidsym.mechanics.kinematics.derive import Expanded, is_shorter
+from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.dynamics import (
     DYNAMICS_QUANTITIES,

@@ -12,7 +12,7 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.angles import not_exact
+from rigidsym.algebra.generators import not_exact
 from rigidsym.errors import BodyError
 from rigidsym.models.distribution import Distribution
 from rigidsym.models.rotation import SOURCES, Citation

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.angles import is_identically_zero
+from rigidsym.algebra.generators import is_identically_zero
 from rigidsym.errors import ModelError
 from rigidsym.models.rotation import SOURCES, Citation, RotationModel, Turn, product_of
 from rigidsym.models.so3 import AXES

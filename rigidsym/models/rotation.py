@@ -11,9 +11,8 @@ from typing import Any, NamedTuple
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.adjoin import rate_of
-from rigidsym.algebra.angles import reduced
 from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.generators import rate_of, reduced
 from rigidsym.errors import ModelError
 from rigidsym.models.so3 import AXES, TIME, elementary, rodrigues, symbolic
 from rigidsym.text.names import lettered

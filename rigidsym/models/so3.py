@@ -8,7 +8,7 @@ from functools import lru_cache
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.adjoin import TIME
+from rigidsym.algebra.generators import TIME
 from rigidsym.errors import ExpressionError, ModelError
 from rigidsym.text.names import check_name
 

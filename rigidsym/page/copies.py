@@ -19,17 +19,17 @@ from rigidsym.kernels.ir import (
     last_order,
 )
 from rigidsym.kernels.lowering.lower import lower
-from rigidsym.kernels.lowering.wrap_lines import narrowed
+from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.targets.numpy import printer as numpy
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.python_layout import (
+from rigidsym.kernels.targets.text.python import (
     WIDTH,
     assignment_lines,
     bracketed,
     docstring,
     exploded,
-    filled,
 )
+from rigidsym.kernels.targets.text.remarks import filled
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.notes.document.document import Document
 from rigidsym.system import resources

@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.algebra import adjoin
+from rigidsym.algebra import generators
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula, Numeral, Symbol
@@ -64,7 +64,7 @@ def label(symbol: Formula) -> str:
 
 def rate_of(angle: sp.Expr, letters: Letters) -> Formula:
     """The rate of the angle of a turn: φ̇."""
-    return formula_of(adjoin.rate_of(angle), letters)
+    return formula_of(generators.rate_of(angle), letters)
 
 
 def _rays_of(scene: Scene) -> Iterator[dict[str, Any]]:

@@ -13,14 +13,13 @@ import rigidsym as rs
 from rigidsym.errors import KernelError
 from rigidsym.kernels import ir
 from rigidsym.kernels.ir import Assignment, Call, Guarded, Name, Negative, Number, Product, Sum
+from rigidsym.kernels.lowering.cse import Reader
 from rigidsym.kernels.lowering.lower import MARGIN, lower
 from rigidsym.kernels.lowering.naming import Names
-from rigidsym.kernels.lowering.read import Reader
-from rigidsym.kernels.lowering.schedule import write
-from rigidsym.kernels.lowering.wrap_lines import narrowed
-from rigidsym.kernels.operations import Operations, count
+from rigidsym.kernels.lowering.schedule import narrowed, write
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.python_layout import assignment_lines, bracketed
+from rigidsym.kernels.targets.text.python import assignment_lines, bracketed
+from rigidsym.kernels.targets.text.remarks import Operations, count
 from rigidsym.mechanics.conversions.function import Where
 
 A, B, C, D = sp.symbols("a b c d")

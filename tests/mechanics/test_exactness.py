@@ -11,9 +11,9 @@ import sympy as sp
 from sympy import Abs, Rational, acos, asin, atan, cos, cosh, exp, log, pi, sin, sqrt, tan
 
 import rigidsym as rs
-from rigidsym.algebra.angles import combination
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.configuration import configurations
+from rigidsym.algebra.generators import combination
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.ring import Ring
 from rigidsym.algebra.witness import Witness

@@ -11,8 +11,9 @@ import rigidsym as rs
 from helpers.witness import mp
 from rigidsym.algebra.codec import codec_for
 from rigidsym.mechanics.derive import derive
+from rigidsym.mechanics.kinematics.derive import is_shorter
 from rigidsym.mechanics.kinematics.recursion_proofs import residuals
-from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn, is_shorter
+from rigidsym.mechanics.kinematics.turn_by_turn import TurnByTurn
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 

@@ -17,7 +17,7 @@ import sympy as sp
 
 from rigidsym.algebra.stable_forms import Stumpff, at_zero, stable_forms
 from rigidsym.kernels import ir
-from rigidsym.kernels.lowering.cse import Graph, Weighted
+from rigidsym.kernels.lowering.cse import Graph, Reader, Weighted
 from rigidsym.kernels.lowering.degrees import (
     ABOUT,
     SUFFIX,
@@ -29,7 +29,6 @@ from rigidsym.kernels.lowering.degrees import (
 from rigidsym.kernels.lowering.derivatives import Derivative
 from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names
-from rigidsym.kernels.lowering.read import Reader
 from rigidsym.kernels.lowering.schedule import write
 from rigidsym.mechanics.conversions.function import Continuity, ConversionFunction, Converted
 from rigidsym.mechanics.derivation import (

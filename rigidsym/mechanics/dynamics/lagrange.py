@@ -23,10 +23,10 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.matrix import Inverse, RingMatrix
 from rigidsym.errors import ModelError
 from rigidsym.mechanics.dynamics.flow import turned
-from rigidsym.mechanics.kinematics.workspace import Inverse, Values
+from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces, MovingPart
 from rigidsym.models.rotation import RotationModel

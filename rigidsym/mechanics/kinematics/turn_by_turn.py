@@ -33,29 +33,6 @@ from rigidsym.mechanics.quantities.kinematics import BODY, IS_OPERATOR, ROTATION
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import hat
 
-_CLOSED_FORM = 3  # turns whose inverse rates and singular places textbooks write out
-
-
-def is_shorter(model: RotationModel) -> bool:
-    """Whether a product of more than three turns is shorter turn by turn than multiplied out."""
-    return len(model.turns) > _CLOSED_FORM and _composed(model) < _expanded(model)
-
-
-def _expanded(model: RotationModel) -> int:
-    """About how many operations R takes multiplied out: a product and a sum for each term."""
-    terms = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
-    for turn in model.turns:
-        own = [
-            [len(sp.Add.make_args(e)) * int(e != 0) for e in row] for row in turn.matrix.tolist()
-        ]
-        terms = [[sum(row[j] * own[j][k] for j in range(3)) for k in range(3)] for row in terms]
-    return 2 * sum(map(sum, terms)) - 9
-
-
-def _composed(model: RotationModel) -> int:
-    """How many operations R takes turn by turn; the product of two turns has hardly any sums."""
-    return sum(45 if turn.components else 18 for turn in model.turns[2:]) + 4
-
 
 class TurnByTurn(Kinematics):
     """The steps of one derivation, each in the names of the recursions."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from rigidsym.algebra.adjoin import rate_of
+from rigidsym.algebra.generators import rate_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import Formula

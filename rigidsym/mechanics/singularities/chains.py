@@ -13,8 +13,8 @@ from itertools import pairwise, product
 
 import sympy as sp
 
-from rigidsym.algebra.angles import is_identically_zero
 from rigidsym.algebra.codec import codec_for
+from rigidsym.algebra.generators import is_identically_zero
 from rigidsym.algebra.present import presenter_for
 from rigidsym.algebra.zeros import solver_for
 from rigidsym.mechanics.derivation import Place, Singularities, Singularity

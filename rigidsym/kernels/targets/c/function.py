@@ -10,7 +10,7 @@ from typing import Any
 from rigidsym.kernels.ir import Call, Compare, Expression, Guarded, Kernel, names_in
 from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.kernels.targets.text.precision import Precision
-from rigidsym.kernels.targets.text.python_layout import bracketed
+from rigidsym.kernels.targets.text.python import bracketed
 
 _FORMS = {"choice": "{0} ? {1} : {2}"}
 _WIDTH = 92

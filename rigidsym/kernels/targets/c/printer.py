@@ -13,8 +13,8 @@ from types import ModuleType
 from typing import Any
 
 from rigidsym.kernels.ir import Kernel, Program, functions_of, last_order
+from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.lowering.trigonometry import two_over_pi
-from rigidsym.kernels.lowering.wrap_lines import narrowed
 from rigidsym.kernels.targets.c.expected_values import samples_of
 from rigidsym.kernels.targets.c.function import Contents, Function, show
 from rigidsym.kernels.targets.c.module_files import module_files

@@ -24,7 +24,7 @@ from rigidsym.kernels.ir import (
     last_order,
 )
 from rigidsym.kernels.lowering.naming import Names
-from rigidsym.kernels.lowering.wrap_lines import narrowed
+from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.targets.text import remarks
 from rigidsym.kernels.targets.text.infix import guard_arguments, infix
 from rigidsym.system import resources

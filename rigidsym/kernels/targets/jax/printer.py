@@ -8,11 +8,11 @@ from types import ModuleType
 from rigidsym.errors import MissingExtra
 from rigidsym.kernels import loaded
 from rigidsym.kernels.ir import FUNCTIONS, Kernel, Program, last_order
-from rigidsym.kernels.lowering.wrap_lines import narrowed
+from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.targets import TARGETS
 from rigidsym.kernels.targets.text import python, remarks
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.python_layout import WIDTH, bracketed, docstring, exploded
+from rigidsym.kernels.targets.text.python import WIDTH, bracketed, docstring, exploded
 from rigidsym.system import resources
 
 TEMPLATE = "jax/module.py.jinja"

@@ -18,11 +18,11 @@ from rigidsym.kernels.ir import (
     last_order,
 )
 from rigidsym.kernels.lowering.naming import Names
-from rigidsym.kernels.lowering.wrap_lines import narrowed
+from rigidsym.kernels.lowering.schedule import narrowed
 from rigidsym.kernels.targets.numpy.unwrap import unwrap_text
 from rigidsym.kernels.targets.text import python, remarks
 from rigidsym.kernels.targets.text.infix import infix
-from rigidsym.kernels.targets.text.python_layout import (
+from rigidsym.kernels.targets.text.python import (
     WIDTH,
     bracketed,
     docstring,

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable, Iterator, Sequence
 
 from rigidsym.kernels.ir import Kernel, Unwrapping
-from rigidsym.kernels.targets.text.python_layout import bracketed, docstring
+from rigidsym.kernels.targets.text.python import bracketed, docstring
 from rigidsym.system import resources
 
 _SOURCE = "numpy/unwrap.py"

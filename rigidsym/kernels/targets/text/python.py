@@ -1,7 +1,11 @@
-"""Text that all Python modules share, be it for NumPy, Numba, JAX or a compiled module."""
+"""Text that all Python modules share, be it for NumPy, Numba, JAX or a compiled module.
+
+It has the layout that `ruff format` gives it, so that no formatter need run.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
@@ -21,14 +25,7 @@ from rigidsym.kernels.ir import (
     parts,
 )
 from rigidsym.kernels.targets.text.infix import guard_arguments, infix
-from rigidsym.kernels.targets.text.python_layout import (
-    WIDTH,
-    assignment_lines,
-    bracketed,
-    exploded,
-    tuple_of,
-)
-from rigidsym.kernels.targets.text.remarks import Paragraph, about_kernel, in_units, table
+from rigidsym.kernels.targets.text.remarks import Paragraph, about_kernel, filled, in_units, table
 from rigidsym.system import resources
 
 MANY = 8  # components
@@ -225,3 +222,52 @@ def about_function(kernel: Kernel) -> list[Paragraph]:
         *about_kernel(kernel, table(rows), *([both] if kernel.parts else [])),
         "Raises TypeError for a dtype and ValueError for a shape that it cannot take.",
     ]
+
+
+WIDTH = 88
+_BEFORE_AN_OPERATOR = re.compile(r" (?=[-+*/] )")
+_QUOTES = '"""'
+
+
+def bracketed(indent: int, head: str, items: Sequence[str], tail: str) -> str:
+    """Items between brackets: in one line, or in a line of their own, or each in one."""
+    margin, inner = " " * indent, " " * (indent + 4)
+    joined = ", ".join(items)
+    if len(f"{margin}{head}{joined}{tail}") <= WIDTH:
+        return f"{margin}{head}{joined}{tail}"
+    if len(inner + joined) <= WIDTH:
+        return f"{margin}{head}\n{inner}{joined}\n{margin}{tail}"
+    return exploded(indent, head, items, tail)
+
+
+def exploded(indent: int, head: str, items: Sequence[str], tail: str) -> str:
+    """Items between brackets, each in a line of its own; an item may hold lines already."""
+    margin, inner = " " * indent, " " * (indent + 4)
+    lines = "".join(f"{inner}{item},\n" for item in items)
+    return f"{margin}{head}\n{lines}{margin}{tail}"
+
+
+def tuple_of(items: Sequence[str]) -> str:
+    return f"({', '.join(items)}{',' if len(items) == 1 else ''})"
+
+
+def assignment_lines(indent: int, name: str, value: str) -> str:
+    """One assignment; a value without brackets that is too wide stands in brackets of its own."""
+    margin, inner = " " * indent, " " * (indent + 4)
+    line = f"{margin}{name} = {value}"
+    if len(line) <= WIDTH or "(" in value:
+        return line
+    pieces = [value] if len(inner + value) <= WIDTH else _BEFORE_AN_OPERATOR.split(value)
+    body = "\n".join(inner + piece for piece in pieces)
+    return f"{margin}{name} = (\n{body}\n{margin})"
+
+
+def docstring(paragraphs: Sequence[str | Sequence[str]], indent: int = 0) -> str:
+    """The inside of a docstring: paragraphs are filled, sequences of lines kept."""
+    room = WIDTH - indent
+    first = filled(paragraphs[0], room - len(_QUOTES) * (2 if len(paragraphs) == 1 else 1))
+    blocks = [first, *(filled(paragraph, room) for paragraph in paragraphs[1:])]
+    margin = " " * indent
+    text = "\n\n".join("\n".join(margin + line for line in block) for block in blocks)
+    text = text.strip().replace("\\", "\\\\").replace(_QUOTES, r"\"\"\"")
+    return f"{text}\n{margin}" if "\n" in text else text

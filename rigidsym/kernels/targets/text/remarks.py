@@ -1,15 +1,29 @@
-"""Sentences that every generated file shares: accuracy, poles, series and rounding bounds."""
+"""Sentences that every generated file shares: operations, accuracy, poles and rounding bounds."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import lru_cache
 from math import ceil
+from textwrap import wrap
 
 from rigidsym.algebra.series import FIRST_SERIES, Series, series_of
-from rigidsym.kernels.ir import Kernel, Name, Program, functions_of, last_order
+from rigidsym.kernels.ir import (
+    Call,
+    Choice,
+    Expression,
+    Kernel,
+    Name,
+    Negative,
+    Product,
+    Program,
+    Sum,
+    functions_of,
+    last_order,
+    walk,
+)
 from rigidsym.kernels.lowering.rounding import SINE, adds_angles, rounding
-from rigidsym.kernels.operations import count
-from rigidsym.kernels.targets.text.python_layout import filled
 from rigidsym.version import OWNERSHIP, __version__
 
 Paragraph = str | Sequence[str]  # filled, or lines that are kept
@@ -152,3 +166,64 @@ def _errors(kernels: Sequence[Kernel]) -> Iterator[str]:
             "Bounds on rounding errors are proved from the operations, in eps of the result's "
             f"type, for sines and cosines of at most 1 and within {SINE:g} eps, and exact inputs."
         )
+
+
+def filled(paragraph: str | Sequence[str], width: int) -> list[str]:
+    """The lines of a paragraph."""
+    return list(_wrapped(paragraph, width) if isinstance(paragraph, str) else paragraph)
+
+
+@lru_cache(maxsize=1024)  # modules of one kind have most paragraphs in common
+def _wrapped(paragraph: str, width: int) -> list[str]:
+    return wrap(paragraph, width, break_long_words=False, break_on_hyphens=False)
+
+
+_OPERATIONS = {  # in words, one and several
+    "trigonometric": ("sine or cosine", "sines and cosines"),
+    "inverse": ("arctangent", "arctangents"),
+    "entire": ("function c_k", "functions c_k"),
+    "roots": ("square root", "square roots"),
+    "sizes": ("absolute value", "absolute values"),
+    "multiplications": ("multiplication", "multiplications"),
+    "divisions": ("division", "divisions"),
+    "additions": ("addition", "additions"),
+    "negations": ("change of sign", "changes of sign"),
+    "choices": ("choice", "choices"),
+}
+_KINDS = {"sin": "trigonometric", "cos": "trigonometric", "sqrt": "roots", "abs": "sizes"}
+_KINDS["atan2"] = "inverse"
+
+
+class Operations(Counter[str]):
+    """What one value of a kernel costs, by kinds; subtractions count as additions."""
+
+    def __str__(self) -> str:
+        counts = [
+            f"{self[kind]} {one if self[kind] == 1 else many}"
+            for kind, (one, many) in _OPERATIONS.items()
+            if self[kind]
+        ]
+        total = f"{self.total()} operation{'' if self.total() == 1 else 's'}"
+        return f"{total}: {', '.join(counts)}" if counts else "no operations"
+
+
+def count(expressions: Iterable[Expression]) -> Operations:
+    """The operations in expressions as they are written."""
+    counts = Operations()
+    for node in (node for expression in expressions for node in walk(expression)):
+        match node:
+            case Choice():
+                counts["choices"] += 1
+            case Call("eps"):
+                pass  # a constant of the type
+            case Call(function):
+                counts[_KINDS.get(function, "entire")] += 1
+            case Product(factors, divisors):
+                counts["multiplications"] += len(factors) - 1 + max(len(divisors) - 1, 0)
+                counts["divisions"] += bool(divisors)
+            case Sum(terms):
+                counts["additions"] += len(terms) - 1
+                counts["negations"] -= sum(isinstance(term, Negative) for term in terms[1:])
+            case Negative():
+                counts["negations"] += 1
+    return counts
