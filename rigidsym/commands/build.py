@@ -46,7 +46,7 @@ def _built(source: str, options: BuildOptions) -> Iterator[Path]:
     if Path(source).suffix == ".c":
         yield build(Path(source), portable=options.portable)
         return
-    spec = options.selected(integrated(read(source, **options.of_rotation())))
+    spec = options.applied_to(integrated(read(source, **options.of_rotation())))
     for single in spec.singles():
         asked: Mapping[str, Any] = single.target_options.get("c", {})
         if not Contents(**asked).is_module:

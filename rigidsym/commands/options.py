@@ -20,7 +20,20 @@ from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.resources import languages, overridden_by
 
 MOST_LINES = 150  # that a terminal shows by default
+_LANGUAGES = languages()
 _LEAN: dict[str, str | bool] = {"precision": "double", "arrays": False, "libm": True}
+
+
+class SpecOptions:
+    """Options that choose something of a specification."""
+
+    def applied_to(self, spec: DerivationSpec) -> DerivationSpec:
+        """The specification with the choices of the command line."""
+        return replace(spec, **self.chosen(spec))
+
+    def chosen(self, spec: DerivationSpec) -> dict[str, Any]:  # noqa: ARG002
+        """The fields of the specification with what is chosen here."""
+        return {}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,7 +93,7 @@ def _notation(name: str, about: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class NotationOptions:
+class NotationOptions(SpecOptions):
     """The notation of the note and the terminal; it takes precedence over that of a file."""
 
     rates: str | None = _notation("rates", "Print rates as φ̇ or dφ/dt.")
@@ -95,16 +108,17 @@ class NotationOptions:
         help="Names of the two frames, such as inertial,spacecraft.",
     )
 
-    def in_notation(self, spec: DerivationSpec) -> DerivationSpec:
-        """The specification with the notation chosen here."""
-        chosen = {name: getattr(self, name) for name in CHOICES if getattr(self, name)}
-        chosen |= {"frames": tuple(self.frames)} if self.frames else {}
-        notation = replace(spec.notation or DEFAULT, **chosen) if chosen else spec.notation
-        return replace(spec, notation=notation)
+    def chosen(self, spec: DerivationSpec) -> dict[str, Any]:
+        found = super().chosen(spec)
+        notation = {name: getattr(self, name) for name in CHOICES if getattr(self, name)}
+        notation |= {"frames": tuple(self.frames)} if self.frames else {}
+        if notation:
+            found["notation"] = replace(spec.notation or DEFAULT, **notation)
+        return found
 
 
 @dataclass(frozen=True, kw_only=True)
-class SelectionOptions:
+class SelectionOptions(SpecOptions):
     """What is derived."""
 
     only: tuple[list[str], ...] = option(
@@ -116,13 +130,15 @@ class SelectionOptions:
         "--conversions", help="Add conversions to and from quaternions and matrices, and `unwrap`."
     )
 
-    def selected(self, spec: DerivationSpec) -> DerivationSpec:
-        """The specification with the quantities and conversions chosen here."""
+    def chosen(self, spec: DerivationSpec) -> dict[str, Any]:
         only = unique(self.only)
         for name in only:
             _check_quantity(name, "--only")
-        converts = spec.conversions or self.conversions
-        return replace(spec, quantities=only or spec.quantities, conversions=converts)
+        return {
+            **super().chosen(spec),
+            "quantities": only or spec.quantities,
+            "conversions": spec.conversions or self.conversions,
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,15 +156,18 @@ class KernelOptions(SelectionOptions):
         "--degrees", help="Print functions that take and return degrees, in files NAME_deg."
     )
 
-    def selected(self, spec: DerivationSpec) -> DerivationSpec:
-        """The specification with the quantities, conversions, derivatives and unit chosen here."""
-        chosen = super().selected(spec)
-        degrees = spec.degrees or self.degrees
-        return replace(chosen, derivatives=self._derivatives(spec), degrees=degrees)
+    def chosen(self, spec: DerivationSpec) -> dict[str, Any]:
+        return {
+            **super().chosen(spec),
+            "derivatives": self._derivatives(spec),
+            "degrees": spec.degrees or self.degrees,
+        }
 
     def _derivatives(self, spec: DerivationSpec) -> tuple[str, ...]:
         """Those of the specification, then those of the command line, each once."""
         asked = unique(self.derivative)
+        if not asked:
+            return spec.derivatives
         for text in asked:
             if ":" not in text:
                 raise KernelError(
@@ -161,18 +180,17 @@ class KernelOptions(SelectionOptions):
 
 
 @dataclass(frozen=True, kw_only=True)
-class LanguageOptions:
+class LanguageOptions(SpecOptions):
     """The language of what people read."""
 
     language: str | None = option(
         "--language",
-        type=click.Choice(languages()),
+        type=click.Choice(_LANGUAGES),
         help="Language of the note.  [default: en]",
     )
 
-    def in_language(self, spec: DerivationSpec) -> DerivationSpec:
-        """The specification in the language chosen here, or in its own."""
-        return replace(spec, language=self.language or spec.language)
+    def chosen(self, spec: DerivationSpec) -> dict[str, Any]:
+        return {**super().chosen(spec), "language": self.language or spec.language}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,21 +230,20 @@ class OutputOptions(LanguageOptions):
 class PrintingOptions(FolderOptions, NotationOptions, OutputOptions, KernelOptions):
     """The options of `derive` and `run`: what is printed, how, and where it is written."""
 
-    def applied_to(self, spec: DerivationSpec) -> DerivationSpec:
-        """The specification with the choices of the command line."""
+    def chosen(self, spec: DerivationSpec) -> dict[str, Any]:
         targets = unique(self.target)
         for target in targets:
             check_target(target)
         lean = {"c": _LEAN} if self.lean else {}
         asked = ("pdf",) * self.pdf + ("fragment.tex",) * self.fragment
-        return replace(
-            self.in_language(self.in_notation(self.selected(spec))),
-            note=tuple(dict.fromkeys((*spec.note, *asked))),
-            kernels=tuple(dict.fromkeys((*(targets or spec.kernels), *lean))),
-            target_options={**spec.target_options, **lean},
-            style=self.style or spec.style,
-            certificates=spec.certificates or self.certificates,
-        )
+        return {
+            **super().chosen(spec),
+            "note": tuple(dict.fromkeys((*spec.note, *asked))),
+            "kernels": tuple(dict.fromkeys((*(targets or spec.kernels), *lean))),
+            "target_options": {**spec.target_options, **lean},
+            "style": self.style or spec.style,
+            "certificates": spec.certificates or self.certificates,
+        }
 
 
 def _check_quantity(name: str, flag: str) -> None:

@@ -67,7 +67,7 @@ def write(output: Output, out: Path, *, force: bool) -> list[Path]:
     Raises EditedFiles, before anything is written, for files that were edited since, unless
     `force` is set.
     """
-    folder = out / output.name
+    folder = out / output.spec.name
     with locked(folder):
         if not force and (edited := _edited(output, folder)):
             raise EditedFiles(
@@ -114,8 +114,9 @@ def _is_same(before: DerivationSpec, now: DerivationSpec) -> bool:
 
 def _spec_there(folder: Path) -> DerivationSpec | None:
     """The specification in the record of a folder; None without a record that can be read."""
+    request = content_of(folder / f"{folder.name}.json").get("request")
     try:
-        return read_record(content_of(folder / f"{folder.name}.json").get("request"))
+        return None if request is None else read_record(request)
     except SpecError:
         return None
 

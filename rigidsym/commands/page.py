@@ -35,7 +35,7 @@ def command(source: str, options: PageOptions) -> None:
     that needs no network; NAME.json beside it is the record that `check` reads.
     """
     spec = integrated(read(source, **options.of_rotation()))
-    for single in options.in_language(options.in_notation(options.selected(spec))).singles():
+    for single in options.applied_to(spec).singles():
         asked = replace(single, kernels=(), note=(PAGE,))
         output = printed(with_existing_files(asked, options.out))
         write(output, options.out, force=options.force)

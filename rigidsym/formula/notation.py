@@ -100,8 +100,10 @@ class Notation:
 
     def check(self, model: HasNames) -> None:
         """Raises ModelError for a name in a model that looks like the angular velocity."""
+        if self.angular_velocity != "omega":
+            return
         alike = sorted(name for name in model.names if name.split("_")[0].lower() == "omega")
-        if alike and self.angular_velocity == "omega":
+        if alike:
             raise ModelError(
                 f"notation: the angular velocity cannot be called omega beside {alike[0]}; leave "
                 "it Omega"

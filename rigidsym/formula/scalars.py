@@ -46,8 +46,10 @@ _BOUND = {
 
 
 @lru_cache(maxsize=8192)
-def formula_of(expression: sp.Expr, letters: Letters) -> tree.Formula:
-    """The expression as a tree; raises AlgebraError for a node without a printed form."""
+def formula_of(expression: sp.Basic, letters: Letters) -> tree.Formula:
+    """The expression or equation as a tree; raises AlgebraError for a node that has no form."""
+    if isinstance(expression, sp.Eq):
+        return tree.equal(*(formula_of(side, letters) for side in expression.args))
     return _ScalarWalk(letters).expression(signs_outside(letters.shortened(expression)))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache, reduce
 from typing import Any, NamedTuple
 
@@ -117,6 +117,23 @@ class Turn:
 def product_of(turns: tuple[Turn, ...]) -> sp.ImmutableMatrix:
     """R as the product of turns, left to right as given."""
     return reduce(_times, (turn.matrix for turn in turns))
+
+
+def by_axis(turns: tuple[Turn, ...], angle: sp.Expr) -> list[tuple[Turn, sp.ImmutableMatrix]]:
+    """A turn by the angle about each axis of the turns, with its matrix; x, y and z come first."""
+    axes = {(turn.components, turn.axis): turn for turn in turns}
+    ordered = sorted(axes, key=lambda key: (bool(key[0]), key[1]))
+    found = [replace(axes[key], angle=angle) for key in ordered]
+    return [(turn, turn.matrix) for turn in found]
+
+
+def carried_axes(turns: tuple[Turn, ...]) -> list[sp.ImmutableMatrix]:
+    """The axis of each turn in space components (3, 1), carried along by the turns before it."""
+    before, axes = sp.eye(3), []
+    for turn in turns:
+        axes.append(sp.ImmutableMatrix(before * sp.Matrix(turn.direction)))
+        before = before * turn.matrix
+    return axes
 
 
 @lru_cache(maxsize=128)

@@ -172,9 +172,11 @@ def fault_of_title(title: str | None) -> str:
 
 def _clashes(model: RotationModel, body: Body | None) -> Iterator[str]:
     """Names that both a rotation and its body use."""
+    if body is None:
+        return
     used = {coordinate.func.__name__ for coordinate in model.coordinates}
     used |= {symbol.name for symbol in model.constants}
-    for name in sorted(used & {p.symbol.name for p in (body.parameters if body else ())}):
+    for name in sorted(used & {p.symbol.name for p in body.parameters}):
         yield f"{name} is a parameter of the body and also appears in the rotation"
 
 

@@ -23,7 +23,16 @@ from rigidsym.models.so3 import time_function
 from rigidsym.models.solids import shaped
 from rigidsym.notes.document.document import plain
 from rigidsym.notes.figure.camera import STANDARD, camera, combined, cross, dot, turned, unit
-from rigidsym.notes.figure.drawing import Box, Drawing, Ellipse, Label, Stroke, beyond, placed
+from rigidsym.notes.figure.drawing import (
+    Box,
+    Drawing,
+    Ellipse,
+    Label,
+    Stroke,
+    beyond,
+    boxes,
+    labelled,
+)
 from rigidsym.notes.figure.scene import MOST_TURNS, scene_of
 from rigidsym.notes.figure.svg import svg
 from rigidsym.notes.figure.tikz import tikz
@@ -80,17 +89,17 @@ def drawing(request: pytest.FixtureRequest) -> Drawing:
 
 
 def test_labels_touch_no_line_and_no_other_label(drawing):
-    for label in drawing.labels:
+    for label, box in zip(drawing.labels, boxes(drawing.labels), strict=True):
         for stroke in drawing.strokes:
-            assert not label.box.crossed_by(stroke.segments), (label, stroke)
-    for one, other in combinations(drawing.labels, 2):
-        assert not one.box.meets(other.box), (one, other)
+            assert not box.crossed_by(stroke.segments), (label, stroke)
+    for one, other in combinations(boxes(drawing.labels), 2):
+        assert not one.meets(other), (one, other)
 
 
 def test_labels_stand_near_what_they_name(drawing):
-    for label in drawing.labels:
+    for label, box in zip(drawing.labels, boxes(drawing.labels), strict=True):
         ends = [p for s in drawing.strokes if s.kind == label.kind for p in s.points]
-        reach = hypot(label.box.half_width, label.box.half_height)
+        reach = hypot(box.half_width, box.half_height)
         x, y = label.place
         assert min(hypot(x - a, y - b) for a, b in ends) < reach + 0.36
 
@@ -286,8 +295,9 @@ def test_a_segment_crosses_a_box_if_one_of_its_points_is_inside(start, end):
 
 def test_a_label_that_has_no_free_place_takes_the_least_bad():
     hatch = [Stroke(kind="guide", points=((x / 20, -3.0), (x / 20, 3.0))) for x in range(-60, 61)]
-    label = placed("space", Symbol("x"), beyond([(0, 0), (1, 0)]), hatch, [])
-    met = [s for stroke in hatch for s in label.box.crossed_by(stroke.segments)]
+    labels = labelled([("space", Symbol("x"), beyond([(0, 0), (1, 0)]))], hatch)
+    ((label, box),) = zip(labels, boxes(labels), strict=True)
+    met = [s for stroke in hatch for s in box.crossed_by(stroke.segments)]
     assert 0 < len(met) <= 3  # it is about as wide as two gaps of the hatch
     assert hypot(*label.place) < 2
 

@@ -6,15 +6,18 @@ hold SymPy matrices, so that each printer can break and abbreviate them for its 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, groupby, zip_longest
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
+
+import sympy as sp
 
 from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.sentence import sentence, text_of
 from rigidsym.formula.tree import Formula, Row, Words
 from rigidsym.models.rotation import Citation
@@ -72,13 +75,26 @@ class Cited(NamedTuple):
 
 Span = str | Formula | Code | Strong | EquationReference | FigureReference | Cited
 Text = tuple[Span, ...]
+Draft = tuple[Span | sp.Basic, ...]
+_Part = TypeVar("_Part")
 
 
 words = sentence
 plain = text_of
 
 
-def listed(items: Sequence[Text], last: str = " and ") -> Text:
+def written(drafts: Iterable[Draft], letters: Letters) -> list[Text]:
+    """The texts with a formula in place of each expression or equation of SymPy."""
+    drafts = list(drafts)
+    held = {span for draft in drafts for span in draft if isinstance(span, sp.Basic)}
+    formulas = {expression: formula_of(expression, letters) for expression in held}
+    return [
+        tuple(formulas[span] if isinstance(span, sp.Basic) else span for span in draft)
+        for draft in drafts
+    ]
+
+
+def listed(items: Sequence[tuple[_Part, ...]], last: str = " and ") -> tuple[_Part | str, ...]:
     """The texts a, b, c as: a, b and c."""
     joints = [*[", "] * (len(items) - 2), last] if len(items) > 1 else []
     mixed = chain.from_iterable((*item, joint) for item, joint in zip_longest(items, joints))

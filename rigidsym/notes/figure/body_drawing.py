@@ -22,7 +22,7 @@ from rigidsym.notes.figure.camera import (
     scaled,
     unit,
 )
-from rigidsym.notes.figure.drawing import Drawing, Facet, Label, Stroke, beyond, placed
+from rigidsym.notes.figure.drawing import Drawing, Facet, Named, Stroke, beyond, labelled
 from rigidsym.notes.figure.scene import BODY
 
 _VIEW = camera(35, 24)
@@ -56,13 +56,13 @@ def body_drawing(derivation: Derivation) -> tuple[Drawing, bool] | None:
         for name, axis, start, end in zip(names, axes, starts, ends, strict=False)
     ]
     is_behind = [_VIEW.depth(axis) < 0 for axis in axes]
-    labels: list[Label] = []
-    for name, stroke in zip(names, outer, strict=False):
-        places = beyond(((0.0, 0.0), stroke.points[-1]))
-        labels.append(placed("space", name, places, (*inner, *outer), labels))
+    named: list[Named] = [
+        ("space", name, beyond(((0.0, 0.0), stroke.points[-1])))
+        for name, stroke in zip(names, outer, strict=False)
+    ]
     drawing = Drawing(
         strokes=(*inner, *(s for s, hidden in zip(outer, is_behind, strict=True) if not hidden)),
-        labels=tuple(labels),
+        labels=labelled(named, (*inner, *outer)),
         behind=tuple(s for s, hidden in zip(outer, is_behind, strict=True) if hidden),
         facets=tuple(_facets(shape)),
     )

@@ -19,7 +19,7 @@ from rigidsym.notes.figure.camera import (
     dot,
     unit,
 )
-from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Label, Stroke
+from rigidsym.notes.figure.drawing import TYPE_SIZE, Drawing, Label, Stroke, half_widths
 from rigidsym.notes.figure.scene import Kind
 
 _KINDS: tuple[Kind, ...] = ("body", "node", "turn", "vector")  # of the curves of a chart
@@ -77,8 +77,9 @@ def chart(
     for value in up.ticks:
         _, y = at(across.low, value)
         strokes.append(Stroke("space", ((0.0, y), (-_TICK, y)), is_thin=True))
-        label = Label("space", decimal(value), (0.0, y))
-        labels.append(label._replace(place=(-1.5 * _TICK - label.box.half_width, y)))
+        number = decimal(value)
+        (half_width,) = half_widths([number])
+        labels.append(Label("space", number, (-1.5 * _TICK - half_width, y)))
     labels.append(Label("space", along, (width / 2, -_TICK - 1.9 * TYPE_SIZE)))
     if len(curves) == 1:
         ((name, _),) = curves
@@ -87,9 +88,9 @@ def chart(
         strokes.append(Stroke(kind, tuple(_thinned(at(*point) for point in points))))
     if len(curves) > 1:
         ends = [at(*points[-1])[1] for _, points in curves]
-        for kind, (name, _), y in zip(cycle(_KINDS), curves, _apart(ends), strict=False):
-            label = Label(kind, name, (0.0, y))
-            labels.append(label._replace(place=(width + _TICK + label.box.half_width, y)))
+        names = [name for name, _ in curves]
+        shown = zip(cycle(_KINDS), names, half_widths(names), _apart(ends), strict=False)
+        labels += [Label(kind, name, (width + _TICK + w, y)) for kind, name, w, y in shown]
     return Drawing(tuple(strokes), tuple(labels))
 
 

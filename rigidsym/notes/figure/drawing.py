@@ -6,7 +6,6 @@ The unit is the length of the unit vectors of space; labels are set in letters o
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from functools import lru_cache
 from itertools import pairwise
 from math import atan2, ceil, cos, hypot, pi, radians, sin, tau
 from typing import NamedTuple
@@ -23,7 +22,7 @@ TYPE_SIZE = 0.15  # one em, in units of the drawing
 AXIS = 1.35  # lengths of the axes drawn
 NODE = 1.2
 
-_HEIGHT = 1.0  # of a label, in ems: from the foot of ψ to the head of a prime
+_HALF_HEIGHT = 0.5 * TYPE_SIZE  # of a label: 1 em from the foot of ψ to the head of a prime
 _STEP = radians(7.5)  # between the points of an arc
 _MARGIN = 0.025  # between a label and anything else
 _GAPS = (0.05, 0.09, 0.14, 0.2, 0.26, 0.34, 0.42)  # between a label and what it names
@@ -118,17 +117,19 @@ class Label(NamedTuple):
     symbol: Formula
     place: Point
 
-    @property
-    def box(self) -> Box:
-        """The space that the symbol needs, in LaTeX or in Unicode, whichever is wider."""
-        return Box(self.place, _half_width(self.symbol), TYPE_SIZE * _HEIGHT / 2)
+
+def half_widths(symbols: Sequence[Formula]) -> list[float]:
+    """Half of the width of each, in LaTeX or in Unicode, whichever is wider."""
+    latex, unicode = LatexPen(), UnicodePen()
+    wide, narrow = list(map(latex.write, symbols)), list(map(unicode.write, symbols))
+    both = zip(wide, narrow, strict=True)
+    return [TYPE_SIZE * max(one.width, 0.6 * other.width) / 2 for one, other in both]
 
 
-@lru_cache(maxsize=256)
-def _half_width(symbol: Formula) -> float:
-    return (
-        TYPE_SIZE * max(LatexPen().write(symbol).width, 0.6 * UnicodePen().write(symbol).width) / 2
-    )
+def boxes(labels: Sequence[Label]) -> list[Box]:
+    """The space that each label needs."""
+    widths = half_widths([label.symbol for label in labels])
+    return [Box(x.place, w, _HALF_HEIGHT) for x, w in zip(labels, widths, strict=True)]
 
 
 class Facet(NamedTuple):
@@ -156,7 +157,7 @@ class Drawing(NamedTuple):
         """The lower left and the upper right corner of all that is drawn."""
         points = [point for stroke in (*self.strokes, *self.behind) for point in stroke.points]
         points += [point for facet in self.facets for point in facet.points]
-        for box in (label.box for label in self.labels):
+        for box in boxes(self.labels):
             x, y = box.centre
             points += [
                 (x - box.half_width, y - box.half_height),
@@ -172,12 +173,11 @@ def drawn(scene: Posed, seen: Camera) -> Drawing:
     arcs = [_arc(arc, seen) for arc in scene.arcs]
     circles = () if scene.is_crowded else _circles(scene, seen)
     strokes = (*circles, *_guides(scene, seen), *axes, *arcs)
-    labels: list[Label] = []
-    for arc, stroke in zip(scene.arcs, arcs, strict=True):
-        labels.append(placed("turn", arc.turn.name, beside(stroke.points), strokes, labels))
-    for ray, stroke in zip(scene.rays, axes, strict=True):
-        labels.append(placed(ray.kind, ray.name, beyond(stroke.points), strokes, labels))
-    return Drawing(strokes=strokes, labels=tuple(labels))
+    of_turns = zip(scene.arcs, arcs, strict=True)
+    named: list[Named] = [("turn", arc.turn.name, beside(s.points)) for arc, s in of_turns]
+    of_axes = zip(scene.rays, axes, strict=True)
+    named += [(ray.kind, ray.name, beyond(stroke.points)) for ray, stroke in of_axes]
+    return Drawing(strokes=strokes, labels=labelled(named, strokes))
 
 
 def _axis(ray: Ray, seen: Camera, *, is_line: bool) -> Stroke:
@@ -266,41 +266,52 @@ def _direction(start: Point, end: Point) -> float:
     return atan2(end[1] - start[1], end[0] - start[0])
 
 
-def placed(
-    kind: Kind,
-    symbol: Formula,
-    places: Sequence[Place],
-    strokes: Sequence[Stroke],
-    labels: Sequence[Label],
-) -> Label:
-    """The label at the first free place, the nearest first; else where it touches the fewest."""
-    taken = [label.box for label in labels]
+Named = tuple[Kind, Formula, Sequence[Place]]  # a label, and where it may go
+
+
+def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, ...]:
+    """Labels at their first free places, the nearest first; else where they touch the fewest."""
     segments = [segment for stroke in strokes for segment in stroke.segments]
-    reach = 2 * hypot(_half_width(symbol), TYPE_SIZE * _HEIGHT / 2) + max(_GAPS) + _MARGIN
+    kinds, symbols, places = zip(*named, strict=True)
+    taken: list[Box] = []
+    for half_width, own in zip(half_widths(symbols), places, strict=True):
+        taken.append(_free(half_width, own, segments, taken))
+    return tuple(
+        Label(kind, symbol, box.centre)
+        for kind, symbol, box in zip(kinds, symbols, taken, strict=True)
+    )
+
+
+def _free(
+    half_width: float,
+    places: Sequence[Place],
+    segments: Sequence[Segment],
+    taken: Sequence[Box],
+) -> Box:
+    reach = 2 * hypot(half_width, _HALF_HEIGHT) + max(_GAPS) + _MARGIN
     starts = {start for start, _ in places}
     near = {start: Box(start, reach, reach).crossed_by(segments) for start in starts}
     least, best = len(segments) + len(taken) + 1, None
     for gap in _GAPS:
         for start, direction in places:
-            label = Label(kind=kind, symbol=symbol, place=_shifted(symbol, start, direction, gap))
-            box = label.box.grown(_MARGIN)
-            met = len(box.crossed_by(near[start])) + sum(map(box.meets, taken))
+            box = Box(_shifted(half_width, start, direction, gap), half_width, _HALF_HEIGHT)
+            grown = box.grown(_MARGIN)
+            met = len(grown.crossed_by(near[start])) + sum(map(grown.meets, taken))
             if met == 0:
-                return label
+                return box
             if met < least:
-                least, best = met, label
+                least, best = met, box
     assert best is not None
     return best
 
 
-def _shifted(symbol: Formula, start: Point, direction: float, gap: float) -> Point:
+def _shifted(half_width: float, start: Point, direction: float, gap: float) -> Point:
     """The centre of a label whose box is `gap` away from a point, in a direction."""
     dx, dy = cos(direction), sin(direction)
-    half_width, half_height = _half_width(symbol), TYPE_SIZE * _HEIGHT / 2
     # the distance from the centre of the box to its edge in this direction
     edge = min(
         half_width / abs(dx) if abs(dx) > 1e-9 else float("inf"),
-        half_height / abs(dy) if abs(dy) > 1e-9 else float("inf"),
+        _HALF_HEIGHT / abs(dy) if abs(dy) > 1e-9 else float("inf"),
     )
-    distance = min(edge, hypot(half_width, half_height)) + gap
+    distance = min(edge, hypot(half_width, _HALF_HEIGHT)) + gap
     return (start[0] + distance * dx, start[1] + distance * dy)

@@ -8,7 +8,7 @@ sliders.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import combinations, pairwise
@@ -44,7 +44,7 @@ Kind = Literal["space", "body", "node", "vector", "turn", "guide"]
 MOST_TURNS = 5  # more would be a tangle
 _MANY, _MANY_NEARER = 3, 1.2  # turns; the scale of the figure of more than these
 BODY = tuple(Symbol(axis, prime="′") for axis in AXES)
-NODE = formula("N")
+NODE = Symbol("N")
 RADII = (0.6, 0.78, 0.46, 0.7, 0.38)  # of the arcs; those of consecutive turns differ
 
 _SPACE = tuple(map(Symbol, AXES))
@@ -220,10 +220,12 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
     None for any other model, for more than MOST_TURNS, and for axes that are not numbers.
     """
     turns = turns_of(model)
-    are_numbers = all(part.is_number for turn in turns for part in turn.direction)
+    directions = [turn.direction for turn in turns]
+    are_numbers = all(part.is_number for direction in directions for part in direction)
     if not (1 <= len(turns) <= MOST_TURNS and are_numbers):
         return None
-    axes = [_components(turn) for turn in turns]
+    axes = [_unit(direction) for direction in directions]
+    names = [formula_of(turn.angle, letters) for turn in turns]
     starts = [_start(axes, k) for k in range(len(axes))]
     return Scene(
         rays=tuple(_rays(axes, model, letters)),
@@ -232,10 +234,10 @@ def scene_of(model: RotationModel, letters: Letters) -> Scene | None:
                 axis=axis,
                 start=start,
                 radius=radius,
-                name=formula_of(turn.angle, letters),
+                name=name,
                 start_name=_name_of(start),
             )
-            for axis, start, radius, turn in zip(axes, starts, RADII, turns, strict=False)
+            for axis, start, radius, name in zip(axes, starts, RADII, names, strict=False)
         ),
         fixed=tuple(float(turn.angle) if turn.angle.is_number else None for turn in turns),
         z_down=model.z_down,
@@ -247,8 +249,8 @@ def turns_of(model: RotationModel) -> tuple[Turn, ...]:
     return model.turns or _about_the_vector(model)
 
 
-def _components(turn: Turn) -> Vector:
-    x, y, z = (float(part) for part in turn.direction)
+def _unit(direction: Iterable[sp.Expr]) -> Vector:
+    x, y, z = map(float, direction)
     return unit((x, y, z))
 
 
@@ -289,19 +291,20 @@ def _name_of(axis: Vector) -> Formula | str:
 
 def _rays(axes: Sequence[Vector], model: RotationModel, letters: Letters) -> Iterator[Ray]:
     """The axes of space, those of the body, and the axes of turns that are neither."""
-    named = letters.notation.applied
+    *of_body, vector = [letters.notation.applied(name) for name in (*BODY, VECTOR)]
     for name, direction in zip(_SPACE, STANDARD, strict=True):
         yield Ray(kind="space", name=name, frame=0, direction=direction)
-    for name, direction in zip(BODY, STANDARD, strict=True):
-        yield Ray(kind="body", name=named(name), frame=len(axes), direction=direction)
+    for primed, direction in zip(of_body, STANDARD, strict=True):
+        yield Ray(kind="body", name=primed, frame=len(axes), direction=direction)
     between = [k for k in range(len(axes)) if not _is_drawn(axes, k)]
     for number, k in enumerate(between, start=1):
         if not model.turns:
-            yield Ray(kind="vector", name=named(VECTOR), frame=k, direction=axes[k])
+            yield Ray(kind="vector", name=vector, frame=k, direction=axes[k])
         else:
             several = Symbol("N", index=Numeral(str(number)))
-            node = several if len(between) > 1 else NODE
-            yield Ray(kind="node", name=node, frame=k, direction=axes[k])
+            yield Ray(
+                kind="node", name=several if len(between) > 1 else NODE, frame=k, direction=axes[k]
+            )
 
 
 def _is_drawn(axes: Sequence[Vector], k: int) -> bool:

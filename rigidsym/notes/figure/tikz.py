@@ -24,10 +24,10 @@ _STYLES = (
 
 def tikz(drawing: Drawing) -> str:
     """The drawing in TikZ; it needs the library arrows.meta."""
-    symbols = [label.symbol.latex for label in drawing.labels]
     lines = (*drawing.strokes, *drawing.behind)
-    texts = {stroke.name: stroke.name.text for stroke in lines if stroke.name is not None}
-    ends = {name: _end(text) for name, text in texts.items()}
+    names = {stroke.name for stroke in lines if stroke.name is not None}
+    written = {x: (x.latex, x.text) for x in (*names, *(label.symbol for label in drawing.labels))}
+    ends = {name: _end(written[name][1]) for name in names}
     options = f"scale={_UNIT:.3f}, >={{Latex[length=2mm]}}, line join=round, line cap=round"
     return "\n".join(
         [
@@ -38,8 +38,9 @@ def tikz(drawing: Drawing) -> str:
             *_sectors(drawing.sectors),
             *_strokes(drawing.strokes, ends),
             *(
-                rf"\node[{label.kind}, inner sep=0pt] at {_point(label.place)} {{${latex}$}};"
-                for label, latex in zip(drawing.labels, symbols, strict=True)
+                rf"\node[{x.kind}, inner sep=0pt] at {_point(x.place)} "
+                rf"{{${written[x.symbol][0]}$}};"
+                for x in drawing.labels
             ),
             r"\end{tikzpicture}",
         ]

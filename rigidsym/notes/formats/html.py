@@ -49,23 +49,12 @@ def render(document: Document) -> str:
 def rendered(template: str, printer: HtmlPrinter, **more: object) -> str:
     """A template with the note in it; `more` is what else the template places."""
     document = printer.document
-    return (
-        resources.environment()
-        .get_template(template)
-        .render(
-            language=document.language.code,
-            sections=[
-                {
-                    "title": escape(section.title),
-                    "key": f"section-{place}",
-                    "body": printer.body(section),
-                }
-                for place, section in enumerate(document.sections, start=1)
-            ],
-            **printer.placed(),
-            **more,
-        )
-    )
+    sections = [
+        {"title": escape(section.title), "key": f"section-{place}", "body": printer.body(section)}
+        for place, section in enumerate(document.sections, start=1)
+    ]
+    parts = {"language": document.language.code, "sections": sections, **printer.placed(), **more}
+    return resources.environment().get_template(template).render(parts)
 
 
 def escape(words: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import chain
 
 from rigidsym.formula.display import PAGE, Rows, pack
 from rigidsym.formula.latex_pen import LatexPen
@@ -63,18 +64,15 @@ def rendered(template: str, document: Document) -> str:
         }
         for section in document.sections
     ]
-    text = (
-        resources.environment(**_DELIMITERS)
-        .get_template(template)
-        .render(
-            babel=document.language.babel,
-            sections=sections,
-            last=(),  # own templates may still list sections after the sources
-            metadata=metadata(document),
-            source_lines=_lines_of_sources(document),
-            **printer.placed(),
-        )
-    )
+    parts = {
+        "babel": document.language.babel,
+        "sections": sections,
+        "last": (),  # own templates may still list sections after the sources
+        "metadata": metadata(document),
+        "source_lines": _lines_of_sources(document),
+        **printer.placed(),
+    }
+    text = resources.environment(**_DELIMITERS).get_template(template).render(parts)
     first = str(sections[0]["body"]) if sections else ""
     return text.replace(first, "".join((*_lacked(text), first)), 1)
 
@@ -123,6 +121,12 @@ class _LatexPrinter(NotePrinter):
 
     def __init__(self, document: Document) -> None:
         super().__init__(document, LatexPen(document.letters.notation))
+        blocks = chain.from_iterable(section.blocks for section in document.sections)
+        self.rows = {
+            block: pack(block.equations, document.letters, _LINE, self.pen)
+            for block in blocks
+            if isinstance(block, EquationRow)
+        }
 
     def body(self, section: Section) -> str:
         self.heading = section.title
@@ -133,7 +137,7 @@ class _LatexPrinter(NotePrinter):
         return "\n" + self.text(block.text)
 
     def equationrow(self, block: EquationRow) -> str:
-        return f"\\[\n{pack(block.equations, self.document.letters, _LINE, self.pen)}\n\\]"
+        return f"\\[\n{self.rows[block]}\n\\]"
 
     def codeblock(self, block: CodeBlock) -> str:
         return f"{{\\keep\n\\begin{{verbatim}}\n{block.code}\n\\end{{verbatim}}\n}}"

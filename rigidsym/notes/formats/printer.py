@@ -46,14 +46,14 @@ class NotePrinter:
         self.document = document
         self.language = document.language
         self.pen = pen
-        self._inlines = pen.inline(document.formulas)
-        beside = self.beside_number or self.width
+        formulas, beside = document.formulas, self.beside_number or self.width
         self.shown = {
             equation: display(
                 equation, document.letters, beside if equation.number else self.width, pen
             )
             for equation in document.displays
         }
+        self._inlines = pen.inline(formulas)
 
     def placed(self) -> dict[str, Any]:
         """What every template places beside the sections."""

@@ -44,6 +44,8 @@ def record(
     `conversions` stand in it where they were asked for.
     """
     names = _plain_names(derivation.arguments)
+    cited = [derivation.model.source, *[step.quantity.source for step in derivation.steps]]
+    source, *sources = [place and str(place) for place in cited]
     found = {
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,
@@ -53,13 +55,13 @@ def record(
         "title": derivation.title,
         "presentation": "passive" if derivation.model.passive else "active",
         "convention": derivation.model.convention,
-        "source": str(derivation.model.source),
+        "source": source,
         "rotation": _rotation(derivation.model, names),
         "is_proved": derivation.is_proved and (not conversions or conversions.is_proved),
         "request": request,
         **({"theory": _theory(derivation)} if derivation.theory else {}),
-        "arguments": list(map(_argument, derivation.arguments)),
-        "quantities": list(map(_step, derivation.steps)),
+        "arguments": _arguments(derivation.arguments),
+        "quantities": list(map(_step, derivation.steps, sources)),
         "first_integrals": [
             {
                 "name": integral.name,
@@ -85,17 +87,18 @@ def _rotation(model: RotationModel, names: Names) -> dict[str, Any]:
     if model.pullback:
         products = matrix * matrix.T - sp.eye(3)
         conditions = [products[i, j] for i in range(3) for j in range(i + 1)] + [matrix.det() - 1]
-    texts = [text for turn in model.turns for text in _turn(turn, names)]
+    axes = [turn.direction for turn in model.turns]
+    texts = [text for pair in zip(model.turns, axes, strict=True) for text in _turn(*pair, names)]
     found = texts or ([model.definition] if model.definition else [])
     return {**({"turns": found} if found else {"matrix": matrix}), "conditions": conditions}
 
 
-def _turn(turn: Turn, names: Names) -> Iterator[str]:
+def _turn(turn: Turn, direction: Sequence[sp.Expr], names: Names) -> Iterator[str]:
     """One turn, or two about the same axis where a number is part of the angle."""
     constant, moving = sp.expand(turn.angle).as_coeff_add()
     constant += sum(term for term in moving if term.is_number)
     angle = (turn.angle - constant).xreplace(names)
-    axis = ", ".join([str(part.xreplace(names)) for part in turn.direction])
+    axis = ", ".join([str(part.xreplace(names)) for part in direction])
     if turn.angle != constant:
         yield f"axis_angle({axis}, {angle})" if turn.components else f"{turn.axis}({angle})"
     if constant:
@@ -144,8 +147,9 @@ def _motion(derivation: Derivation) -> dict[str, Any]:
 def _conversions(found: Conversions) -> dict[str, Any]:
     """How the coordinates go over into the unit quaternion, and come back from it and from R."""
     back, forward = found.inverse, found.quaternion
+    source = forward.quantity.source if forward else None
     return {
-        "quaternion": _step(forward) if forward else None,
+        "quaternion": _step(forward, source and str(source)) if forward else None,
         "quaternion_from_matrix": _proof(found.from_matrix),
         "coordinates": {
             "because": text_of(back.because),
@@ -184,18 +188,22 @@ def _plain_names(arguments: tuple[Argument, ...]) -> Names:
     }
 
 
-def _argument(argument: Argument) -> dict[str, Any]:
-    components = zip(argument.names, argument.units, argument.notation, strict=True)
-    return {
-        "name": argument.name,
-        "about": argument.about,
-        "components": [
-            {"name": name, "unit": unit, **letters.markup} for name, unit, letters in components
-        ],
-    }
+def _arguments(arguments: Sequence[Argument]) -> list[dict[str, Any]]:
+    letters = plain_data([argument.notation for argument in arguments], {})
+    return [
+        {
+            "name": argument.name,
+            "about": argument.about,
+            "components": [
+                {"name": name, "unit": unit, **letter}
+                for name, unit, letter in zip(argument.names, argument.units, own, strict=True)
+            ],
+        }
+        for argument, own in zip(arguments, letters, strict=True)
+    ]
 
 
-def _step(step: Step) -> dict[str, Any]:
+def _step(step: Step, source: str | None) -> dict[str, Any]:
     quantity, entries = step.quantity, [*step.expression]
     values = {
         "scalar": ((), *entries[:1]),
@@ -214,7 +222,7 @@ def _step(step: Step) -> dict[str, Any]:
         "expression": expression,
         "vector_form": _vector_form(step.vector_form),
         "because": step.because,
-        "source": str(quantity.source) if quantity.source else None,
+        "source": source,
         "proofs": list(map(_proof, step.proofs)),
     }
 

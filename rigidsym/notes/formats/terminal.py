@@ -6,8 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import sympy as sp
-
 from rigidsym.formula.console import INDENT, Block, Headline, Line, Style, lines_of, unstyled
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
@@ -20,19 +18,24 @@ from rigidsym.notes.formula.derivation_letters import RESIDUAL, letters_of
 from rigidsym.notes.prose.prose import turn
 from rigidsym.notes.prose.singular_words import (
     failures,
-    geometry,
     meaning,
     measured,
     singular_title,
 )
 from rigidsym.notes.prose.vector_words import sum_of_vectors
-from rigidsym.notes.prose.words import convention, is_body_alone, unit_in_words, with_symbols
+from rigidsym.notes.prose.words import (
+    convention,
+    is_body_alone,
+    symbols_of,
+    unit_in_words,
+    with_symbols,
+)
 from rigidsym.notes.sections.compose import equation_of
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions
 
-_OMEGA = {frame.omega.text: frame.omega for frame in (SPACE, BODY)}
+_OMEGA = {"Ω": SPACE.omega, "Ω′": BODY.omega}
 
 
 def show(
@@ -131,7 +134,8 @@ class _Screen:
             yield ""
 
     def _convention(self) -> Iterator[Block]:
-        yield from convention(self.derivation, self.letters.notation)
+        symbols = symbols_of(self.derivation)
+        yield from convention(self.derivation, symbols, self.letters.notation)
         turns = self.derivation.model.turns
         if turns:
             factors = [turn(t, self.letters) for t in turns]
@@ -161,10 +165,8 @@ class _Screen:
         if found.measure == "minors":
             yield meaning(found)  # else Σ₁ would have no meaning
         if found.determinant is not None:
-            name, value = equal(*measured(found)), sp.ImmutableMatrix([found.determinant])
-            yield Equation(sides=(), matrix=value, entries=(name,))
-        zeros, *points = failures(self.derivation, found)
-        yield from (zeros, *geometry(self.derivation), *points)
+            yield Equation(sides=measured(found), scalar=found.determinant)
+        yield from failures(self.derivation, found)
 
     def _conversions(self) -> Iterator[Block]:
         """To the unit quaternion and back, or why there is no way back."""

@@ -19,7 +19,7 @@ from rigidsym.notes.document.document import Equation, Paragraph, Text, listed, 
 from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.problems.exercise import Asked, Exercise, numeral
 from rigidsym.notes.prose.prose import turn
-from rigidsym.notes.prose.singular_words import failures, geometry, measured
+from rigidsym.notes.prose.singular_words import failures, measured
 from rigidsym.notes.sections.compose import equation_of
 
 SEQUENCES = ("ZXZ", "XYX", "YZY", "ZYZ", "XZX", "YXY", "ZYX", "XYZ", "YZX", "ZXY", "XZY", "YXZ")
@@ -109,7 +109,6 @@ def gimbal_lock(rng: Random) -> Exercise:
     theta = near if sequence[0] == sequence[2] else 90 - near
     matrix = sp.ImmutableMatrix([determinant])
     (value,) = _in_numbers(matrix, found, [0, theta, 0], [0, 0, 0])
-    zeros, *points = failures(found, found.singularities)
     letters = letters_of(found.arguments)
     return Exercise(
         title="Gimbal lock",
@@ -124,7 +123,7 @@ def gimbal_lock(rng: Random) -> Exercise:
         solution=(
             said("Both rate matrices have the determinant"),
             Equation(sides=(*measured(found.singularities), formula_of(determinant, letters))),
-            *map(Paragraph, (zeros, *geometry(found), *points)),
+            *map(Paragraph, failures(found, found.singularities)),
             said("Solving for the rates divides by this determinant."),
         ),
         answers=(

@@ -7,7 +7,7 @@ from itertools import chain
 
 from rigidsym.formula.letters import Letters
 from rigidsym.models.rotation import RotationModel, Turn
-from rigidsym.notes.document.document import Figure, Text, listed, words
+from rigidsym.notes.document.document import Figure, Text, listed
 from rigidsym.notes.figure.camera import Vector
 from rigidsym.notes.figure.drawing import drawn
 from rigidsym.notes.figure.scene import Arc, Kind, Posed, scene_of
@@ -66,8 +66,8 @@ def _in_words(scene: Posed) -> Iterator[Text]:
         about = scene.named(arc.axis)
         axis = about.name if about else "its axis"
         start, end = (_called(scene, arc, v) for v in (arc.before, arc.after))
-        head = words("The turn by {} about {} takes ", arc.turn.name, axis)
-        yield (*head, *start, " to ", *end, ".")
+        turn = ("The turn by ", arc.turn.name, " about ", axis)
+        yield (*turn, " takes ", *start, " to ", *end, ".")
 
 
 def _called(scene: Posed, arc: Arc, direction: Vector) -> Text:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import sympy as sp
 
 from rigidsym.formula.display import Done
 from rigidsym.formula.letters import Letters
+from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Rate, Symbol, equal, joined, row
+from rigidsym.formula.tree import COMMA, Apply, Bracket, Formula, Symbol, equal, joined
 from rigidsym.mechanics.quantities.kinematics import PRESENTED
 from rigidsym.models.rotation import SOURCES, Turn
 from rigidsym.models.so3 import hat
@@ -18,8 +17,8 @@ from rigidsym.notes.document.document import (
     Equation,
     EquationRow,
     NoteBlock,
+    Paragraph,
     Text,
-    said,
     words,
 )
 from rigidsym.notes.prose.words import (
@@ -32,11 +31,64 @@ from rigidsym.notes.prose.words import (
     POSITION_RATE,
 )
 
+_OPERATOR = Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
 _TURNING = Cited(SOURCES["Landau 31"])
+_R, _A = PRESENTED[False], PRESENTED[True]
+_IS_SKEW = (
+    r"The matrix of $\mathbf{u}\times$ is skew for any $\mathbf{u}$, and so is {}, by "
+    "differentiation of {}:"
+)
 _SHORTHAND = words(
     r"With the abbreviations $s_\alpha$ for $\sin\alpha$ and $c_\alpha$ for $\cos\alpha$,"
 )
 
+
+# why the derivative times the transpose is the operator of the angular velocity
+ACTIVE_MOTION: tuple[NoteBlock, ...] = (
+    Paragraph(("A point at rest in the body, ", ACTIVE, ", has the velocity")),
+    Equation(
+        sides=(
+            POSITION_RATE,
+            formula(r"\frac{d#1}{dt}#2", _R.matrix, BODY_POSITION),
+            formula("#1#2", _R.spin, POSITION),
+        )
+    ),
+    Paragraph(
+        words(
+            "This velocity is also $\\boldsymbol{\\Omega}\\times\\mathbf{x}$\u00a0{}, so that {} "
+            "is the matrix of the operator $\\boldsymbol{\\Omega}\\times$.",
+            *(_TURNING, _R.spin),
+        )
+    ),
+    Paragraph(words(_IS_SKEW, _R.spin, _R.orthogonal)),
+    EquationRow((_OPERATOR, Equation(sides=(_R.skew,)))),
+)
+PASSIVE_MOTION: tuple[NoteBlock, ...] = (
+    Paragraph(
+        (
+            "A point at rest in space has the body components ",
+            PASSIVE,
+            ", which change at the rate",
+        )
+    ),
+    Equation(
+        sides=(
+            BODY_POSITION_RATE,
+            formula(r"\frac{d#1}{dt}#2", _A.matrix, POSITION),
+            formula("#1#2", _A.spin, BODY_POSITION),
+        )
+    ),
+    Paragraph(
+        words(
+            "As seen from the body, the point moves with the velocity "
+            "$-\\boldsymbol{\\Omega}'\\times\\mathbf{x}'$\u00a0{}, so that {} is the matrix of "
+            "the operator $-\\boldsymbol{\\Omega}'\\times$.",
+            *(_TURNING, _A.spin),
+        )
+    ),
+    Paragraph(words(_IS_SKEW, _A.spin, _A.orthogonal)),
+    EquationRow((_OPERATOR, Equation(sides=(_A.skew,)))),
+)
 
 HOW_VERIFIED = "Each identity was verified exactly, using relations such as sin² + cos² = 1."
 EXACT_MEANS = " “Exact” means that the two sides were shown to be identical."
@@ -56,40 +108,6 @@ def axis_of(turn: Turn, letters: Letters) -> Formula:
     if not turn.components:
         return Symbol(turn.axis)
     return Bracket(joined([formula_of(c, letters) for c in turn.components], COMMA), "[]")
-
-
-def motion(*, passive: bool) -> Iterator[NoteBlock]:
-    """Why the derivative times the transpose is the operator of the angular velocity."""
-    shown = PRESENTED[passive]
-    place, velocity = (BODY_POSITION, BODY_POSITION_RATE) if passive else (POSITION, POSITION_RATE)
-    other = POSITION if passive else BODY_POSITION
-    if passive:
-        yield said(
-            "A point at rest in space has the body components {}, which change at the rate", PASSIVE
-        )
-    else:
-        yield said("A point at rest in the body, {}, has the velocity", ACTIVE)
-    yield Equation(sides=(velocity, row(Rate(shown.matrix), other), row(shown.spin, place)))
-    if passive:
-        yield said(
-            "As seen from the body, the point moves with the velocity "
-            "$-\\boldsymbol{\\Omega}'\\times\\mathbf{x}'$\u00a0{}, so that {} is the matrix of "
-            "the operator $-\\boldsymbol{\\Omega}'\\times$.",
-            *(_TURNING, shown.spin),
-        )
-    else:
-        yield said(
-            "This velocity is also $\\boldsymbol{\\Omega}\\times\\mathbf{x}$\u00a0{}, so that {} "
-            "is the matrix of the operator $\\boldsymbol{\\Omega}\\times$.",
-            *(_TURNING, shown.spin),
-        )
-    yield said(
-        r"The matrix of $\mathbf{u}\times$ is skew for any $\mathbf{u}$, and so is {}, by "
-        "differentiation of {}:",
-        *(shown.spin, shown.orthogonal),
-    )
-    operator = Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
-    yield EquationRow((operator, Equation(sides=(shown.skew,))))
 
 
 def announcement(equation: Equation, done: Done) -> Text:

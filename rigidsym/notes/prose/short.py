@@ -10,6 +10,7 @@ from rigidsym.formula.tree import (
     Formula,
     Fraction,
     Rate,
+    Row,
     joined,
     row,
     transpose_of,
@@ -33,7 +34,7 @@ _DEFINED = frozenset(  # by other quantities, and so are rates from an angular v
     }
 )
 _ACCELERATIONS = formula(r"\ddot{\mathbf{q}}")
-_FRAMES = {frame.name: frame for frame in (SPACE, BODY)}
+_FRAMES = {"space": SPACE, "body": BODY}
 
 
 def in_short(step: Step, derivation: Derivation, letters: Letters) -> tuple[Formula, ...] | None:
@@ -65,7 +66,7 @@ def _turns(model: RotationModel, letters: Letters) -> Formula:
 def by_the_chain_rule(rate: Formula, letters: Letters) -> Formula:
     """dR/dt = φ̇ ∂R/∂φ + ..., which is what its entries come from."""
     coordinates = [q for q, (order, k) in letters.places.items() if order == 0 and k >= 0]
-    above = row(Differential("∂"), rate.of if isinstance(rate, Rate) else rate)
+    above = Row((Differential("∂"), rate.of if isinstance(rate, Rate) else rate))
     terms = [
         row(letters.name(q.diff(TIME)), Fraction(above, row(Differential("∂"), letters.name(q))))
         for q in coordinates

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-
-import sympy as sp
+from collections.abc import Iterator
 
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
@@ -20,7 +18,7 @@ from rigidsym.formula.tree import (
     row,
 )
 from rigidsym.mechanics.quantities.kinematics import SPACE
-from rigidsym.models.rotation import SOURCES, RotationModel
+from rigidsym.models.rotation import SOURCES, RotationModel, carried_axes
 from rigidsym.notes.document.document import (
     Cited,
     Equation,
@@ -29,7 +27,6 @@ from rigidsym.notes.document.document import (
     NoteBlock,
     Paragraph,
     Text,
-    said,
     words,
 )
 from rigidsym.notes.figure.scene import scene_of
@@ -37,6 +34,9 @@ from rigidsym.notes.figure.scene import scene_of
 PROPER = ("precession", "nutation", "spin")
 TAIT_BRYAN = ("yaw", "pitch", "roll")
 GOLDSTEIN = SOURCES["Goldstein 4.9"]
+_OUTER_RANGE = r"-\pi < #1, #2 \le \pi"
+_PROPER_RANGE = r"0 \le #1 \le \pi"
+_TAIT_BRYAN_RANGE = r"-\frac{\pi}{2} \le #1 \le \frac{\pi}{2}"
 _MOST_WRITTEN = 3  # axes that are written out
 
 
@@ -63,8 +63,11 @@ def angles_in_words(model: RotationModel, letters: Letters) -> Iterator[Text]:
     """What the angles are called, and the ranges in which they are unique."""
     if not are_euler_angles(model):
         return
-    first, middle, last = (formula_of(turn.angle, letters) for turn in model.turns)
     found = names_of_angles(model)
+    axes = [turn.axis for turn in model.turns]
+    of_middle = _PROPER_RANGE if axes[0] == axes[2] else _TAIT_BRYAN_RANGE
+    first, middle, last = [formula_of(turn.angle, letters) for turn in model.turns]
+    ranges = formula(_OUTER_RANGE, first, last), formula(of_middle, middle)
     called = [f"the {name} angle {{}}" if found is PROPER else f"the {name} {{}}" for name in found]
     if found and found == tuple(turn.angle.func.__name__ for turn in model.turns):
         called = ["{}"] * 3
@@ -76,24 +79,14 @@ def angles_in_words(model: RotationModel, letters: Letters) -> Iterator[Text]:
             first,
             middle,
             last,
-            *_ranges(model, first, middle, last),
+            *ranges,
         )
     else:
         yield words(
             "Each orientation has exactly one set of angles with {} and {}, except for the "
             "singular ones.",
-            *_ranges(model, first, middle, last),
+            *ranges,
         )
-
-
-def _ranges(
-    model: RotationModel, first: Formula, middle: Formula, last: Formula
-) -> tuple[Formula, Formula]:
-    axes = [turn.axis for turn in model.turns]
-    outer = formula(r"-\pi < #1, #2 \le \pi", first, last)
-    if axes[0] == axes[2]:
-        return outer, formula(r"0 \le #1 \le \pi", middle)
-    return outer, formula(r"-\frac{\pi}{2} \le #1 \le \frac{\pi}{2}", middle)
 
 
 def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:
@@ -108,12 +101,11 @@ def axes_of_turns(model: RotationModel, letters: Letters) -> list[Formula]:
 
 def sum_of_turns(model: RotationModel, letters: Letters) -> Formula:
     """Ω = φ̇ e_z + θ̇ e_N + ψ̇ e_z′; turns by constant angles add nothing."""
-    rates = [turn.rate for turn in model.turns]
     axes = axes_of_turns(model, letters)
     terms = [
-        row(bracketed(formula_of(rate, letters)), axis)
-        for rate, axis in zip(rates, axes, strict=True)
-        if rate != 0
+        row(bracketed(formula_of(turn.rate, letters)), axis)
+        for turn, axis in zip(model.turns, axes, strict=True)
+        if turn.rate != 0
     ]
     return equal(SPACE.omega, joined(terms, PLUS))
 
@@ -122,34 +114,15 @@ def sum_in_words(model: RotationModel, letters: Letters) -> Iterator[NoteBlock]:
     """Ω read off the figure, with the axes in space components."""
     if len(model.turns) < 2 or not all(turn.rate for turn in model.turns):
         return
-    figure = [FigureReference(1)] if scene_of(model, letters) else []
-    see = "; see Figure\u00a0{}" if figure else ""
-    yield said(
-        "Angular velocities about different axes add\u00a0{}. Each turn contributes its rate about "
-        f"its own axis{see}:",
-        Cited(GOLDSTEIN),
-        *figure,
-    )
+    see = ("; see Figure\u00a0", FigureReference(1)) if scene_of(model, letters) else ()
+    add = ("Angular velocities about different axes add\u00a0", Cited(GOLDSTEIN))
+    yield Paragraph((*add, ". Each turn contributes its rate about its own axis", *see, ":"))
     yield Equation(sides=(sum_of_turns(model, letters),))
     if len(model.turns) > _MOST_WRITTEN or any(turn.components for turn in model.turns):
         return
     yield Paragraph(
         ("Each axis is carried along by the turns before it. In space components the axes are",)
     )
-    yield EquationRow(tuple(_written(axes_of_turns(model, letters), _directions(model))))
-    yield said("The derivative of the rotation matrix leads to the same result.")
-
-
-def _directions(model: RotationModel) -> Iterator[sp.ImmutableMatrix]:
-    """The axis of each turn in space components, as the turns before it have moved it."""
-    before = sp.eye(3)
-    for turn in model.turns:
-        yield sp.ImmutableMatrix(before * sp.Matrix(turn.direction))
-        before = before * turn.matrix
-
-
-def _written(
-    axes: Sequence[Formula], directions: Iterator[sp.ImmutableMatrix]
-) -> Iterator[Equation]:
-    for axis, direction in zip(axes, directions, strict=True):
-        yield Equation(sides=(axis,), matrix=direction)
+    named = zip(axes_of_turns(model, letters), carried_axes(model.turns), strict=True)
+    yield EquationRow(tuple(Equation(sides=(name,), matrix=axis) for name, axis in named))
+    yield Paragraph(("The derivative of the rotation matrix leads to the same result.",))

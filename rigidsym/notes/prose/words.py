@@ -9,10 +9,9 @@ from itertools import chain
 import sympy as sp
 
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.notation import Notation
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.sentence import by_text
 from rigidsym.formula.tree import Formula, Symbol, equal, transpose_of
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.mechanics.quantities.arguments import is_quaternion
@@ -34,6 +33,8 @@ ACTIVE = formula(r"#1 = #2\,#3", POSITION, ROTATION, BODY_POSITION)
 PASSIVE = formula(r"#1 = #2\,#3", BODY_POSITION, COSINES, POSITION)
 TRANSPOSED = formula(r"#1 = #2^{\mathsf T}", COSINES, ROTATION)
 
+_OF_ROTATIONS = (ROTATION, transpose_of(ROTATION), transpose_of(COSINES), *map(Symbol, AXES))
+_OF_RATES = (SPACE.omega, BODY.omega, SPACE.matrix, BODY.matrix, RATES, VECTOR_OF)
 _OF_BODIES = (
     BODY_POSITION,
     formula(r"|#1\times(#2-#3)|", DIRECTION, BODY_POSITION, POINT),
@@ -49,21 +50,44 @@ _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _ALSO_WORDS = ("a", "A", "I")  # in a sentence these are words, whatever an angle is called
 
 
+_ON_OMEGA = words(
+    "The angular velocity has the components {} along the axes of space and {} along the axes of "
+    "the body.",
+    SPACE.omega,
+    BODY.omega,
+)
+_DIRECTION = {  # whether the passive form is shown
+    True: words(
+        "The matrix shown is the direction cosine matrix {}, the passive form: {} takes "
+        "components along the axes of space to components along the axes of the body.",
+        TRANSPOSED,
+        PASSIVE,
+    ),
+    False: words(
+        "The rotation is active: {} takes components along the axes of the body to components "
+        "along the axes of space.",
+        ACTIVE,
+    ),
+}
+
+
 def symbols_of(derivation: Derivation) -> dict[str, Formula]:
     """The symbols that may occur in a sentence about a derivation, by their plain text."""
-    named = chain(
-        (ROTATION, transpose_of(ROTATION), transpose_of(COSINES), *map(Symbol, AXES)),
-        chain.from_iterable(argument.notation for argument in derivation.arguments),
-        (step.quantity.symbol for step in derivation.steps),
-        (SPACE.omega, BODY.omega, SPACE.matrix, BODY.matrix, RATES, VECTOR_OF),
-    )
-    if derivation.body is not None:
-        named = chain(named, _OF_BODIES)
+    named = [
+        *_OF_ROTATIONS,
+        *chain.from_iterable(argument.notation for argument in derivation.arguments),
+        *(step.quantity.symbol for step in derivation.steps),
+        *_OF_RATES,
+        *(_OF_BODIES if derivation.body is not None else ()),
+        *_OF_TURNS,
+    ]
     if derivation.model.vector:
         length = length_of(derivation.model)
-        named = chain(named, (VECTOR,), (length.names[length.symbol],) if length else ())
-    q = derivation.argument("q")
-    found = by_text((*named, *_OF_TURNS)) | dict(zip(q.names, q.notation, strict=True))
+        named += (VECTOR, *([length.names[length.symbol]] if length else ()))
+    found = {symbol.text: symbol for symbol in named}
+    for argument in derivation.arguments:
+        if argument.name == "q":
+            found |= zip(argument.names, argument.notation, strict=True)
     return {text: symbol for text, symbol in found.items() if text not in _ALSO_WORDS}
 
 
@@ -81,22 +105,22 @@ def with_source(text: Text, source: Citation | None) -> Text:
     if source is None or not isinstance(last, str):
         return text
     body = last.rstrip(".,:;")
-    return tuple(span for span in (*head, body, "\u00a0", Cited(source), last[len(body) :]) if span)
+    return tuple(
+        span for span in (*head, body, "\u00a0", Cited(source), last[len(body) :]) if span != ""
+    )
 
 
-def convention(derivation: Derivation, notation: Notation = DEFAULT) -> tuple[Text, ...]:
+def convention(
+    derivation: Derivation, symbols: Mapping[str, Formula], notation: Notation
+) -> tuple[Text, ...]:
     """The convention, a sentence or two an entry: turns, direction of the rotation, frames."""
-    symbols = symbols_of(derivation)
+    q = derivation.argument("q")
+    named = q.names if is_quaternion(q.names, q.units) else ()  # printed in other letters
     return (
         *(with_symbols(sentence, symbols) for sentence in derivation.model.convention),
-        _direction(passive=derivation.model.passive),
-        words(
-            "The angular velocity has the components {} along the axes of space and {} along the "
-            "axes of the body.",
-            SPACE.omega,
-            BODY.omega,
-        ),
-        _coordinates(derivation.argument("q"), has_dots=notation.rates == "dot"),
+        _DIRECTION[derivation.model.passive],
+        _ON_OMEGA,
+        _coordinates(q, named, has_dots=notation.rates == "dot"),
         *vector_in_words(derivation, notation),
         *_body(derivation, notation),
         *_conditions(derivation, notation),
@@ -169,31 +193,15 @@ def _conditions(derivation: Derivation, notation: Notation) -> Iterator[Text]:
         yield words("All identities hold under the condition {}.", equal(*sides))
 
 
-def _direction(*, passive: bool) -> Text:
-    if passive:
-        return words(
-            "The matrix shown is the direction cosine matrix {}, the passive form: {} takes "
-            "components along the axes of space to components along the axes of the body.",
-            TRANSPOSED,
-            PASSIVE,
-        )
-    return words(
-        "The rotation is active: {} takes components along the axes of the body to components "
-        "along the axes of space.",
-        ACTIVE,
-    )
-
-
-def _coordinates(argument: Argument, *, has_dots: bool) -> Text:
+def _coordinates(argument: Argument, in_programs: Iterable[str], *, has_dots: bool) -> Text:
     names = listed([(name,) for name in argument.notation], ", ")
     units = sorted(set(argument.units))
     measured = f", in {unit_in_words(units[0])}" if len(units) == 1 and units[0] else ""
     several = len(argument.notation) > 1
-    head = words(f"The coordinate{'s are' if several else ' is'} {{}} = (", COORDINATES)
+    head = (f"The coordinate{'s are' if several else ' is'} ", COORDINATES, " = (")
     dots = "; a dot denotes the derivative with respect to time" if has_dots else ""
-    programs: Text = ()
-    if is_quaternion(argument.names, argument.units):  # printed in other letters
-        programs = (", in programs ", *listed([(Code(n),) for n in argument.names], ", "))
+    codes = listed([(Code(name),) for name in in_programs], ", ")
+    programs: Text = (", in programs ", *codes) if codes else ()
     return (*head, *names, f"){measured}", *programs, f"{dots}.")
 
 

@@ -15,14 +15,15 @@ import sympy as sp
 
 from rigidsym.formula.display import PAGE, Display, display
 from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import NOTHING, Formula, equal, row
+from rigidsym.formula.tree import NOTHING, Formula, row
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.dynamics import DYNAMICS_QUANTITIES, EULER_QUANTITIES
 from rigidsym.mechanics.quantities.energy import ENERGIES, MOMENTA
 from rigidsym.mechanics.quantities.kinematics import BODY, RATES, ROTATION, SPACE
 from rigidsym.models.matrices import GIVEN
-from rigidsym.models.rotation import Citation, Turn
+from rigidsym.models.rotation import Citation, by_axis
 from rigidsym.notes.document.document import (
     Cited,
     Document,
@@ -35,15 +36,14 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Section,
     Text,
-    said,
+    words,
 )
 from rigidsym.notes.formula.derivation_letters import entries_of, letters_of
 from rigidsym.notes.prose.algebra_words import is_told, rates_in_words, rotation_in_words
 from rigidsym.notes.prose.figure_words import figure_of
-from rigidsym.notes.prose.prose import motion, turn
+from rigidsym.notes.prose.prose import ACTIVE_MOTION, PASSIVE_MOTION, turn
 from rigidsym.notes.prose.singular_words import (
     failures,
-    geometry,
     meaning,
     measured,
     singular_title,
@@ -63,6 +63,14 @@ if TYPE_CHECKING:
 IDENTITIES, SYMBOLS, FUNCTIONS = "Identities verified", "Symbols", "Functions"
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
 
+_RATE_MATRICES = Paragraph(
+    words(
+        "The rate matrices are defined by {} and {}, so that {}.",
+        formula("#1 = #2#3", SPACE.omega, SPACE.matrix, RATES),
+        formula("#1 = #2#3", BODY.omega, BODY.matrix, RATES),
+        formula("#1 = #2#3", SPACE.matrix, ROTATION, BODY.matrix),
+    )
+)
 _ANGULAR_VELOCITY = (
     "rotation_rate",
     "spin_matrix",
@@ -187,7 +195,7 @@ class Composer:
             yield from what_follows(self.derivation, self.letters)
 
     def _convention(self) -> Iterator[NoteBlock]:
-        first, *others = convention(self.derivation, self.letters.notation)
+        first, *others = convention(self.derivation, self.symbols, self.letters.notation)
         texts = (first, *angles_in_words(self.model, self.letters), *others)
         return map(Paragraph, texts)
 
@@ -200,53 +208,45 @@ class Composer:
         yield from self._steps(("rotation_matrix",))
 
     def _product_of_turns(self) -> Iterator[NoteBlock]:
-        turns = [turn(t, self.letters) for t in self.model.turns]
+        turns, angle = [turn(t, self.letters) for t in self.model.turns], self._turn_angle()
+        product, any_angle = row(*turns), formula_of(angle, self.letters)
         kind = "a product of turns" if len(turns) > 1 else "a single turn"
         figure = list(self._figure())
-        see = ", shown in Figure\u00a0{}" if figure else ""
-        see_it = [FigureReference(1)] if figure else []
-        yield said(f"The rotation is {kind}\u00a0{{}}{see}:", Cited(self.model.source), *see_it)
-        yield Equation(sides=(ROTATION, row(*turns)))
+        see = (", shown in Figure\u00a0", FigureReference(1)) if figure else ()
+        yield Paragraph((f"The rotation is {kind}\u00a0", Cited(self.model.source), *see, ":"))
+        yield Equation(sides=(ROTATION, product))
         yield from figure
-        by_axis = list(self._turns_by_axis())
-        angle = formula_of(self._turn_angle(), self.letters)
-        if len(turns) == 1:
-            yield said("The right-handed turn by an angle {} is", angle)
-        else:
+        if len(turns) > 1:
             read = (
                 "Read from left to right, the factors are rotations about the current axes of the "
                 "body; read from right to left, about the axes fixed in space. Right-handed turns "
-                "by an angle {} are"
+                "by an angle "
             )
-            yield said(read, angle)
-        short = tuple(self._elementary(t) for t in by_axis if not t.components)
+            yield Paragraph((read, any_angle, " are"))
+        else:
+            yield Paragraph(("The right-handed turn by an angle ", any_angle, " is"))
+        shown = [
+            (t, Equation(sides=(turn(t, self.letters),), matrix=matrix))
+            for t, matrix in by_axis(self.model.turns, angle)
+        ]
+        short = tuple(equation for t, equation in shown if not t.components)
         if short:
             yield EquationRow(short)
-        yield from (self._elementary(t) for t in by_axis if t.components)
+        yield from (equation for t, equation in shown if t.components)
 
     def _figure(self) -> Iterator[Figure]:
         figure = figure_of(self.model, self.letters)
         if figure is not None:
             yield figure
 
-    def _turns_by_axis(self) -> Iterator[Turn]:
-        """One turn about each axis, by the angle that stands for any."""
-        axes = {(t.components, t.axis): t for t in self.model.turns}
-        for key in sorted(axes, key=lambda key: (bool(key[0]), key[1])):
-            yield replace(axes[key], angle=self._turn_angle())
-
     def _turn_angle(self) -> sp.Symbol:
         taken = {coordinate.func.__name__ for coordinate in self.model.coordinates}
         return sp.Symbol(next(name for name in _TURN_ANGLES if name not in taken))
 
-    def _elementary(self, any_turn: Turn) -> Equation:
-        side = turn(any_turn, self.letters)
-        return Equation(sides=(side,), matrix=any_turn.matrix)
-
     def _angular_velocity(self) -> Iterator[NoteBlock]:
         yield from sum_in_words(self.model, self.letters)
         yield from rates_in_words(self.model, self.letters)
-        yield from motion(passive=self.model.passive)
+        yield from PASSIVE_MOTION if self.model.passive else ACTIVE_MOTION
         yield from self._steps(_ANGULAR_VELOCITY)
 
     def _rates(self) -> Iterator[NoteBlock]:
@@ -254,12 +254,7 @@ class Composer:
         found = self.derivation.singularities
         if not steps and found is None:
             return
-        yield said(
-            "The rate matrices are defined by {} and {}, so that {}.",
-            equal(SPACE.omega, row(SPACE.matrix, RATES)),
-            equal(BODY.omega, row(BODY.matrix, RATES)),
-            equal(SPACE.matrix, row(ROTATION, BODY.matrix)),
-        )
+        yield _RATE_MATRICES
         yield from steps
         if found is not None and found.rank < 3:
             yield Paragraph(
@@ -274,8 +269,7 @@ class Composer:
             yield Paragraph(meaning(found))
             value = formula_of(found.determinant, self.letters)
             yield Equation(sides=(*measured(found), value))
-        zeros, *points = failures(self.derivation, found)
-        yield from map(Paragraph, (zeros, *geometry(self.derivation), *points))
+        yield from map(Paragraph, failures(self.derivation, found))
 
     @cached_property
     def _displayed(self) -> Mapping[str, tuple[Equation, Display]]:

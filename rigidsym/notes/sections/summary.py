@@ -20,7 +20,7 @@ from rigidsym.notes.document.document import (
     listed,
 )
 from rigidsym.notes.prose.singular_words import failures, meaning, measured
-from rigidsym.notes.prose.words import convention, vector_in_words
+from rigidsym.notes.prose.words import convention, symbols_of, vector_in_words
 
 TITLE = "Summary"
 _SENTENCES = 2  # what the coordinates are, and which way the rotation goes
@@ -58,7 +58,7 @@ def _numbered(sections: Sequence[Section]) -> Mapping[str, Equation]:
 def _blocks(
     derivation: Derivation, equations: Mapping[str, Equation], letters: Letters, room: float
 ) -> Iterator[NoteBlock]:
-    said = convention(derivation, letters.notation)[:_SENTENCES]
+    said = convention(derivation, symbols_of(derivation), letters.notation)[:_SENTENCES]
     on_vectors = tuple(vector_in_words(derivation, letters.notation))
     yield from map(Paragraph, (*said, *on_vectors))
     room -= _SENTENCE * len(on_vectors)
@@ -129,4 +129,4 @@ def _where_it_fails(derivation: Derivation, letters: Letters) -> Iterator[NoteBl
         if display(determinant, letters, PAGE).lines == 1:
             yield Paragraph(meaning(found))
             yield determinant
-    yield Paragraph(next(failures(derivation, found)))
+    yield Paragraph(failures(derivation, found)[0])

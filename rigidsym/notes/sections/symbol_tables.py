@@ -171,7 +171,7 @@ def _example(derivation: Derivation, module: str, names: Sequence[str]) -> str:
 
 def _call(derivation: Derivation, name: str) -> Iterator[str]:
     inputs = derivation.step(name).quantity.inputs
-    yield from (_given(derivation.argument(argument)) for argument in inputs)
+    yield from map(_given, list(map(derivation.argument, inputs)))
     yield f"kinematics.{name}({', '.join(inputs)})"
 
 
