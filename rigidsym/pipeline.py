@@ -94,7 +94,7 @@ def read(source: str, **options: Any) -> DerivationSpec:
     `options` are those of `spec_for`; a derivation file takes none.
     """
     shipped = resources.names("derivations", ".toml")
-    if source in shipped or Path(source).suffix == ".toml":
+    if source in shipped or Path(source).suffix in (".toml", ".json"):
         if options:
             raise RequestError(
                 f"{source} is a derivation file; expected {', '.join(options)} in the file"

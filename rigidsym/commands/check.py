@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import zip_longest
@@ -63,6 +64,8 @@ def _records(path: Path) -> list[Path]:
     """
     files = path.rglob("*.json") if path.is_dir() else [_record_of(path)]
     found = sorted({_record_of(file) for file in files if _is_ours(file)})
+    if not found and path.suffix == ".json" and not content_of(path):
+        found = [path]  # it was named, and so it is damaged
     if not found:
         raise CheckError(
             f"{path}: no record of a derivation here; expected NAME.json beside generated files"
@@ -82,12 +85,29 @@ def _is_ours(file: Path) -> bool:
     return is_damaged or content.get("schema") in (SCHEMA, certificate.SCHEMA)
 
 
+def _damage(record: Path) -> str:
+    """Why a record has no content."""
+    if not record.exists():
+        return "missing"
+    try:
+        json.loads(record.read_text(encoding="utf-8"))
+    except OSError as error:
+        why = str(error.strerror)
+    except json.JSONDecodeError as error:
+        at = f"it is not valid JSON, at line {error.lineno}; derive it again"
+        why = at if error.doc.strip() else "it is empty; derive it again"
+    except (ValueError, RecursionError):
+        why = "it is not valid JSON; derive it again"
+    else:
+        why = "it is not a record"
+    return f"cannot be read: {why}"
+
+
 def _compare(record: Path) -> Iterator[Finding]:
     content = content_of(record)
     version = content.get("schema_version")
     if not content:
-        is_there = record.exists()
-        yield Finding(path=record, problem="cannot be read" if is_there else "missing")
+        yield Finding(path=record, problem=_damage(record))
         return
     if version != SCHEMA_VERSION:
         yield Finding(path=record, problem=f"schema version {version}, expected {SCHEMA_VERSION}")

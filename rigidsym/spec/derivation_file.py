@@ -44,6 +44,9 @@ def read_file(file: str, words: Vocabulary) -> DerivationSpec:
     """
     shipped = resources.names("derivations", ".toml")
     path = Path(file)
+    if path.suffix == ".json":
+        record = "expected a derivation file, NAME.toml; only `check` reads records (NAME.json)"
+        raise SpecError(file, [Fault(message=record)])
     if file in shipped and not path.is_file():
         path = resources.folder("derivations") / f"{file}.toml"
     try:

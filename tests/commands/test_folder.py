@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 import rigidsym as rs
+from helpers.command import call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import EditedFiles
 from rigidsym.kernels.targets import TARGETS
@@ -102,3 +103,15 @@ def test_an_edited_file_is_named_and_kept_unless_forced(tmp_path):
     assert b"# mine" not in module.read_bytes()
     _run("derive", "ZXZ", "--angles", "a,b,c", *out)  # nothing is edited now
     assert _checked(tmp_path) == _files(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("content", "why"), [('{"schema":\n', "not valid JSON, at line 2"), ("", "empty")]
+)
+def test_a_damaged_record_is_named_by_every_command(tmp_path, content, why):
+    (tmp_path / "half.json").write_text(content)
+    said = call("check", "half.json", cwd=tmp_path, status=1).stdout
+    assert said.startswith(f"half.json: cannot be read: it is {why}")
+    for words in (["run"], ["page"], ["simulate"], ["eval", "half.json", "--out", "r.csv"]):
+        done = call(words[0], "half.json", *words[1:], cwd=tmp_path, status=3)
+        assert "half.json: 1 fault, nothing written\n  expected a derivation file" in done.stderr

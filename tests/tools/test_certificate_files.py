@@ -94,7 +94,11 @@ OTHER = "refused: no certificate of what is printed"
         (exchanged("v"), {COQ: "differs from the derivation at line 1"}),
         (exchanged("cert.json"), {CERT: "refused: "}),
         (removed(RECORD), {RECORD: "missing"}),
-        (lambda folder: (folder / RECORD).write_text("{"), {RECORD: "cannot be read"}),
+        (
+            lambda folder: (folder / RECORD).write_text("{"),
+            {RECORD: "cannot be read: it is not valid JSON, at line"},
+        ),
+        (lambda folder: (folder / RECORD).write_text(""), {RECORD: "cannot be read: it is empty"}),
     ],
 )
 def test_a_damaged_exchanged_or_missing_file_is_named(folder, damage, expected):
