@@ -65,6 +65,7 @@ class FolderOptions(TemplateOptions):
         help="Write to DIR/NAME/.",
     )
     force: bool = option("--force", help="Overwrite files even if they were edited.")
+    quiet: bool = option("--quiet", help="Print only the names of the files written.")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -222,7 +223,6 @@ class OutputOptions(LanguageOptions):
         "(Coq) and NAME.lean.",
     )
     as_json: bool = option("--json", help="Print the results as JSON.")
-    quiet: bool = option("--quiet", help="Print only the names of the files written.")
     full: bool = option("--full", help=f"Show all lines instead of the first {MOST_LINES}.")
 
 

@@ -115,3 +115,11 @@ def test_a_damaged_record_is_named_by_every_command(tmp_path, content, why):
     for words in (["run"], ["page"], ["simulate"], ["eval", "half.json", "--out", "r.csv"]):
         done = call(words[0], "half.json", *words[1:], cwd=tmp_path, status=3)
         assert "half.json: 1 fault, nothing written\n  expected a derivation file" in done.stderr
+
+
+@pytest.mark.parametrize("command", ["derive", "page"])
+def test_a_quiet_command_prints_only_the_names_of_its_files(command, tmp_path):
+    words = [command, "ZXZ", "--only", "rotation_matrix", "--quiet", "--out", str(tmp_path)]
+    done = CliRunner().invoke(commands, words)
+    assert done.exit_code == 0
+    assert all(Path(line).is_file() for line in done.output.splitlines())

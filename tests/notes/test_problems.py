@@ -112,8 +112,8 @@ def test_only_the_solutions_hold_answers():
 def test_the_angular_velocity_is_that_of_a_witness(seed):
     problem = euler.angular_velocity(Random(seed))
     text = asked(problem)
-    sequence = re.search(r"by ([XYZ]{3})", text)[1]
-    angles, rates = np.reshape(numbers(text.split("order")[1].split("Find")[0]), (2, 3))
+    sequence = re.search(r"by the ([XYZ]{3})", text)[1]
+    angles, rates = np.reshape(numbers(text.split("angles")[1].split("Find")[0]), (2, 3))
     step = 1e-6
     at = [
         Rotation.from_euler(sequence, angles + s * np.degrees(rates), degrees=True)
@@ -122,6 +122,29 @@ def test_the_angular_velocity_is_that_of_a_witness(seed):
     turned = at[1] * at[0].inv() if "of space" in text else at[0].inv() * at[1]
     expected = turned.as_rotvec() / (2 * step)
     np.testing.assert_allclose([a.value for a in problem.answers], expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("variant", [1, 2, 5])
+def test_every_letter_of_a_solution_is_named_in_its_question(variant):
+    """But for indices, axes, and letters of the parts of the block"""
+    letters = "[A-Za-zα-ωΩ]"
+
+    def used(blocks):
+        text = " ".join(plain(b.text) for b in blocks if isinstance(b, Paragraph))
+        shown = [s.text for b in blocks if isinstance(b, Equation) for s in b.sides]
+        formulas = [f.text for b in blocks if isinstance(b, Paragraph)
+                    for f in b.text if not isinstance(f, str)]  # fmt: skip
+        words = " ".join([*shown, *formulas])
+        return set(re.findall(rf"(?<!{letters}){letters}(?!{letters})", words)), text
+
+    for problem in sheet(variant).problems:
+        answers = {
+            a.symbol.text[0] for a in problem.answers if a.symbol and "|" not in a.symbol.text
+        }
+        asked_for, _ = used(problem.question)
+        found, said = used(problem.solution)
+        parts = set("mJ") if "block" in said else set()
+        assert (found | answers) - asked_for - parts <= set("Rkxyzπ"), problem.title
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -137,7 +160,7 @@ def test_the_convention_is_the_only_one_that_fits(seed):
 
 def test_the_determinant_near_gimbal_lock_is_the_volume_of_the_three_axes():
     problem = euler.gimbal_lock(Random(5))
-    sequence = re.search(r"rates of ([XYZ]{3})", asked(problem))[1]
+    sequence = re.search(r"rates of the ([XYZ]{3})", asked(problem))[1]
     theta = numbers(asked(problem))[-1]
     unit = dict(zip("XYZ", np.eye(3), strict=True))
     turned = Rotation.from_euler(sequence[1], theta, degrees=True)

@@ -9,7 +9,7 @@ import sympy as sp
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import COMMA, Bracket, joined
+from rigidsym.formula.tree import COMMA, Bracket, equal, joined
 from rigidsym.mechanics.mass.bodies import rigid_body
 from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Composite, Part
@@ -37,20 +37,24 @@ def drilled_block(rng: Random) -> Exercise:
                 f"A block with the edges {_lengths(a, b, c)} along $x$, $y$ and $z$ is made of a "
                 f"material of density {density} kg/m³. A hole of radius {_length(radius)} is "
                 "drilled through it parallel to $z$, its axis "
-                f"{_length(aside)} from the middle along $x$. Find its mass, the position of its "
-                "centre of mass and the moments of inertia about the axes through it."
+                f"{_length(aside)} from the middle along $x$. Find the mass $M$ of the drilled "
+                "block, the coordinate $x_C$ of its centre of mass, measured from the middle of "
+                "the block, and its moments of inertia $I_1$, $I_2$ and $I_3$ about the axes "
+                "through the centre of mass parallel to $x$, $y$ and $z$."
             ),
         ),
         solution=(
             said(
-                "The hole is a cylinder of negative mass. Block and cylinder have the masses $m$, "
-                "and about their own centres the moments"
+                "The hole is a cylinder of negative mass. The masses of block and cylinder, and "
+                "their moments about the axes through their own centres, are"
             ),
             *(_moments(k, body) for k, body in enumerate(of_parts, start=1)),
             said(
+                "The block is centred at $x_1 = 0$, the cylinder at {} m. "
                 "By $M\\,x_C = m_1 x_1 - m_2 x_2$ the centre of mass moves away from the hole, and "
                 "by the parallel-axis theorem each part adds its mass times the square of the "
-                "distance of its centre from the axis."
+                "distance of its centre from the axis.",
+                equal(formula("x_2"), numeral(float(aside))),
             ),
         ),
         answers=(
@@ -71,23 +75,23 @@ def parallel_axis(rng: Random) -> Exercise:
     own = body.inertia[2, 2]
     names = sp.symbols("a h")[:count]
     general = rigid_body(shaped(name, names, mass=sp.Symbol("M")))
-    sizes = ["the radius", "the height"]
-    described = " and ".join(f"{s} {_length(x)}" for s, x in zip(sizes, lengths, strict=False))
+    sizes = ["a radius $a$", "a height $h$"]
+    described = ", ".join(f"{s} of {_length(x)}" for s, x in zip(sizes, lengths, strict=False))
     return Exercise(
         title="The parallel-axis theorem",
         question=(
             said(
-                f"A {solid.title.lower()} has {described} and a mass of {mass} kg. Find its moment "
-                "of inertia about its axis of symmetry, and about a parallel axis at a distance "
-                f"of {_length(distance)}."
+                f"A {solid.title.lower()} has {described} and a mass $M$ of {mass} kg. Find its "
+                "moment of inertia $I_3$ about its axis of symmetry, and its moment $I$ about a "
+                f"parallel axis at the distance $d$ of {_length(distance)}."
             ),
         ),
         solution=(
             said("Integration gives the moment about the axis of symmetry,"),
             Equation(sides=(formula("I_3"), formula_of(general.inertia[2, 2], letters_of(())))),
             said(
-                "where $a$ is the radius. By the parallel-axis theorem the moment about the other "
-                r"axis is $I = I_3 + M\,d^2$."
+                "By the parallel-axis theorem the moment about the other axis is "
+                r"$I = I_3 + M\,d^2$."
             ),
         ),
         answers=(
@@ -109,9 +113,11 @@ def rotational_energy(rng: Random) -> Exercise:
         title="Energy and angular momentum",
         question=(
             said(
-                "A body has the principal moments ({}, {}, {}) kg m² and the angular velocity "
-                "({}, {}, {}) rad/s along its principal axes. Find the kinetic energy of its "
-                "rotation, the size of its angular momentum, and the angle between them.",
+                "A body has the principal moments $I_1$, $I_2$ and $I_3$ of {}, {} and {} kg m² "
+                r"and, along its principal axes, the angular velocity $\boldsymbol{\Omega}'$ = "
+                "({}, {}, {}) rad/s. Find the kinetic energy $E_R$ of its rotation, the size "
+                r"$|\mathbf{L}|$ of its angular momentum, and the angle $\alpha$ between angular "
+                "momentum and angular velocity.",
                 *map(numeral, map(float, (*moments, *omega))),
             ),
         ),
@@ -127,8 +133,9 @@ def rotational_energy(rng: Random) -> Exercise:
                 )
             ),
             said(
-                r"The vector $\mathbf{L}'$ has the components $I_k\,\Omega'_k$, and "
-                r"$\mathbf{L}'\cdot\boldsymbol{\Omega}' = 2 E_R$."
+                r"The angular momentum $\mathbf{L}'$ has the components $I_k\,\Omega'_k$. The "
+                r"angle follows from $|\mathbf{L}'|\,|\boldsymbol{\Omega}'|\,\cos\alpha = "
+                r"\mathbf{L}'\cdot\boldsymbol{\Omega}' = 2 E_R$."
             ),
         ),
         answers=(

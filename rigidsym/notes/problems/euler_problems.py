@@ -49,7 +49,7 @@ def which_convention(rng: Random) -> Exercise:
     return Exercise(
         title="Which convention?",
         question=(
-            said("A rotation is the product of three turns about axes of the body,"),
+            said(r"A rotation $\mathbf{R}$ is the product of three turns about axes of the body,"),
             _displayed(found, "rotation_matrix"),
             said(f"with {_ANGLES}. About which axes are the turns?"),
         ),
@@ -60,6 +60,7 @@ def which_convention(rng: Random) -> Exercise:
                 f"$\\theta$ only. It is {{}}: {outer}. {why}",
                 equal(formula(f"R_{{{i}{j}}}"), formula_of(entry, letters)),
             ),
+            said("As a product of turns about these axes the rotation is"),
             Equation(sides=(ROTATION, product)),
         ),
         answers=(Asked(choices=(right, *wrong)),),
@@ -79,11 +80,14 @@ def angular_velocity(rng: Random) -> Exercise:
         title="The angular velocity",
         question=(
             _paragraph(
-                (f"A body is turned by {sequence} Euler angles, in this order ",),
+                (f"A body is turned by the {sequence} Euler angles ",),
                 _values(found.argument("q").notation, angles, "°"),
-                (", which change at the rates ",),
+                (", in this order. They change at the rates ",),
                 _values(found.argument("q_dot").notation, rates, " rad/s"),
-                words(f". Find the components of {{}} along the axes of {axes}.", frame.omega),
+                words(
+                    f". Find the components of the angular velocity {{}} along the axes of {axes}.",
+                    frame.omega,
+                ),
             ),
         ),
         solution=(
@@ -114,10 +118,11 @@ def gimbal_lock(rng: Random) -> Exercise:
         title="Gimbal lock",
         question=(
             said(
-                f"Show where the rates of {sequence} Euler angles do not follow from the angular "
-                "velocity, and what is lost there. How large is the determinant of the rate "
-                f"matrix at $\\theta = {theta}$°, and by which factor may a single rate exceed "
-                "the angular velocity there?"
+                f"Show where the rates of the {sequence} Euler angles $\\phi$, $\\theta$ and "
+                "$\\psi$ do not follow from the angular velocity, and what is lost there. How "
+                "large is the determinant of the rate matrix $\\mathbf{W}$ at "
+                f"$\\theta = {theta}$°, and by which factor may a single rate exceed the angular "
+                "velocity there?"
             ),
         ),
         solution=(
