@@ -80,6 +80,8 @@ class Turn:
     components: tuple[sp.Expr, ...] = ()  # of the axis, if it is not a coordinate axis
     rate: sp.Expr = field(init=False, repr=False, compare=False)  # time derivative of the angle
     direction: tuple[sp.Expr, ...] = field(init=False, repr=False, compare=False)  # along x, y, z
+    # (3, 3), taking components after the turn to those before it
+    matrix: sp.ImmutableMatrix = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         angle = symbolic(self.angle, "the angle of a turn")
@@ -95,13 +97,9 @@ class Turn:
         object.__setattr__(self, "angle", angle)
         object.__setattr__(self, "rate", rate)
         object.__setattr__(self, "direction", self.components or _ALONG[self.axis])
-
-    @property
-    def matrix(self) -> sp.ImmutableMatrix:
-        """The turn as a matrix, (3, 3), taking components after the turn to those before it."""
-        if self.components:
-            return rodrigues(self.components, self.angle)
-        return elementary(self.axis, self.angle)
+        own = self.components
+        matrix = rodrigues(own, angle) if own else elementary(self.axis, angle)
+        object.__setattr__(self, "matrix", matrix)
 
     @property
     def angle_text(self) -> str:
@@ -188,6 +186,7 @@ class RotationModel:
     )  # what asks for it in a file
     # the symbols in R or its conditions that do not move: fixed angles, parts of an axis
     constants: tuple[sp.Symbol, ...] = field(init=False, repr=False, compare=False)
+    coordinate_units: tuple[str, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         if not _MODULE_NAME.fullmatch(self.name):
@@ -203,6 +202,8 @@ class RotationModel:
             )
         self._check_coordinates()
         object.__setattr__(self, "constants", _constants(self._parts))
+        units = self.units or ("rad",) * len(self.coordinates)
+        object.__setattr__(self, "coordinate_units", units)
         self._check_constants()
         self._check_turns()
 
@@ -280,10 +281,6 @@ class RotationModel:
         """Of the coordinates and constants."""
         names = {coordinate.func.__name__ for coordinate in self.coordinates}
         return names | {symbol.name for symbol in self.matrix.free_symbols}
-
-    @property
-    def coordinate_units(self) -> tuple[str, ...]:
-        return self.units or ("rad",) * len(self.coordinates)
 
     def __repr__(self) -> str:
         """One line, for a prompt."""

@@ -158,9 +158,11 @@ class _Lowering:
 
     def of_steps(self, steps: Sequence[Step]) -> tuple[ir.Kernel, ...]:
         """The kernels of quantities."""
+        if not steps:
+            return ()
         shapes = [step.shape for step in steps]
-        forms = self._stable(map(self._over_squares, step.expression) for step in steps)
         texts = [(s.quantity.symbol.text, s.quantity.definition.text) for s in steps]
+        forms = self._stable(map(self._over_squares, step.expression) for step in steps)
         found = []
         for step, shape, entries, (symbol, definition) in zip(
             steps, shapes, forms, texts, strict=True

@@ -111,6 +111,9 @@ class Expanded(Kinematics):
 
     def find(self, names: Sequence[str]) -> dict[str, Found]:
         found = self._worked_out(names)
+        if not found:
+            return {}
+        matrices, divisors, _ = zip(*found.values(), strict=True)
         claimed = [
             (residual, claim, (quantity.below,))
             for name, quantity in found.items()
@@ -119,7 +122,7 @@ class Expanded(Kinematics):
         is_rotation = "rotation_matrix" in found
         prove, matrix = self.values.prove.vanish, self.values.present.matrix
         proofs = iter(prove(claimed, error=NotARotation if is_rotation else DerivationError))
-        shown = [matrix(quantity.matrix, quantity.below) for quantity in found.values()]
+        shown = list(map(matrix, matrices, divisors))
         steps: dict[str, Found] = {}
         for (name, quantity), expression in zip(found.items(), shown, strict=True):
             proved = [next(proofs) for _ in quantity.residuals]
@@ -130,13 +133,13 @@ class Expanded(Kinematics):
 
     def _worked_out(self, names: Sequence[str]) -> dict[str, WorkedOut]:
         """The quantities, each with what vanishes if its laws hold, in their order."""
+        kinds = [kind_and_frame(name) for name in names]
         values, passive, spin = self.values, self.model.passive, self._spin
         R, R_dot, active, omega_space, omega_body = values.turning
         omegas = {"space": omega_space, "body": omega_body}
         rates = {"space": values.rate_matrix_space, "body": values.rate_matrix_body}
-        kinds = [kind_and_frame(name) for name in names]
         inverses = {f: values.inverse(f) for kind, f in kinds if kind in _INVERSE}
-        given = {name: values.argument(name) for name in ("q_dot", "omega_space", "omega_body")}
+        given, column = values.arguments, values.codec.column
         one, unit = values.codec.ring.one, RingMatrix.identity(values.codec.ring, 3)
         found: dict[str, WorkedOut] = {}
         for name, (kind, frame) in zip(names, kinds, strict=True):
@@ -155,7 +158,7 @@ class Expanded(Kinematics):
                     left = [active - hat(omega) if frame == "space" else R @ omega - omega_space]
                 case "rate_matrix":
                     matrix = rates[frame]
-                    left = [matrix @ given["q_dot"] - omega]
+                    left = [matrix @ column(given["q_dot"].symbols) - omega]
                 case "angular_acceleration":
                     matrix = omega.dt()
                     if frame == "space":
@@ -169,7 +172,7 @@ class Expanded(Kinematics):
                     matrix, below = inverse
                     whole = unit
                     if kind == "rates_from_angular_velocity":
-                        whole = given[f"omega_{frame}"]
+                        whole = column(given[f"omega_{frame}"].symbols)
                         matrix = matrix @ whole
                     left = [rates[frame] @ matrix - whole.scale(below)]
             found[name] = WorkedOut(matrix, below, left)

@@ -22,11 +22,17 @@ from rigidsym.models.so3 import TIME, time_function
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody
 
-POINT = tuple(sp.Symbol(f"p_{axis}") for axis in "xyz")
-DIRECTION = tuple(sp.Symbol(f"n_{axis}") for axis in "xyz")
+POINT = sp.symbols("p_x:z")
+DIRECTION = sp.symbols("n_x:z")
 # beside the axes x, y, z of space, a quaternion (w, x, y, z) is printed in other letters
 _QUATERNION = {"w": "q_0", "x": "q_1", "y": "q_2", "z": "q_3"}
-_SPACE = tuple(sp.Symbol(f"Omega_{k}") for k in (1, 2, 3))
+_SPACE = sp.symbols("Omega_1:4")
+_SUFFIX, _PER = ("", "_dot", "_ddot"), ("", "/s", "/s^2")  # by the order of a derivative
+_OF_COORDINATES = ("coordinates", "their time derivatives", "their second time derivatives")
+_OF_CENTRE = (
+    "space components of the position of the centre of mass",
+    "space components of the velocity of the centre of mass",
+)
 
 
 def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[Argument, ...]:
@@ -37,11 +43,8 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
     """
     q, units = model.coordinates, model.coordinate_units
     found = (
-        _moving("q", q, 0, units, "coordinates"),
-        _moving("q_dot", q, 1, units, "their time derivatives"),
-        _moving("q_ddot", q, 2, units, "their second time derivatives"),
-        _angular_velocity("space", _SPACE, r"\Omega_{}"),
-        _angular_velocity("body", OMEGA_BODY, r"\Omega'_{}"),
+        *_moving("q", q, units, _OF_COORDINATES),
+        *_angular_velocities(),
         *(_of_body() if body else ()),
         *_parameters(model, body),
     )
@@ -54,10 +57,8 @@ def arguments_of(model: RotationModel, body: RigidBody | None = None) -> tuple[A
 def _of_body() -> tuple[Argument, ...]:
     """The centre of mass, its velocity, and a line in the axes of the body."""
     centre = tuple(map(time_function, ("X", "Y", "Z")))
-    of_centre = "space components of the {} of the centre of mass"
     return (
-        _moving("centre", centre, 0, ("m",) * 3, of_centre.format("position")),
-        _moving("centre_dot", centre, 1, ("m",) * 3, of_centre.format("velocity")),
+        *_moving("centre", centre, ("m",) * 3, _OF_CENTRE),
         _vector("point", POINT, "m", "a point, in the axes of the body"),
         _vector("direction", DIRECTION, "", "the direction of a line, a unit vector"),
     )
@@ -136,21 +137,25 @@ def _vector(
 
 @lru_cache(maxsize=1024)
 def _moving(
-    name: str, functions: tuple[sp.Expr, ...], order: int, units: tuple[str, ...], about: str
-) -> Argument:
-    """Functions of time, or their derivatives of an order."""
+    name: str, functions: tuple[sp.Expr, ...], units: tuple[str, ...], about: tuple[str, ...]
+) -> tuple[Argument, ...]:
+    """Functions of time and their derivatives, as many as are told about."""
     plain = [function.func.__name__ for function in functions]
-    symbols = functions
-    for _ in range(order):
-        symbols = tuple(map(rate_of, symbols))
-    per = ("", "/s", "/s^2")[order]
-    return Argument(
-        name=name,
-        symbols=symbols,
-        names=tuple(label + ("", "_dot", "_ddot")[order] for label in plain),
-        notation=tuple(map(named, _shown(plain, units), repeat(order))),
-        units=tuple(f"{unit or '1'}{per}" if order else unit for unit in units),
-        about=about,
+    shown, orders = _shown(plain, units), range(len(about))
+    symbols = [functions]
+    for _ in about[1:]:
+        symbols.append(tuple(map(rate_of, symbols[-1])))
+    notation = [tuple(map(named, shown, repeat(order))) for order in orders]
+    return tuple(
+        Argument(
+            name=name + _SUFFIX[order],
+            symbols=symbols[order],
+            names=tuple(label + _SUFFIX[order] for label in plain),
+            notation=notation[order],
+            units=tuple(f"{unit or '1'}{_PER[order]}" if order else unit for unit in units),
+            about=about[order],
+        )
+        for order in orders
     )
 
 
@@ -165,9 +170,25 @@ def is_quaternion(names: Sequence[str], units: Sequence[str]) -> bool:
 
 
 @cache
-def _angular_velocity(frame: str, symbols: tuple[sp.Symbol, ...], typed: str) -> Argument:
-    about = f"{frame} components of the angular velocity"
-    found = _vector(
-        f"omega_{frame}", symbols, "rad/s", about, [formula(typed.format(k)) for k in (1, 2, 3)]
+def _angular_velocities() -> tuple[Argument, ...]:
+    """The components of the angular velocity in space and in the body."""
+    shown = tuple(
+        map(
+            formula,
+            [r"\Omega_1", r"\Omega_2", r"\Omega_3", r"\Omega'_1", r"\Omega'_2", r"\Omega'_3"],
+        )
     )
-    return found._replace(names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3)))
+    return tuple(
+        Argument(
+            name=f"omega_{frame}",
+            symbols=symbols,
+            names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3)),
+            notation=notation,
+            units=("rad/s",) * 3,
+            about=f"{frame} components of the angular velocity",
+        )
+        for frame, symbols, notation in (
+            ("space", _SPACE, shown[:3]),
+            ("body", OMEGA_BODY, shown[3:]),
+        )
+    )

@@ -65,20 +65,21 @@ class _Study:
     def singularities(self) -> Singularities:
         found, rows, columns = self.falling, len(self.whole.rows), len(self.whole.rows[0])
         rank, minors = found.rank - found.bound_rank, found.minors
+        measure = _measure(rows, columns, found.rank)
         points = list(map(self._point, found.strata))
         if rank < min(3, len(self.coordinates) - found.bound_rank):
             points.insert(0, self._point(Stratum((), self.whole, found.rank)))
-        measure = _measure(rows, columns, found.rank)
         is_one = found.rank == rows == columns
         squares = minors[0] if is_one else found.sum_of_squares(minors)
-        shown = [self.present.element(minor) for minor in minors]
+        determinant = self.present.element(squares)
+        shown = list(map(self.present.element, minors))
         is_solved = found.is_solved
         if any(place.is_length for point in points for place in point.places):
             is_solved = is_solved and self._is_regular_at_zero(shown)
         return Singularities(
             rank=rank,
             measure=measure,
-            determinant=self.present.element(squares),
+            determinant=determinant,
             minors=tuple(shown),
             points=tuple(points),
             is_solved=is_solved,
@@ -92,6 +93,7 @@ class _Study:
 
     def _point(self, stratum: Stratum) -> Singularity:
         zero, there, full = stratum
+        places = tuple(root.place for root in zero)
         rank, axis = full - self.falling.bound_rank, None
         if rank == 2:  # the direction that no rates give
             axis = there.T.kernel(full).T.rows[0]
@@ -108,7 +110,7 @@ class _Study:
             shown = self.present.matrix(RingMatrix.column(there.ring, entries))
             in_space, in_body = shown[:3, :], shown[3:, :]
         return Singularity(
-            places=tuple(root.place for root in zero),
+            places=places,
             rank=rank,
             lost_axis_space=in_space if rank == 2 else None,
             lost_axis_body=in_body if rank == 2 else None,
