@@ -119,7 +119,7 @@ class TestChecks:
             ({"turns": (Turn(axis="x", angle=phi),)}, "not the product of its turns, Rx(φ)"),
             (
                 {"matrix": sp.ImmutableMatrix(sp.GoldenRatio * ONE)},
-                "the number GoldenRatio, of which",
+                "the number GoldenRatio, which is not",
             ),
         ],
         ids=str,
