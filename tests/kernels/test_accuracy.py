@@ -108,5 +108,5 @@ def test_every_file_says_which_angles_are_accurate_and_what_nan_gives(target):
     for text in (angles, sums, none):
         assert "makes every entry that depends on it NaN" in plain(text)
     assert "accurate for angles of any magnitude." in plain(angles)
-    assert "Where angles are added or multiplied before a sine is taken" in plain(sums)
+    assert "If angles are added or multiplied before a sine is taken" in plain(sums)
     assert "angles of any magnitude" not in plain(none)

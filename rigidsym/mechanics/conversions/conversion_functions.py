@@ -47,8 +47,8 @@ Each = TypeVar("Each")
 _TWO_SETS = (
     "Two sets of angles in [−π, π] give each rotation, and whole turns may be added to them. Each "
     "sample gets the angles nearest to the sample before. At a pole, the undetermined angle is "
-    "taken from the last sample away from poles; what is within 32 eps (radians) of a pole counts "
-    "as there, and R is off by up to twice that."
+    "taken from the last sample away from poles; a sample within 32 eps (radians) of a pole counts "
+    "as at the pole, which changes R by up to twice that."
 )
 _WHOLE_TURNS = "No angle of a turn changes by more than π from one sample to the next."
 
@@ -127,7 +127,7 @@ def _from_quaternion(derivation: Derivation, inverse: Rule) -> ConversionFunctio
         inverse.from_quaternion(values, quaternion),
         f"the coordinates of a quaternion, scalar {order}",
         *_remarks(inverse),
-        "Its length does not matter; zero gives NaN.",
+        "The length of the quaternion does not matter; a zero quaternion gives NaN.",
         unit=_unit(derivation.model),
     )
 
@@ -147,8 +147,8 @@ def from_matrix(derivation: Derivation, inverse: Rule) -> ConversionFunction:
         outputs,
         f"the coordinates of a rotation matrix {shown}, as `rotation_matrix` gives it",
         *_remarks(inverse),
-        f"The quaternion is read off from R by its largest component ({SHEPPERD}). The matrix is "
-        "taken to be a rotation; that is not checked.",
+        f"The largest component of the quaternion is computed first ({SHEPPERD}). The matrix is "
+        "assumed to be a rotation; this is not checked.",
         unit=_unit(model),
     )
 
@@ -181,7 +181,7 @@ def _quaternion_of_matrix(derivation: Derivation) -> ConversionFunction:
         [ConversionInput(argument=derivation.argument(name)) for name in names],
         unit(values, quaternion),
         "unit quaternion of the rotation, scalar first and not negative",
-        f"It is read off from R by its largest component ({SHEPPERD}).",
+        f"Its largest component is computed first, from R ({SHEPPERD}).",
         symbol="p",
     )
     return replace(function, shared=tuple(zip(entries, matrix, strict=True)))
@@ -238,7 +238,7 @@ def _shadow_sets(derivation: Derivation, inverse: Rule) -> tuple[ConversionFunct
             [ConversionInput(argument=q)],
             [-part / size for part in q.symbols],
             "the other set of the same rotation, −s/(s·s)",
-            "The shadow of zero is at infinity and comes as NaN.",
+            "The shadow of zero is at infinity; the result is NaN.",
             symbol="s",
         ),
         shorter.function(
@@ -287,7 +287,7 @@ def _of_turns(derivation: Derivation, rule: DavenportAngles | TurnChain) -> Cont
     )
     remarks = [_TWO_SETS if relation else _WHOLE_TURNS]
     if len(rule.places) < len(model.coordinates):
-        remarks.append("What the rotation does not determine stays as it is.")
+        remarks.append("Coordinates that the rotation does not determine are not changed.")
     return Continuity(
         kind="turns", inputs=names, remarks=tuple(remarks), turns=turns, coordinates=coordinates
     )

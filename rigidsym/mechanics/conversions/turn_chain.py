@@ -273,7 +273,7 @@ def _mirror(turns: Sequence[Turn]) -> int:
 
 def _because(rule: TurnChain) -> str:
     known = (
-        "The known turns are taken off, and the axes are taken as they leave them. "
+        "The known turns are factored out, and the axes are turned accordingly. "
         if (*rule.before, *rule.right)
         else ""
     )
@@ -320,7 +320,7 @@ def _branch(rule: TurnChain) -> Iterator[tuple[str, *tuple[int, ...]]]:
     if rule.has_two_sets:
         yield (
             "The outer angles of the turns are in (−π, π]; the middle one is in the interval of "
-            "length π that holds 0 and ends where the triangle is flat.",
+            "length π that contains 0 and ends where the triangle is flat.",
         )
         if not rule.mirror:
             outer = "the sum or difference of the outer angles"
@@ -336,12 +336,12 @@ def _branch(rule: TurnChain) -> Iterator[tuple[str, *tuple[int, ...]]]:
         yield f"From {'it follows' if is_one else 'them follow'} {{}}.", *rule.places
     if rule.kept:
         yield (
-            f"{{}}, which the rotation does not determine, {'is' if is_kept_alone else 'are'} kept "
-            "at the values given, or at 0 without them.",
+            f"The rotation does not determine {{}}, which {'is' if is_kept_alone else 'are'} set "
+            "to the given values, or to 0.",
             *rule.kept,
         )
     if rule.mirror or not rule.is_across:
         yield (
-            "These turns need not reach every rotation: one further than √eps (radians) from all "
-            "reachable ones gives NaN.",
+            "These turns may not reach every rotation: a rotation farther than √eps (radians) from "
+            "all reachable ones gives NaN.",
         )

@@ -135,24 +135,24 @@ def _template(name: str) -> Any:
 def _about(program: Program, contents: Contents) -> list[remarks.Paragraph]:
     """The paragraphs at the head of the header."""
     arrays = (
-        "An array function serves `count` orientations: from one to the next an argument goes on "
-        "by its `step` (0 repeats one), from one component to the next by its `stride`, both in "
-        "elements; rows without gaps, a step of the row's length and a stride of 1, are the "
-        "fastest. `out` may not overlap an argument.",
-        "No function allocates, recurses or keeps a state; an array function takes room for "
+        "An array function computes `count` orientations. The `step` of an argument is the "
+        "distance from one orientation to the next (0 uses one for all), its `stride` the distance "
+        "from one component to the next, both in elements; contiguous rows, with a step of the "
+        "row's length and a stride of 1, are the fastest. `out` may not overlap an argument.",
+        "No function allocates memory, recurses or keeps state; an array function keeps "
         f"{_TILE} orientations on the stack.",
         "With -DCLONES, gcc and clang for x86-64 compile array functions that choose between AVX2, "
         "AVX-512 and neither when they are called.",
     )
     one = (
         "`out` may not overlap an argument.",
-        "No function allocates, recurses or keeps a state.",
+        "No function allocates memory, recurses or keeps state.",
     )
     sines = (
-        "Sine, cosine and atan2 are those of <math.h>, and the errors of the functions include "
-        "theirs."
+        "Sine, cosine and atan2 are taken from <math.h>; their errors add to the errors of the "
+        "functions."
         if contents.libm
-        else "Sine and cosine are evaluated here, within 2 eps of their size (eps is 2^-52 in "
+        else "Sine and cosine are computed here, within 2 eps of their size (eps is 2^-52 in "
         "double, 2^-23 in float) at any finite angle."
     )
     floats = "" if contents.precision == "double" else "Names that end in f are of type float. "
@@ -165,7 +165,7 @@ def _about(program: Program, contents: Contents) -> list[remarks.Paragraph]:
         f"Matrices are filled row by row. {floats}{first}",
         *others,
         sines,
-        unwrap="unwrap is only in the Python module, since it needs room for a trajectory.",
+        unwrap="Only the Python module has unwrap, since it needs memory for a trajectory.",
     )
 
 

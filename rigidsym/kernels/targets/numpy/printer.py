@@ -37,8 +37,8 @@ RESERVED = python.RESERVED | {"np", "tan", "ValueError", "ZeroDivisionError", "e
 OPTIONS = ("out: Array | None = None", "threads: int = 1")  # of every function of arrays
 
 _BY_SIZE = (
-    "Small batches, of fewer than 240 rows at most, take sines and cosines by another formula than "
-    "larger ones, so that the last bits of a row may depend on the number of rows."
+    "Small batches, of fewer than 240 rows at most, compute sines and cosines by another formula "
+    "than large ones, so the last bits of a row may depend on the number of rows."
 )
 _NESTING = ("a float", "a tuple", "a tuple of rows", "a tuple of matrices")
 _LONG = 96  # assignments of a kernel whose twin shares the function of arrays

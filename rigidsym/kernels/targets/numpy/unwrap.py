@@ -38,7 +38,7 @@ def _about(unwrapping: Unwrapping) -> list[str | Sequence[str]]:
         "The coordinates along a trajectory, continuous from sample to sample.",
         [f"  {name:<{width}}  {text}" for name, text in rows],
         *unwrapping.remarks,
-        "The first sample stays as it is. A sample with NaN is passed over.",
+        "The first sample is not changed. Samples with NaN are skipped.",
     ]
 
 
