@@ -272,14 +272,14 @@ Named = tuple[Kind, Formula, Sequence[Place]]  # a label, and where it may go
 def labelled(named: Iterable[Named], strokes: Sequence[Stroke]) -> tuple[Label, ...]:
     """Labels at their first free places, the nearest first; else where they touch the fewest."""
     segments = [segment for stroke in strokes for segment in stroke.segments]
-    kinds, symbols, places = zip(*named, strict=True)
+    named = tuple(named)
+    widths = half_widths([symbol for _, symbol, _ in named])
     taken: list[Box] = []
-    for half_width, own in zip(half_widths(symbols), places, strict=True):
-        taken.append(_free(half_width, own, segments, taken))
-    return tuple(
-        Label(kind, symbol, box.centre)
-        for kind, symbol, box in zip(kinds, symbols, taken, strict=True)
-    )
+    labels = []
+    for (kind, symbol, places), half_width in zip(named, widths, strict=True):
+        taken.append(_free(half_width, places, segments, taken))
+        labels.append(Label(kind, symbol, taken[-1].centre))
+    return tuple(labels)
 
 
 def _free(
