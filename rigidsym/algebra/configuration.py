@@ -9,9 +9,7 @@ in intervals (R. Krawczyk, Computing 4 (1969); R. Moore, SIAM J. Numer. Anal. 14
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
 from typing import Any
@@ -21,56 +19,29 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.generators import TIME, is_identically_zero
-from rigidsym.algebra.real_values import NotReal, RealValues, Unknown, arithmetic
+from rigidsym.algebra.real_values import (
+    DIGITS,
+    GUARD,
+    MORE_DIGITS,
+    SCALES,
+    Configuration,
+    NotReal,
+    Numbers,
+    RealValues,
+    Unknown,
+    arithmetic,
+    atoms_of,
+    random_point,
+    values_of_parts,
+)
 from rigidsym.errors import AlgebraError, ModelError
 
-DIGITS = 50
-MORE_DIGITS = 400  # if fewer do not decide
-_GUARD = 20  # digits that evaluations may lose
-_SCALES = ("1", "1", "1", "-1", "-1", "1/10", "10", "-10", "1/100", "100")  # of random points
 _STEPS = 90  # of Newton's method, which is slow at double roots
 _LONGEST_STEP = 10  # times the size of the point
 _FASTEST = 10**6  # a rate that is larger comes from constraints that touch
 _DAMPING = 1e-40  # of the normal equations: dependent rows then do no harm
 _NEARLY = 1e-20  # of equations at a double root, which is approached slowly
 _LARGEST_DENOMINATOR = 1000  # of exact points that are tried
-_ATOMS = (sp.Symbol, sp.Derivative, AppliedUndef)
-Numbers = dict[sp.Expr, Any]
-
-
-@dataclass(frozen=True, eq=False)
-class Configuration:
-    """Real values of coordinates, rates and constants; unbound ones follow from the seed."""
-
-    values: Mapping[sp.Expr, Any]  # of what the conditions hold: exact, or with many digits
-    radii: Mapping[sp.Expr, Any]  # bounds on the distance of the true values, if not exact
-    digits: int
-    seed: int
-
-    def numbers(self, expressions: Sequence[sp.Expr]) -> RealValues:
-        """The values of expressions to so many digits."""
-        return RealValues(self._point(expressions), self.digits + _GUARD)
-
-    def intervals(self, expressions: Sequence[sp.Expr]) -> RealValues:
-        """Proved bounds on the values of expressions."""
-        return RealValues(self._point(expressions), self.digits + _GUARD, self.radii)
-
-    def _point(self, expressions: Sequence[sp.Expr]) -> Numbers:
-        return {**_random_point(atoms_of(expressions), self.seed), **self.values}
-
-
-def atoms_of(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
-    """Symbols, functions of time and their derivatives, in alphabetical order."""
-    found = set().union(*(e.atoms(*_ATOMS) for e in expressions)) - {TIME}
-    return sorted(found, key=str)
-
-
-def _random_point(atoms: Sequence[sp.Expr], seed: int) -> Numbers:
-    """A rational number for each atom, the same for its name and the seed wherever it occurs."""
-    scale = sp.Rational(_SCALES[seed % len(_SCALES)])
-    drawn = (random.Random(f"{seed} {atom}").randint(101, 999) for atom in atoms)
-    numbers = (scale * sp.Rational(number, 1000) for number in drawn)
-    return {TIME: sp.Rational(1, 3), **dict(zip(atoms, numbers, strict=True))}
 
 
 @lru_cache(maxsize=128)
@@ -114,7 +85,7 @@ class _Search:
         self._unknown = ""
 
     def found(self) -> Iterator[Configuration]:
-        for seed in range(len(_SCALES) * (2 if self.parts else 1)):
+        for seed in range(len(SCALES) * (2 if self.parts else 1)):
             try:
                 configuration = self._at(seed)
                 if configuration is not None:
@@ -154,7 +125,7 @@ class _Search:
 
     def _at(self, seed: int) -> Configuration | None:
         """The configuration that a random point leads to; None if none was reached."""
-        point = _random_point(self.atoms, seed)
+        point = random_point(self.atoms, seed)
         point |= {atom: value for atom, value in self.example.items() if atom in point}
         reached: Numbers | None = None
         values: Numbers = {}
@@ -203,7 +174,7 @@ class _Search:
         With the Jacobian J at the point the test is about c(point + Jᵀ λ) = 0, in as many
         unknowns λ as there are independent constraints c.
         """
-        bound, digits = atoms_of(self.constraints), self.digits + _GUARD
+        bound, digits = atoms_of(self.constraints), self.digits + GUARD
         thin = RealValues(reached, digits)
         kept = _independent(self.constraints, bound, thin)
         slopes = [[sp.diff(c, atom) for atom in bound] for c in kept]
@@ -235,7 +206,7 @@ class _Search:
         for _ in range(2):
             equations = [sp.diff(c, TIME) for c in equations]
             rates = [atom for atom in atoms_of(equations) if atom not in found]
-            start = found | _random_point(rates, seed)
+            start = found | random_point(rates, seed)
             moved = newton(equations, rates, start, self.digits) if rates else start
             if moved is None or any(abs(moved[rate]) > _FASTEST for rate in rates):
                 return self._at_rest(values), radii
@@ -246,22 +217,6 @@ class _Search:
     def _at_rest(self, values: Numbers) -> Numbers:
         rates = atoms_of([sp.diff(c, TIME, order) for c in self.constraints for order in (1, 2)])
         return {**dict.fromkeys(rates, sp.S.Zero), **values}
-
-
-def values_of_parts(work: RealValues, parts: Sequence[sp.Expr]) -> list[Any]:
-    """The values of expressions; a function of which none is known has one at random.
-
-    Raises NotReal for an expression that is not real.
-    """
-    values = []
-    for part in parts:
-        while True:
-            try:
-                values.append(work(part))
-                break
-            except Unknown as error:
-                work.set(error.part, work(_random_point([error.part], 0)[error.part]))
-    return values
 
 
 def newton(
@@ -275,7 +230,7 @@ def newton(
     point = dict(start)
     best = size = None
     for _ in range(_STEPS):
-        work = RealValues(point, digits + _GUARD)
+        work = RealValues(point, digits + GUARD)
         values = [work.middle(e) for e in equations]
         size = max(map(abs, values))
         if size < work.numbers.mpf(10) ** (-digits):

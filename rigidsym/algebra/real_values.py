@@ -7,7 +7,9 @@ is proved.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import random
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -15,6 +17,14 @@ import mpmath
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from rigidsym.algebra.generators import TIME
+
+DIGITS = 50
+MORE_DIGITS = 400  # if fewer do not decide
+GUARD = 20  # digits that evaluations may lose
+SCALES = ("1", "1", "1", "-1", "-1", "1/10", "10", "-10", "1/100", "100")  # of random points
+_ATOMS = (sp.Symbol, sp.Derivative, AppliedUndef)
+Numbers = dict[sp.Expr, Any]
 Point = Mapping[sp.Expr, Any]  # of functions of time, their derivatives and symbols
 _MONOTONE = {"atan", "asin", "acos", "sinh", "tanh", "asinh", "acosh", "atanh", "erf"}
 _LARGEST_EXPONENT = 10**5
@@ -174,3 +184,54 @@ class RealValues:
             raise NotReal("a value that is not real,", e)
         slack = own.mpf(10) ** -digits * (1 + max(map(abs, found)))
         return self.context.mpf([min(found) - slack, max(found) + slack])
+
+
+@dataclass(frozen=True, eq=False)
+class Configuration:
+    """Real values of coordinates, rates and constants; unbound ones follow from the seed."""
+
+    values: Mapping[sp.Expr, Any]  # of what the conditions hold: exact, or with many digits
+    radii: Mapping[sp.Expr, Any]  # bounds on the distance of the true values, if not exact
+    digits: int
+    seed: int
+
+    def numbers(self, expressions: Sequence[sp.Expr]) -> RealValues:
+        """The values of expressions to so many digits."""
+        return RealValues(self._point(expressions), self.digits + GUARD)
+
+    def intervals(self, expressions: Sequence[sp.Expr]) -> RealValues:
+        """Proved bounds on the values of expressions."""
+        return RealValues(self._point(expressions), self.digits + GUARD, self.radii)
+
+    def _point(self, expressions: Sequence[sp.Expr]) -> Numbers:
+        return {**random_point(atoms_of(expressions), self.seed), **self.values}
+
+
+def atoms_of(expressions: Sequence[sp.Expr]) -> list[sp.Expr]:
+    """Symbols, functions of time and their derivatives, in alphabetical order."""
+    found = set().union(*(e.atoms(*_ATOMS) for e in expressions)) - {TIME}
+    return sorted(found, key=str)
+
+
+def random_point(atoms: Sequence[sp.Expr], seed: int) -> Numbers:
+    """A rational number for each atom, the same for its name and the seed wherever it occurs."""
+    scale = sp.Rational(SCALES[seed % len(SCALES)])
+    drawn = (random.Random(f"{seed} {atom}").randint(101, 999) for atom in atoms)
+    numbers = (scale * sp.Rational(number, 1000) for number in drawn)
+    return {TIME: sp.Rational(1, 3), **dict(zip(atoms, numbers, strict=True))}
+
+
+def values_of_parts(work: RealValues, parts: Sequence[sp.Expr]) -> list[Any]:
+    """The values of expressions; a function of which none is known has one at random.
+
+    Raises NotReal for an expression that is not real.
+    """
+    values = []
+    for part in parts:
+        while True:
+            try:
+                values.append(work(part))
+                break
+            except Unknown as error:
+                work.set(error.part, work(random_point([error.part], 0)[error.part]))
+    return values

@@ -17,15 +17,16 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec
-from rigidsym.algebra.configuration import (
+from rigidsym.algebra.configuration import configurations
+from rigidsym.algebra.matrix import RingMatrix
+from rigidsym.algebra.real_values import (
     DIGITS,
     MORE_DIGITS,
     Configuration,
-    configurations,
+    NotReal,
+    arithmetic,
     values_of_parts,
 )
-from rigidsym.algebra.matrix import RingMatrix
-from rigidsym.algebra.real_values import NotReal, arithmetic
 from rigidsym.algebra.ring import Monomial
 
 _BITS = 240  # behind the point of the numbers of a check

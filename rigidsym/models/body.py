@@ -22,6 +22,10 @@ _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _AXES = ("x", "y", "z")
 _SPACE = r" \qquad "
 SOURCE = SOURCES["Landau 32"]
+ABOUT_FIXED_POINT = (
+    "The body turns about a fixed point, which may be its centre of mass, and its inertia tensor "
+    "is about this point, along the axes of the body."
+)
 _ROUNDING = 1e-12  # of the sum of the moments: what arithmetic in double precision leaves
 
 
@@ -85,6 +89,16 @@ class RigidBody:
         if not self.allow:
             _check_mass(self.name, self.in_numbers(self.mass))
             _check_inertia(self.name, self.in_numbers(self.inertia))
+
+    def sentences(self, *, about_fixed_point: bool) -> tuple[str, ...]:
+        """The body in plain sentences, to follow the convention of its rotation."""
+        if about_fixed_point:
+            return (f"{self.title}. {ABOUT_FIXED_POINT}",)
+        return (
+            f"{self.title}, of mass {self.mass}; its inertia tensor is about the centre of mass, "
+            "along the axes of x′.",
+            "The centre of mass is at r_C = (X, Y, Z) in space.",
+        )
 
     @property
     def values(self) -> dict[sp.Symbol, sp.Float]:

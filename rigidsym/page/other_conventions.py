@@ -15,7 +15,7 @@ from rigidsym.mechanics.conversions.conversion_functions import from_matrix
 from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.mechanics.conversions.function import Converted
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.mechanics.quantities.arguments import arguments_of
+from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.formula.derivation_letters import letters_of

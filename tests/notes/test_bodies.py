@@ -10,8 +10,8 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.command import call
-from rigidsym.mechanics.quantities.arguments import POINT
 from rigidsym.mechanics.quantities.mass import OF_BODY_ALONE
+from rigidsym.mechanics.quantities.table import POINT
 from rigidsym.models.body import given_inertia
 from rigidsym.motion import Motion
 from rigidsym.notes.document.document import Equation, Figure

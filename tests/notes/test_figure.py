@@ -13,7 +13,7 @@ from hypothesis import given, strategies as st
 import rigidsym as rs
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Symbol
-from rigidsym.mechanics.quantities.arguments import arguments_of
+from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.chain import axis_turn, chain
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.parametrisations import AxisAngle, GibbsVector, RotationVector, UnitQuaternion

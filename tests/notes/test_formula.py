@@ -21,7 +21,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import factored
 from rigidsym.formula.tree import Big, Rate, Symbol
 from rigidsym.formula.unicode_pen import UnicodePen, columns
-from rigidsym.mechanics.quantities.arguments import arguments_of
+from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.notes.formula.derivation_letters import letters_of
 

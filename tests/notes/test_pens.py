@@ -34,7 +34,7 @@ from rigidsym.formula.tree import (
     row,
 )
 from rigidsym.formula.unicode_pen import UnicodePen
-from rigidsym.mechanics.quantities.arguments import arguments_of
+from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.notes.formula.derivation_letters import letters_of
 

@@ -37,7 +37,6 @@ from rigidsym.mechanics.derivation import (
     Singularities,
     Step,
 )
-from rigidsym.mechanics.quantities.energy import body_in_words
 from rigidsym.models.rotation import RotationModel
 
 MARGIN = "singularity_margin"
@@ -73,7 +72,7 @@ def lower(
     found += kernels.of_steps(added.steps)
     found += tuple(map(kernels.of_function, added.functions))
     used = {argument.name for kernel in found for argument in kernel.arguments}
-    model = derivation.model
+    model, body = derivation.model, derivation.body
     return ir.Program(
         name=derivation.name + SUFFIX * degrees,
         units="degrees" if degrees else "radians",
@@ -81,7 +80,7 @@ def lower(
         convention=(
             *([ABOUT] if degrees else []),
             *_convention(model),
-            *body_in_words(derivation.body, about_fixed_point=derivation.about_fixed_point),
+            *(body.sentences(about_fixed_point=derivation.about_fixed_point) if body else ()),
         ),
         source=str(model.source),
         arguments=tuple(a for name, a in kernels.arguments.items() if name in used),

@@ -29,7 +29,7 @@ from rigidsym.mechanics.derivation import (
 from rigidsym.mechanics.dynamics.free import of_free_body
 from rigidsym.mechanics.prove import Prover
 from rigidsym.mechanics.quantities import dynamics as claims
-from rigidsym.mechanics.quantities.arguments import (
+from rigidsym.mechanics.quantities.table import (
     arguments_of,
     arguments_of_flow,
     arguments_of_motion,

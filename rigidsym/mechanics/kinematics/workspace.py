@@ -13,7 +13,7 @@ from rigidsym.algebra.configuration import configurations
 from rigidsym.algebra.matrix import Inverse, RingMatrix, hat, unhat
 from rigidsym.algebra.present import Presenter, presenter_for
 from rigidsym.mechanics.prove import Prover
-from rigidsym.mechanics.quantities.arguments import arguments_of
+from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.parametrisations import DirectionCosines
 from rigidsym.models.rotation import RotationModel
 

@@ -20,7 +20,7 @@ from rigidsym.mechanics.mass.moments import Moments, about_centre, moments_of
 from rigidsym.mechanics.mass.principal import Principal, principal_of
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import mass as claims
-from rigidsym.mechanics.quantities.arguments import DIRECTION, POINT
+from rigidsym.mechanics.quantities.table import DIRECTION, POINT
 from rigidsym.models.body import RigidBody
 from rigidsym.models.distribution import Composite, Known, Part, Particles
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import re
+from itertools import filterfalse
 
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import transpose_of
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_SPACE, MASS
 from rigidsym.mechanics.quantities.table import read_table
-
-if TYPE_CHECKING:
-    from rigidsym.models.body import RigidBody
 
 CENTRE = formula(r"\mathbf{r}_C")
 CENTRE_VELOCITY = formula(r"\dot{\mathbf{r}}_C")
@@ -59,27 +57,8 @@ ENERGY_QUANTITIES = read_table(
         "angular_momentum": (MOMENTUM, formula("#1 + #2", MOMENTUM_CENTRE, MOMENTUM_ROTATION)),
     },
 )
-MOMENTA = tuple(name for name in ENERGY_QUANTITIES if name.startswith("angular_momentum"))
-ENERGIES = tuple(name for name in ENERGY_QUANTITIES if name not in MOMENTA)
-
-
-ABOUT_FIXED_POINT = (
-    "The body turns about a fixed point, which may be its centre of mass, and its inertia tensor "
-    "is about this point, along the axes of the body."
-)
-
-
-def body_in_words(body: RigidBody | None, *, about_fixed_point: bool) -> tuple[str, ...]:
-    """A body in plain sentences, to follow the convention of its rotation."""
-    if body is None:
-        return ()
-    if about_fixed_point:
-        return (f"{body.title}. {ABOUT_FIXED_POINT}",)
-    return (
-        f"{body.title}, of mass {body.mass}; its inertia tensor is about the centre of mass, "
-        "along the axes of x′.",
-        "The centre of mass is at r_C = (X, Y, Z) in space.",
-    )
+MOMENTA = tuple(filter(re.compile("angular_momentum").match, ENERGY_QUANTITIES))
+ENERGIES = tuple(filterfalse(MOMENTA.__contains__, ENERGY_QUANTITIES))
 
 
 # Claims.

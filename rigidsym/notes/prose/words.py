@@ -14,10 +14,11 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, Symbol, equal, transpose_of
 from rigidsym.mechanics.derivation import Argument, Derivation
-from rigidsym.mechanics.quantities.arguments import is_quaternion
-from rigidsym.mechanics.quantities.energy import ABOUT_FIXED_POINT, CENTRE
+from rigidsym.mechanics.quantities.energy import CENTRE
 from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
 from rigidsym.mechanics.quantities.mass import DIRECTION, MASS, OF_BODY_ALONE, POINT
+from rigidsym.mechanics.quantities.table import is_quaternion
+from rigidsym.models.body import ABOUT_FIXED_POINT
 from rigidsym.models.rotation import Citation
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.document.document import Cited, Code, Text, listed, words

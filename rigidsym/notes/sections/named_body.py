@@ -16,9 +16,9 @@ from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import MINUS, PLUS, Formula, bracketed, joined, row
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.derive import derive
-from rigidsym.mechanics.quantities.arguments import POINT
 from rigidsym.mechanics.quantities.energy import ENERGY_QUANTITIES
 from rigidsym.mechanics.quantities.mass import INERTIA, INERTIA_QUANTITIES, MASS, STEINER
+from rigidsym.mechanics.quantities.table import POINT
 from rigidsym.models.body import Parameter, RigidBody, given_inertia
 
 Parts = Sequence[tuple[sp.Symbol, sp.Expr]]  # names with what they stand for
