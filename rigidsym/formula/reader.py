@@ -18,7 +18,7 @@ from typing import Literal
 
 import sympy as sp
 from sympy.printing.conventions import split_super_sub
-from sympy.printing.pretty.pretty_symbology import pretty_symbol
+from sympy.printing.pretty.pretty_symbology import pretty_symbol, pretty_use_unicode
 
 from rigidsym.errors import AlgebraError
 from rigidsym.formula import tree
@@ -305,7 +305,12 @@ def _part(text: str) -> tree.Formula:
 
 
 def _letter(name: str) -> str:
-    return _VARIANTS.get(name) or greek_letter(name) or pretty_symbol(name)
+    """The letter, also if standard output is ASCII, from which SymPy would take no letters."""
+    before = pretty_use_unicode(True)
+    try:
+        return _VARIANTS.get(name) or greek_letter(name) or str(pretty_symbol(name))
+    finally:
+        pretty_use_unicode(before)
 
 
 def _macro(name: str) -> str:

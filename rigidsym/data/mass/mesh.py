@@ -7,6 +7,7 @@ Mass Properties (2002), whose integrals are those over the unit simplex.
 from __future__ import annotations
 
 import logging
+import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,6 +37,7 @@ _FAILURES = (  # of trimesh, whose readers trust the counts and types in a file
     ValueError,
     struct.error,
 )
+_RELATIVE = re.compile(rb"^f\b(?:.*\s)?(-\d+|0)(?=[/\s]|$)", re.MULTILINE)  # of a face of OBJ
 MOST_DRAWN, _MOST_CELLS = 400, 24
 _SIMPLEX = 1 / 6, 1 / 24, 1 / 120  # ∫ 1, ∫ u, ∫ u v over the unit simplex; ∫ u² is twice the last
 
@@ -64,9 +66,13 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
         raise BodyError(f"{path}: no such mesh")
     if path.suffix.lower() not in ENDINGS:
         raise BodyError(f"{path}: expected a mesh, a file that ends in {', '.join(ENDINGS)}")
+    if path.suffix.lower() == ".obj":
+        _check_relative(path)
     try:
         with np.errstate(all="ignore"), catch_warnings(action="ignore"):
-            loaded = trimesh.load(path, force="mesh", process=True, skip_materials=True)
+            loaded = trimesh.load(path, force="mesh", process=False, skip_materials=True)
+            _check_corners(path, np.asarray(loaded.faces), len(loaded.vertices))
+            loaded.process()
             loaded.merge_vertices(merge_tex=True, merge_norm=True)
             vertices = np.asarray(loaded.vertices, dtype=float).reshape(-1, 3) * scale
             faces = np.asarray(loaded.faces, dtype=np.int64).reshape(-1, 3)
@@ -81,6 +87,35 @@ def read_mesh_file(path: Path, *, scale: float = 1.0) -> Mesh:
         wrong = int(np.argmin(np.isfinite(vertices).all(axis=1)))
         raise BodyError(f"{path}: vertex {wrong} is not finite: {vertices[wrong].tolist()}")
     return Mesh(vertices=vertices, faces=faces)
+
+
+def _check_corners(path: Path, faces: NDArray[np.int64], count: int) -> None:
+    """Raises BodyError for the first triangle with a corner that is none of the vertices.
+
+    NumPy counts negative numbers from the end.
+    """
+    for triangle, corner in np.argwhere((faces < 0) | (faces >= count))[:1]:
+        raise BodyError(
+            f"{path}: triangle {triangle + 1} has the corner {faces[triangle, corner]}; expected "
+            f"0 to {count - 1}, since the file has {count} vertices"
+        )
+
+
+def _check_relative(path: Path) -> None:
+    """Raises BodyError for a corner 0 of an OBJ file, and one that trimesh would misread.
+
+    Negative numbers count from the last vertex before the face; trimesh counts from the last one.
+    """
+    if not _RELATIVE.search(content := path.read_bytes()):
+        return
+    lines = content.split(b"\n")
+    last = max((k for k, line in enumerate(lines) if line.startswith(b"v ")), default=0)
+    for k, line in enumerate(lines):
+        if (found := _RELATIVE.match(line)) and (found[1] == b"0" or k < last):
+            what = "corners from 1 on" if found[1] == b"0" else "all vertices before this face"
+            raise BodyError(
+                f"{path}: line {k + 1}: the corner {found[1].decode()}; expected {what}"
+            )
 
 
 def mesh_inertia(
