@@ -118,6 +118,16 @@ def test_every_function_is_documented_and_exported(sequence):
         assert ("Divides by" in about) == ("inverse" in name or "rates_from" in name)
 
 
+def test_divisors_are_written_in_the_inputs_of_a_function():
+    """No reader knows x1, a name of an intermediate value"""
+    for rotation, divisor in (
+        (rs.RotationVector(), "c2(v1 * v1 + v2 * v2 + v3 * v3)"),
+        (rs.rotation_from("[1,1,0](a) z(b) x(c)"), "sin(b) - cos(b)"),
+    ):
+        source = rs.derive(rotation, "inverse_rate_matrix_body").kernels("numpy").source
+        assert f"Divides by {divisor}, near whose zeros" in source
+
+
 def test_the_same_text_every_time():
     fresh = derive(rs.EulerAngles("YZX"))
     assert generate(fresh).source == generate(derived("YZX")).source

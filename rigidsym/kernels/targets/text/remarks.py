@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache, partial
 from math import ceil
 from textwrap import wrap
 
@@ -13,6 +13,7 @@ from rigidsym.kernels.ir import (
     Call,
     Choice,
     Expression,
+    Guarded,
     Kernel,
     Name,
     Negative,
@@ -21,10 +22,15 @@ from rigidsym.kernels.ir import (
     Sum,
     functions_of,
     last_order,
+    names_in,
+    rebuilt,
     walk,
 )
 from rigidsym.kernels.lowering.rounding import SINE, adds_angles, rounding
+from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.version import OWNERSHIP, __version__
+
+_LONGEST_DIVISOR = 16  # operations and inputs
 
 Paragraph = str | Sequence[str]  # filled, or lines that are kept
 
@@ -144,17 +150,43 @@ def _kinds(kernel: Kernel) -> Iterator[str]:
 
 
 def _poles(kernel: Kernel) -> Iterator[str]:
-    """The divisors that can vanish."""
+    """The divisors that can vanish, in the inputs of the function."""
     found = [
-        kernel.guards[divisor.text].value.text
+        _divisor(kernel, kernel.guards[divisor.text].value)
         for divisor in kernel.divisors
         if isinstance(divisor, Name) and divisor.text in kernel.guards
     ]
     if found:
         yield (
-            f"Divides by {', '.join(found)}, near whose zeros the result grows and loses digits; "
-            "at the zeros it is NaN."
+            f"Divides by {', '.join(dict.fromkeys(found))}, near whose zeros the result grows and "
+            "loses digits; at the zeros it is NaN."
         )
+
+
+def _divisor(kernel: Kernel, divisor: Name) -> str:
+    """A divisor as a formula if it is short, else what it depends on."""
+    sizes = dict.fromkeys(kernel.components, 1)
+    inputs: dict[str, tuple[str, ...]] = {name: (name,) for name in kernel.components}
+    for name, value in kernel.assignments:
+        sizes[name] = sum(sizes.get(n.text, 0) if isinstance(n, Name) else 1 for n in walk(value))
+        behind = dict.fromkeys(i for n in names_in(value) for i in inputs[n])
+        inputs[name] = tuple(n for n in kernel.components if n in behind)
+    if sizes[divisor.text] > _LONGEST_DIVISOR:
+        return f"an expression in {', '.join(inputs[divisor.text])}"
+    return infix(_in_inputs(divisor, dict(kernel.assignments)))
+
+
+def _in_inputs(expression: Expression, values: Mapping[str, Expression]) -> Expression:
+    """The expression with its definition for each name."""
+    written = partial(_in_inputs, values=values)
+    match expression:
+        case Name(text) if text in values:
+            return written(values[text])
+        case Call(function):
+            return Call(function, *(Name(infix(written(name))) for name in expression.arguments))
+        case Guarded(value):
+            return written(value)
+    return rebuilt(written, expression)
 
 
 def _errors(kernels: Sequence[Kernel]) -> Iterator[str]:
