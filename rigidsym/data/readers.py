@@ -39,7 +39,9 @@ def reader_of(path: Path) -> TableReader:
     Raises DataError for a file that holds no table of numbers.
     """
     if not path.is_file():
-        found = "no plain file; `eval` reads a stream from -" if path.exists() else "no such file"
+        found = (
+            "not a regular file; `eval` reads a stream from -" if path.exists() else "no such file"
+        )
         raise DataError(f"{path}: {found}")
     ending = path.suffix.lower()
     if ending == ".npy":

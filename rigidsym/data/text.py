@@ -363,5 +363,5 @@ def _separator(line: str) -> str | None:
 
 def _hint(field: str) -> str:
     if "," in field:
-        return "; a decimal takes a point"
-    return "; degrees are written without a sign" if "°" in field else ""
+        return "; write decimals with a point"
+    return "; write degrees without °" if "°" in field else ""

@@ -151,7 +151,7 @@ class Outline:
 
     def __post_init__(self) -> None:
         if not all(0 <= k < len(self.corners) for face in self.faces for k in face):
-            raise BodyError("the faces of an outline name corners that it does not have")
+            raise BodyError("the faces of an outline refer to missing corners")
 
 
 def outline_from(data: Mapping[str, Any]) -> Outline:

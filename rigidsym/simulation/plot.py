@@ -67,7 +67,7 @@ def _draw_poinsot(solid: Any, plane: Any, motion: Samples) -> None:
     moments, axes = np.linalg.eigh(motion.inertia)
     polhode = motion.angular_velocity_body @ axes
     draw_trace(solid, polhode, np.sqrt(np.sum(moments * polhode[0] ** 2) / moments), "123")
-    solid.set_title("Polhode on the ellipsoid of energy,\naxes in the order of the moments")
+    solid.set_title("Polhode on the energy ellipsoid,\naxes in the order of the moments")
     rotation, omega = motion.rotation_matrix, motion.angular_velocity_body
     momentum = rotation[0] @ motion.inertia @ omega[0]
     across = np.linalg.svd(momentum[None])[2][1:]  # two unit vectors normal to L

@@ -65,7 +65,7 @@ def simulate(
         states = attitude.states(problem.start[None], attitude.in_group(times, progress))
         times = times[: len(states)]
         is_whole = len(states) == samples
-        why = f"the motion ended at t = {times[-1]:.6g} s: the body turns too fast for steps"
+        why = f"the integration stopped at t = {times[-1]:.6g} s: the body turns too fast"
         return problem.trajectory(times, states, "" if is_whole else why)
     return _integrated(problem, times, progress, {"method": method, "rtol": rtol, "atol": atol})
 
@@ -110,7 +110,7 @@ def _integrated(
     if not ended and len(rest):
         attitude = Attitude(problem)
         remarks.append(
-            f"near a pole of the coordinates at t = {at:.6g} s; from there on as a quaternion"
+            f"near a pole of the coordinates at t = {at:.6g} s; continued as a quaternion"
         )
         start = attitude.start(state)
         solved = _solve(attitude.slopes, start, rest, progress, options, None, at)
@@ -160,7 +160,7 @@ def _ending(solved: Any) -> str:
     """Why a motion ends before its time."""
     if solved.status >= 0:
         return ""
-    return f"the motion ended at t = {solved.t[-1]:.6g} s: {solved.message}"
+    return f"the integration stopped at t = {solved.t[-1]:.6g} s: {solved.message}"
 
 
 def _exact(problem: Problem, times: Array) -> Trajectory:

@@ -79,7 +79,7 @@ def read_spec(
     models = reader.rotation(rotation, name) if rotation else [EulerAngles("ZXZ")]
     is_list = rotation is not None and isinstance(rotation.value("sequence"), list)
     if not is_list and (message := fault_of_name(name)):
-        table.fault(f"the file's name names the derivation: {message}")
+        table.fault(f"the file name is the name of the derivation: {message}")
     if output:
         output.refuse_others((*_OUTPUT, *words.target_options), reader.hints)
     name = models[0].name if is_list and len(models) == 1 else name

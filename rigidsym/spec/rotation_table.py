@@ -64,7 +64,7 @@ def _read_matrix(table: Table, name: str) -> list[RotationModel]:
     for key, text in example.items():
         with table.noting("example", key):
             parse_expression(text, {})
-    constraints = [*table.texts("constraints", "a list of expressions that are zero").values()]
+    constraints = [*table.texts("constraints", "a list of expressions that vanish").values()]
     if not coordinates or not rows:
         return []
     with table.noting("matrix"):

@@ -64,7 +64,7 @@ def time_limit(seconds: float, *, label: str = "") -> Iterator[None]:
         yield
     except _TimeIsUp:
         raise LimitReached(
-            f"stopped after {seconds:g} s; a longer time limit allows more"
+            f"stopped after {seconds:g} s; raise the time limit if it needs longer"
         ) from None
     finally:
         signal.setitimer(signal.ITIMER_REAL, *before)
@@ -98,7 +98,7 @@ def memory_limit(gigabytes: float) -> Iterator[None]:
         yield
     except MemoryError:
         raise LimitReached(
-            f"stopped at {gigabytes:g} GB of memory; a higher memory limit allows more"
+            f"stopped at {gigabytes:g} GB of memory; raise the memory limit if it needs more"
         ) from None
     finally:
         resource.setrlimit(resource.RLIMIT_DATA, before)

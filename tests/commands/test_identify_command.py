@@ -128,7 +128,7 @@ def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
             ("--angles", "1,2,3", "--angles", "1,2,3", "--quaternion", "1,0,0,0"),
             ["got 2 of angles, 1 of quaternion"],
         ),
-        (("--angles", "1,2,3", "--quaternion", "0,0,0,0"), ["zero, which is no rotation"]),
+        (("--angles", "1,2,3", "--quaternion", "0,0,0,0"), ["zero, which is not a rotation"]),
         (
             ("--angles", "1,2,3", "--matrix", "-1,0,0,0,1,0,0,0,1"),
             ["not a rotation but a reflection, its determinant is -1"],

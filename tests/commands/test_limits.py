@@ -38,7 +38,7 @@ def test_a_derivation_stops_when_its_time_is_up(tmp_path):
     (tmp_path / "own.toml").write_text(ENDLESS)
     start = monotonic()
     done = call("run", "own.toml", "--timeout", "0.5", cwd=tmp_path, status=1)
-    assert done.stderr == "rigidsym: stopped after 0.5 s; a longer time limit allows more\n"
+    assert done.stderr == "rigidsym: stopped after 0.5 s; raise the time limit if it needs longer\n"
     assert monotonic() - start < 20
     assert not (tmp_path / "out").exists()
 
@@ -222,7 +222,7 @@ def test_a_terminal_shows_that_work_goes_on(tmp_path):
     os.close(controller)
     assert b"rigidsym run: 1 s" in shown
     assert shown.endswith(
-        b"\r\x1b[Krigidsym: stopped after 2.5 s; a longer time limit allows more\r\n"
+        b"\r\x1b[Krigidsym: stopped after 2.5 s; raise the time limit if it needs longer\r\n"
     )
 
 

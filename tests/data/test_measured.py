@@ -433,7 +433,7 @@ def test_the_command_shows_and_prints_as_json(tmp_path):
     assert "500 particles" in shown.output
     in_jupyter = inertia_of(tmp_path / "cloud.npy")._repr_mimebundle_()
     assert in_jupyter["text/plain"] in shown.output
-    assert "principal axes, one a column, right-handed" in shown.output
+    assert "principal axes as columns, right-handed" in shown.output
     MESHES["sphere"].export(tmp_path / "ball.stl")
     ball = [str(tmp_path / "ball.stl"), "--density", "1000", "--json"]
     assert '"principal_moments"' in CliRunner().invoke(commands, ["inertia", *ball]).output

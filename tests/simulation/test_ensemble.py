@@ -188,7 +188,7 @@ def test_the_command_simulates_an_ensemble(tmp_path):
 def test_what_was_computed_before_an_integrator_fails_is_kept():
     pushed = rs.derive("z(phi)", body=rs.principal_moments(A, A, C), forces={"phi": "k*phi_dot**2"})
     found = pushed.simulate({"phi": 0, "phi_dot": 1}, {"A": 1, "C": 1, "k": 1}, 3.0, samples=301)
-    assert found.ended.startswith("the motion ended at t = 1 s")
+    assert found.ended.startswith("the integration stopped at t = 1 s")
     assert 95 < len(found.t) < 102
     exact = -np.log(1 - found.t[:90])
     assert np.abs(found.q[:90, 0] - exact).max() < 1e-8

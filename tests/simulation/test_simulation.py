@@ -204,7 +204,7 @@ def test_a_body_at_rest_stays_where_it_is():
 def test_steps_in_the_group_end_where_the_body_turns_too_fast():
     start = REST | {"theta": 1, "psi_dot": 1e7}
     found = free().simulate(start, {"A": 1, "C": 2}, 1.0, samples=3, method="lie")
-    assert found.ended == "the motion ended at t = 0 s: the body turns too fast for steps"
+    assert found.ended == "the integration stopped at t = 0 s: the body turns too fast"
 
 
 @pytest.mark.parametrize(
@@ -307,8 +307,8 @@ time = 3
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ((), "the motion ended at t = 0.2"),
-        (("--method=lie",), "the body turns too fast for steps"),
+        ((), "the integration stopped at t = 0.2"),
+        (("--method=lie",), "the body turns too fast"),
         (
             ("--ensemble=2", "--spread=theta=0.01"),
             "2 of 2 motions reached a pole of the coordinates or overflowed: 1, 2",

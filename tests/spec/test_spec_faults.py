@@ -237,7 +237,7 @@ A_NAME = "expected a lower-case letter, then lower-case letters, digits or under
     ],
 )  # fmt: skip
 def test_the_name_of_the_file_names_folder_and_module(name, fault):
-    assert faults(ZXZ, name) == [f"the file's name names the derivation: {fault}"]
+    assert faults(ZXZ, name) == [f"the file name is the name of the derivation: {fault}"]
 
 
 def test_a_wrong_text_does_not_turn_the_message_around():

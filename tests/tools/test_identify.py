@@ -345,13 +345,13 @@ def test_angles_are_taken_to_be_rounded_where_nothing_fits_otherwise():
     angles = np.array([17.234, 38.441, -63.078])
     found = rs.identify(angles.round(1), **attitude(reading, angles))
     assert holds(found.answers[0], reading)
-    assert "those of the angles too" in found.tolerance.because
+    assert "and of the angles" in found.tolerance.because
 
 
 def test_data_without_any_rounding_are_said_to_be_exact():
     found = rs.identify((0, 0, 90), matrix=[[0, -1, 0], [1, 0, 0], [0, 0, 1]])
     assert found.tolerance.orientation == 1e-6
-    assert found.tolerance.because == "the data taken to be exact"
+    assert found.tolerance.because == "for exact data"
 
 
 def test_round_angles_in_radians_stay_exact():

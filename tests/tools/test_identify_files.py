@@ -222,7 +222,7 @@ def test_all_bad_samples_are_named_with_their_amounts():
 @pytest.mark.parametrize(
     ("quaternion", "message"),
     [
-        ((0, 0, 0, 0), "zero, which is no rotation"),
+        ((0, 0, 0, 0), "zero, which is not a rotation"),
         ((1, 1, 0, 0), "its length is 1.414, expected 1"),
         ((np.nan, 1, 0, 0), "not finite"),
     ],
@@ -242,7 +242,10 @@ def test_quaternions_that_are_not_unit(quaternion, message):
             {"matrix": np.eye(4)},
             r"matrix: expected the shape \(n, 3, 3\) or \(n, 9\), got \(4, 4\)",
         ),
-        ({"matrix": [np.eye(3)] * 2}, "one row a sample, got 1 of angles, 2 of matrix"),
+        (
+            {"matrix": [np.eye(3)] * 2},
+            "one row per sample in every array, got 1 of angles, 2 of matrix",
+        ),
         ({"matrix": np.eye(3) * 1j}, "matrix: expected real numbers, got complex128"),
         ({"matrix": [[1, 2], [3]]}, "matrix: not an array of numbers"),
         ({"matrix": np.eye(3), "names": ("a", "b")}, "three different names of angles, got a, b"),

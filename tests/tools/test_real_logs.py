@@ -451,7 +451,9 @@ def test_long_chunks_with_gaps_go_through_pyarrow(tmp_path, monkeypatch):
 
 
 def test_a_device_or_a_pipe_is_no_plain_file():
-    with pytest.raises(DataError, match="/dev/null: no plain file; `eval` reads a stream from -"):
+    with pytest.raises(
+        DataError, match="/dev/null: not a regular file; `eval` reads a stream from -"
+    ):
         reader_of(Path("/dev/null"))
 
 

@@ -96,7 +96,7 @@ class MassProperties:
             "inertia tensor about the centre of mass, kg m²",
             *_grid(self.inertia),
             f"principal moments    {_row(principal.moments)} kg m²",
-            "principal axes, one a column, right-handed",
+            "principal axes as columns, right-handed",
             *_grid(principal.axes),
             f"radii of gyration    {_row(self.radii)} m",
         ]

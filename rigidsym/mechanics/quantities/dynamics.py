@@ -49,7 +49,7 @@ DYNAMICS_QUANTITIES = read_table(
     hamiltonian                       scalar  J         q momenta           Goldstein 8.1
         Hamiltonian
     effective_potential               scalar  J         q momenta           Goldstein 5.7
-        effective potential of the coordinate that is not ignorable
+        effective potential of the coordinate that is not cyclic
     angular_acceleration_from_torque  vector  rad/s^2   omega_body torque   Goldstein 5.5
         angular acceleration from the torque, body components (Euler's equations)
     """,
@@ -105,11 +105,11 @@ EULER_QUANTITIES = {
 FLOW_QUANTITIES = read_table(
     """
     state_derivative  vector  -  t y  -
-        time derivative of the state y, in the order of y
+        time derivative of the state y
     state_jacobian    matrix  -  t y  -
-        derivatives of `state_derivative` by y, a column for each component of y
+        Jacobian of `state_derivative` with respect to y, one column per component of y
     error_state_jacobian  matrix  -  t y  -
-        for filters: how small errors of R (rotation vector) and Ω′ grow, in body components
+        for filters: F in ẋ = F x, for errors x of R (rotation vector) and Ω′, body components
     first_integrals   vector  -  y    -
         quantities that are constant along every motion
     """,

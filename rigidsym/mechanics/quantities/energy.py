@@ -30,13 +30,13 @@ _ARM = formula(r"#1\times(#2\,#3)", CENTRE, MASS, CENTRE_VELOCITY)
 ENERGY_QUANTITIES = read_table(
     """
     translational_energy            scalar  J         centre_dot                    Landau 32
-        kinetic energy of the mass in the centre of mass
+        kinetic energy of the motion of the centre of mass
     rotational_energy               scalar  J         q q_dot                       Landau 32
         kinetic energy of the rotation about the centre of mass
     kinetic_energy                  scalar  J         q q_dot centre_dot            Landau 32
         kinetic energy
     angular_momentum_centre         vector  kg m^2/s  centre centre_dot             Goldstein 1.2
-        angular momentum of the mass in the centre of mass, space components
+        angular momentum of the motion of the centre of mass, space components
     angular_momentum_rotation_body  vector  kg m^2/s  q q_dot                       Landau 33
         angular momentum of the rotation, body components
     angular_momentum_rotation       vector  kg m^2/s  q q_dot                       Landau 33

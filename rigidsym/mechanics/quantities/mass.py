@@ -65,7 +65,7 @@ INERTIA_QUANTITIES = read_table(
     principal_moments     vector  kg m^2           -                Landau 32
         principal moments of inertia
     principal_axes        matrix  -                -                Landau 32
-        principal axes, one a column, right-handed, body components
+        principal axes as columns, right-handed, body components
     inertia_ellipsoid     vector  (kg m^2)^(-1/2)  -                -
         semi-axes of the inertia ellipsoid, along the principal axes
     inertia_tensor_space  matrix  kg m^2           q                Goldstein 5.2

@@ -52,7 +52,7 @@ def lean(certificate: Certificate) -> str:
     letters = " ".join(work.letters.values())
     lines = [
         f"-- {certificate.name}: what each printed quantity says, entry by entry.",
-        "-- Not compiled when it was written.",
+        "-- This file has not been compiled.",
         *(f"-- {letter} is {name}" for name, letter in work.letters.items()),
         "import Mathlib.Tactic",
         f"variable ({letters} : ℝ)",

@@ -131,7 +131,7 @@ def _what_is_wrong(block: SampleBlock, k: int) -> str:
     if not block.is_matrix:
         length = float(np.linalg.norm(block.attitude[k]))
         if not length:
-            return "quaternion: zero, which is no rotation"
+            return "quaternion: zero, which is not a rotation"
         return f"quaternion: its length is {length:.4g}, expected 1"
     determinant = float(np.linalg.det(block.matrices[k]))
     if determinant < 0 and defect <= SLACK:

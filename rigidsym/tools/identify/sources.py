@@ -105,7 +105,7 @@ def from_arrays(
     counts = {name: len(array) for name, array in arrays.items() if array.ndim}
     if not faults and len(set(counts.values())) > 1:
         said = ", ".join(f"{count} of {name}" for name, count in counts.items())
-        faults.append(f"every part needs one row a sample, got {said}")
+        faults.append(f"expected one row per sample in every array, got {said}")
     if len(names) != 3 or len(set(names)) != 3:
         faults.append(f"expected three different names of angles, got {', '.join(names)}")
     if faults or not min(counts.values()):
@@ -145,5 +145,5 @@ def parts_missing(parts: Set[str]) -> list[str]:
     if {"matrix", "quaternion"} <= parts:
         faults.append("give a matrix or a quaternion, not both")
     if len(parts & {"rates", "omega"}) == 1:
-        faults.append("rates and omega belong together; one of them is missing")
+        faults.append("expected both rates and omega, or neither")
     return faults

@@ -59,7 +59,7 @@ def tolerances(
         velocity=velocity,
         because="from the digits of the data"
         if max(attitude, velocity) > FLOOR
-        else "the data taken to be exact",
+        else "for exact data",
     )
     rounding = 3 * _largest(rounding_of(block.angles))
     slow = 0.0 if block.rates is None else 3 * _largest(rounding_of(block.rates))
@@ -73,7 +73,7 @@ def tolerances(
             radians=in_radians,
             degrees=in_degrees,
             velocity=velocity + more + min(slow / scale if scale else 0.0, _MOST_FOR_ANGLES),
-            because="from the digits of the data, those of the angles too",
+            because="from the digits of the data and of the angles",
         )
 
 
