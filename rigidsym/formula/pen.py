@@ -52,6 +52,7 @@ class Segment(NamedTuple):
 
 
 _EMPTY = Segment("", 0.0)
+_NO_FACTORS, _TIMES = (tree.Sign, tree.Gap, tree.Words), tree.Sign("·")
 
 
 class Piece(NamedTuple):
@@ -157,14 +158,17 @@ class Pen:
 
     def glued(self, pieces: Iterable[Piece], binding: Binding = Binding.CALL) -> Piece:
         """Pieces side by side, which break where each of them does."""
-        chunks = [_EMPTY]
+        chunks: list[Segment] = []
+        text, width, level = _EMPTY
         height = Height.FLAT
         for piece in pieces:
             first, *others = piece.chunks
-            last = chunks[-1]
-            chunks[-1] = Segment(last.text + first.text, last.width + first.width, last.level)
-            chunks += others
+            text, width = text + first.text, width + first.width
             height = max(height, piece.height)
+            if others:
+                chunks += (Segment(text, width, level), *others)
+                text, width, level = chunks.pop()
+        chunks.append(Segment(text, width, level))
         return Piece(tuple(chunks), _width(chunks, self.blank), binding, height)
 
     def within(self, opening: Piece, inside: Piece, closing: Piece, level: int = 1) -> Piece:
@@ -216,11 +220,12 @@ def _on_a_line(index: tree.Formula) -> tree.Formula:
 
 def _is_alone(parts: Sequence[tree.Formula], place: int) -> bool:
     """Whether a part stands between signs, with no other factor beside it."""
-    beside = [parts[k] for k in (place - 1, place + 1) if 0 <= k < len(parts)]
-    return all(
-        isinstance(part, tree.Sign | tree.Gap | tree.Words) and part != tree.Sign("·")
-        for part in beside
-    )
+    beside = (*parts[max(place - 1, 0) : place], *parts[place + 1 : place + 2])
+    return all(map(_is_no_factor, beside))
+
+
+def _is_no_factor(part: tree.Formula) -> bool:
+    return isinstance(part, _NO_FACTORS) and part != _TIMES
 
 
 def _binding(parts: Sequence[tree.Formula]) -> Binding:

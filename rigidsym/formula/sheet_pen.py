@@ -160,15 +160,15 @@ class SheetPen(Pen):
         return atom(self.spelt_root(inside.text), inside.width + widths.ROOT, height=height)
 
     def matrix(self, node: tree.Matrix) -> Piece:
-        rows = [[self._entry(entry) for entry in line] for line in node.rows]
+        small = self.but(small=True)
+        rows = [[self._entry(entry, small.write(entry)) for entry in line] for line in node.rows]
         columns = [max(entry.width for entry in column) for column in zip(*rows, strict=True)]
         gaps = widths.COLUMN_GAP * (len(columns) - 1)
         width = sum(columns) + gaps + widths.TALL_BRACKETS
         return atom(self.spelt_matrix(rows), width, Binding.BRACKET, Height.TALL)
 
-    def _entry(self, entry: tree.Formula) -> Piece:
+    def _entry(self, entry: tree.Formula, small: Piece) -> Piece:
         """A rate in a matrix is in small type, unless a fraction beside it is not."""
-        small = self.but(small=True).write(entry)
         return small if small.height <= Height.RATE else self.write(entry)
 
     def big(self, node: tree.Big) -> Piece:

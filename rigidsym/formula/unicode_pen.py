@@ -121,7 +121,7 @@ class UnicodePen(Pen):
         return self.glued((_atom("√"), inside if is_bare else self.around(inside)), Binding.POWER)
 
     def matrix(self, node: tree.Matrix) -> Piece:
-        rows = (", ".join(self.node(entry).text for entry in line) for line in node.rows)
+        rows = (", ".join(self.write(entry).text for entry in line) for line in node.rows)
         return _atom(f"({'; '.join(rows)})", Binding.BRACKET)
 
     def big(self, node: tree.Big) -> Piece:

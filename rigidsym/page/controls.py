@@ -196,16 +196,23 @@ def period_of(symbol: sp.Expr, model: RotationModel) -> float:
     waves, outside = _waves(model.matrix)
     within = [wave for wave in waves if wave.has(symbol)]
     slopes = [_slope(f.args[0], symbol) for f in within]
-    if not within or outside.has(symbol) or not all(slope.is_Rational for slope in slopes):
+    if not within or symbol in outside or not all(slope.is_Rational for slope in slopes):
         return 0.0
     return 2 * pi * lcm(*(int(slope.q) for slope in slopes))
 
 
 @lru_cache(maxsize=64)
-def _waves(matrix: sp.ImmutableMatrix) -> tuple[set[sp.Expr], sp.ImmutableMatrix]:
-    """The sines and cosines of a matrix, and the matrix with letters in their places."""
-    waves = matrix.atoms(sp.sin, sp.cos)
-    return waves, matrix.xreplace({wave: sp.Dummy() for wave in waves})
+def _waves(matrix: sp.ImmutableMatrix) -> tuple[set[sp.Expr], set[sp.Expr]]:
+    """The sines and cosines of a matrix, and what it is made of outside them."""
+    waves, outside, left = set(), set(), {*matrix}
+    while left:
+        node = left.pop()
+        if isinstance(node, sp.sin | sp.cos):
+            waves.add(node)
+        elif node not in outside:
+            outside.add(node)
+            left.update(node.args)
+    return waves, outside
 
 
 @lru_cache(maxsize=1024)

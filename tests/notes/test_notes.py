@@ -10,6 +10,7 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.motions import derived
+from rigidsym.formula.letters import TIME
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Symbol, indexed
 from rigidsym.formula.unicode_pen import columns
@@ -273,8 +274,8 @@ def test_units_in_words(unit, expected):
 
 
 def test_what_idle_rates_leave_determined():
-    q, rates = sp.symbols("a b c"), sp.symbols("u v w")
-    a, b, c = q
+    a, b, c = q = [sp.Function(name)(TIME) for name in "abc"]
+    rates = [angle.diff(TIME) for angle in q]
 
     def kept(*idle, at=b):
         place = Place(coordinate=at, value=sp.S.Zero, period=2 * sp.pi)
@@ -282,7 +283,7 @@ def test_what_idle_rates_leave_determined():
         found = Singularity(
             places=(place,), rank=2, lost_axis_space=None, lost_axis_body=None, null_rates=columns
         )
-        return determined(found, q, rates)
+        return determined(found, q)
 
     assert kept(1, 0, -1) == [a + c]
     assert kept(-1, 0, -1) == [a - c]

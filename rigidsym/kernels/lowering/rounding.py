@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import reduce
+from functools import lru_cache, reduce
 from math import ceil, factorial, frexp
 from typing import NamedTuple
 
@@ -75,6 +75,7 @@ class Rounding(NamedTuple):
         return f"Bound on rounding: {self.error:g} eps in any entry, for {'; '.join(ranges)}."
 
 
+@lru_cache(maxsize=256)  # each language tells the bound, and the module that there is one
 def rounding(kernel: Kernel) -> Rounding | None:
     """The bound of a kernel; None for one that divides, takes roots, or is given degrees."""
     if any(unit.startswith("deg") for a in kernel.arguments for unit in a.units):

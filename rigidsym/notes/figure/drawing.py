@@ -80,8 +80,9 @@ class Box(NamedTuple):
         return Box(self.centre, self.half_width + margin, self.half_height + margin)
 
     def meets(self, other: Box) -> bool:
-        dx, dy = (abs(a - b) for a, b in zip(self.centre, other.centre, strict=True))
-        return dx < self.half_width + other.half_width and dy < self.half_height + other.half_height
+        (x, y), (a, b) = self.centre, other.centre
+        is_beside = abs(x - a) >= self.half_width + other.half_width
+        return not is_beside and abs(y - b) < self.half_height + other.half_height
 
     def crossed_by(self, segments: Iterable[Segment]) -> list[Segment]:
         """The segments of which any point is inside (the test of Liang and Barsky)."""
@@ -289,11 +290,12 @@ def _free(
     taken: Sequence[Box],
 ) -> Box:
     reach = 2 * hypot(half_width, _HALF_HEIGHT) + max(_GAPS) + _MARGIN
-    starts = {start for start, _ in places}
-    near = {start: Box(start, reach, reach).crossed_by(segments) for start in starts}
+    near: dict[Point, list[Segment]] = {}
     least, best = len(segments) + len(taken) + 1, None
     for gap in _GAPS:
         for start, direction in places:
+            if start not in near:
+                near[start] = Box(start, reach, reach).crossed_by(segments)
             box = Box(_shifted(half_width, start, direction, gap), half_width, _HALF_HEIGHT)
             grown = box.grown(_MARGIN)
             met = len(grown.crossed_by(near[start])) + sum(map(grown.meets, taken))

@@ -248,7 +248,7 @@ def _determined(point: Singularity, coordinates: tuple[sp.Expr, ...]) -> Draft:
             undetermined = f" are not determined: the rank is {point.rank}"
             return ("the rates of ", *_listed(moved), undetermined)
         return (f"the rate matrix has rank {point.rank}",)
-    kept = determined(point, coordinates, [q.diff(TIME) for q in coordinates])
+    kept = determined(point, coordinates)
     verb = "is" if len(kept) == 1 else "are"
     only: Draft = ("only ", *_listed(kept), f" {verb} determined: ") if kept else ()
     return (*only, *_idle(idle, coordinates), " the body at rest")
@@ -266,9 +266,7 @@ def _idle(idle: sp.MatrixBase, coordinates: Sequence[sp.Expr]) -> Draft:
     return ("rates proportional to ", *listed([_vector(c) for c in columns]), " leave")
 
 
-def determined(
-    point: Singularity, coordinates: Sequence[sp.Expr], rates: Sequence[sp.Expr]
-) -> list[sp.Expr]:
+def determined(point: Singularity, coordinates: Sequence[sp.Expr]) -> list[sp.Expr]:
     """The combinations that rates which turn nothing leave as they are, but for the fixed ones.
 
     They are those of the coordinates where such rates stay at the point: R is then the same all
@@ -282,7 +280,7 @@ def determined(
         for q, row in zip(coordinates, point.null_rates.tolist(), strict=True)
         if q in fixed
     )
-    named = rates if leaves else coordinates
+    named = [q.diff(TIME) for q in coordinates] if leaves else coordinates
     kept = sp.Matrix(point.null_rates.T).nullspace()
     found = (sp.Add(*(n * q for n, q in zip(_whole(row), named, strict=True))) for row in kept)
     return [combination for combination in found if combination not in fixed]

@@ -89,7 +89,7 @@ def module_text(
     written.
     """
     kernels = list(map(_fitted, program.kernels))
-    unwrap = [unwrap_text(program.unwrapping, _block)] if program.unwrapping else []
+    unwrap = [unwrap_text(program.unwrapping, _unwrapped)] if program.unwrapping else []
     exports = [f"{kernel.name}{twin}" for kernel in kernels for twin in ("", "_scalar")]
     exports += ["unwrap"] if unwrap else []
     return (
@@ -272,8 +272,13 @@ def _block(kernel: Kernel, statements: python.Statements = BLOCK) -> str:
     lines += ["    _of = _of or _ARRAYS"] if statements is _SHARED else []
     for vector, argument in zip(vectors, kernel.arguments, strict=True):
         lines += _unpacked(vector, argument.components, kernel.used)
-    lines += _block_lines(_fitted(kernel), statements, head)
+    lines += _block_lines(kernel, statements, head)
     return "\n".join([*lines, _tuple(4, "return ", outputs)])
+
+
+def _unwrapped(kernel: Kernel) -> str:
+    """The function of arrays of a kernel that `unwrap` needs."""
+    return _block(_fitted(kernel))
 
 
 def _unpacked(vector: str, components: Sequence[str], used: Container[str]) -> list[str]:
