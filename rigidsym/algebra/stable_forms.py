@@ -76,10 +76,16 @@ def rewriter_of(
     expressions: Sequence[sp.Expr], constraints: Sequence[sp.Expr] = ()
 ) -> Rewriter | None:
     """The rewriter for expressions with exactly one norm; else None."""
-    angles = [f.args[0] for e in expressions for f in e.atoms(sp.sin, sp.cos)]
-    if not any(_is_root(angle.as_coeff_Mul()[1]) for angle in angles):
+    if not any(map(_has_root, expressions)):
         return None
     return rewriter_for(codec_for(expressions, constraints=constraints, order=2))
+
+
+@lru_cache(maxsize=1024)  # of the same entries for every language
+def _has_root(expression: sp.Expr) -> bool:
+    """Whether an angle in it is a multiple of a root."""
+    angles = (f.args[0].as_coeff_Mul()[1] for f in expression.atoms(sp.sin, sp.cos))
+    return any(map(_is_root, angles))
 
 
 def _is_root(expression: sp.Expr) -> bool:

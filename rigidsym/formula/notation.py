@@ -95,6 +95,8 @@ class Notation:
     @property
     def is_default(self) -> bool:
         """Whether formulas stay as they were composed."""
+        if self is DEFAULT:
+            return True
         chosen = all(getattr(self, name) == known[0] for name, known in CHOICES.items())
         return chosen and self.vector == "v" and self.decimal == "."
 

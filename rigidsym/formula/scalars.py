@@ -70,7 +70,7 @@ def signs_outside(node: sp.Expr) -> sp.Expr:
 @lru_cache(maxsize=1024)
 def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     """What is in all entries, such as ½ M or 2/(n² + w²), and the matrix behind it."""
-    entries = [entry for entry in matrix if entry != 0]
+    entries = [entry for entry in matrix.flat() if entry != 0]
     below = set(map(_below, entries))
     if len(below) == 2 and any(_below(t) != 1 for e in entries if e.is_Add for t in e.args):
         below = {_below(sp.together(entry)) for entry in entries}  # 1 − 2 y²/d, 2 x y/d

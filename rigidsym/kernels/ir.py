@@ -256,9 +256,14 @@ class Kernel:
         return (*(assignment.value for assignment in self.assignments), *self.outputs)
 
     @cached_property
+    def nodes(self) -> tuple[Expression, ...]:
+        """All that the values are made of."""
+        return tuple(node for value in self.values for node in walk(value))
+
+    @cached_property
     def used(self) -> frozenset[str]:
         """The names that occur in the values."""
-        return frozenset(name for value in self.values for name in names_in(value))
+        return frozenset(node.text for node in self.nodes if isinstance(node, Name))
 
     @cached_property
     def calls(self) -> dict[str, Call]:
@@ -282,8 +287,7 @@ class Kernel:
     @property
     def gives_nan(self) -> bool:
         """Whether NaN is among its numbers."""
-        nodes = (node for value in self.values for node in walk(value))
-        return any(isinstance(node, Number) and isnan(node.value) for node in nodes)
+        return any(isinstance(node, Number) and isnan(node.value) for node in self.nodes)
 
     @property
     def statements(self) -> Iterator[tuple[str, Expression | dict[str, Call]]]:
@@ -302,8 +306,7 @@ class Kernel:
     @cached_property
     def divisors(self) -> tuple[Expression, ...]:
         """What the kernel divides by, each once: where one of them vanishes, it has a pole."""
-        nodes = (node for value in self.values for node in walk(value))
-        found = (d for node in nodes if isinstance(node, Product) for d in node.divisors)
+        found = (d for node in self.nodes if isinstance(node, Product) for d in node.divisors)
         return tuple(dict.fromkeys(found))
 
     @cached_property

@@ -26,7 +26,7 @@ class Note(NamedTuple):
 
     def __repr__(self) -> str:
         """One line, for a prompt; the document itself would fill pages."""
-        return f"<Note {self.document.name}, {len(list(self.document.equations))} equations>"
+        return f"<Note {self.document.name}, {len(self.document.equations)} equations>"
 
     def _repr_mimebundle_(self, **_: object) -> dict[str, str]:
         """What Jupyter shows: the whole note, or one line."""

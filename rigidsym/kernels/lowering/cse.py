@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Hashable, Iterable, Mapping
 from fractions import Fraction
-from functools import cache
+from functools import lru_cache
 from itertools import combinations
 from math import nan
 from types import MappingProxyType
@@ -130,14 +130,13 @@ class Graph:
     def share(self, roots: Iterable[int]) -> None:
         """Give a node of its own to what several products or several sums have in common."""
         roots = list(roots)
-        of_factors, of_terms = cache(_factor_pairs), cache(_term_pairs)  # a round alters few nodes
         used = self._used(self.products, roots)
-        while pair := _most_common(map(of_factors, used.values())):
+        while pair := _most_common(map(_factor_pairs, used.values())):
             self._take_factors(used, *pair)
             used = self._used(self.products, roots)
         self._take_reciprocals(used)
         used_sums = self._used(self.sums, roots)
-        while found := _most_common(map(of_terms, used_sums.values())):
+        while found := _most_common(map(_term_pairs, used_sums.values())):
             self._take_terms(used_sums, *found)
             used_sums = self._used(self.sums, roots)
 
@@ -189,6 +188,7 @@ def _common_scale(coefficients: list[Fraction]) -> Fraction:
     return -size if is_minus else size
 
 
+@lru_cache(maxsize=4096)  # a round alters few nodes
 def _factor_pairs(factors: Factors) -> Counter[tuple[int, int]]:
     """Pairs of factors, and how often each can be taken out of the product at once."""
     counted = Counter(factors)
@@ -197,6 +197,7 @@ def _factor_pairs(factors: Factors) -> Counter[tuple[int, int]]:
     return Counter(pairs | squares)
 
 
+@lru_cache(maxsize=4096)
 def _term_pairs(terms: Terms) -> Counter[PairOfTerms]:
     """Pairs of terms up to a common number."""
     return Counter((a, b, d / c) for (c, a), (d, b) in combinations(terms, 2))

@@ -161,7 +161,7 @@ class _Lowering:
             return ()
         shapes = [step.shape for step in steps]
         texts = [(s.quantity.symbol.text, s.quantity.definition.text) for s in steps]
-        forms = self._stable(map(self._over_squares, step.expression) for step in steps)
+        forms = self._stable(map(self._over_squares, step.expression.flat()) for step in steps)
         found = []
         for step, shape, entries, (symbol, definition) in zip(
             steps, shapes, forms, texts, strict=True

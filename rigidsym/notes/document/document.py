@@ -159,11 +159,11 @@ class Document:
     more_sources: tuple[str, ...] = ()  # listed whether they are cited or not
     language: Catalogue = ENGLISH
 
-    @property
-    def equations(self) -> Iterator[Equation]:
+    @cached_property
+    def equations(self) -> tuple[Equation, ...]:
         """The numbered equations, in order."""
         blocks = (block for section in self.sections for block in section.blocks)
-        return (block for block in blocks if isinstance(block, Equation) and block.number)
+        return tuple(block for block in blocks if isinstance(block, Equation) and block.number)
 
     @cached_property
     def displays(self) -> tuple[Equation, ...]:

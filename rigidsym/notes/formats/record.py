@@ -204,7 +204,7 @@ def _arguments(arguments: Sequence[Argument]) -> list[dict[str, Any]]:
 
 
 def _step(step: Step, source: str | None) -> dict[str, Any]:
-    quantity, entries = step.quantity, [*step.expression]
+    quantity, entries = step.quantity, step.expression.flat()
     values = {
         "scalar": ((), *entries[:1]),
         "vector": ((len(entries),), entries),

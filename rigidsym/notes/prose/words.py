@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
 from itertools import chain
 
 import sympy as sp
@@ -94,10 +95,14 @@ def symbols_of(derivation: Derivation) -> dict[str, Formula]:
 
 def with_symbols(sentence: str, symbols: Mapping[str, Formula]) -> Text:
     """A plain sentence, with the symbols in it made into formulas."""
-    longest_first = sorted(symbols, key=len, reverse=True)
-    pattern = r"(?<!\w)(" + "|".join(map(re.escape, longest_first)) + r")(?!\w)"
-    parts = re.split(pattern, sentence)
+    parts = _any_of(tuple(symbols)).split(sentence)
     return tuple(symbols.get(part, part) for part in parts if part)
+
+
+@lru_cache(maxsize=64)
+def _any_of(texts: tuple[str, ...]) -> re.Pattern[str]:
+    longest_first = sorted(texts, key=len, reverse=True)
+    return re.compile(r"(?<!\w)(" + "|".join(map(re.escape, longest_first)) + r")(?!\w)")
 
 
 def with_source(text: Text, source: Citation | None) -> Text:
