@@ -7,7 +7,7 @@ that typesets can write the result.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
@@ -104,7 +104,8 @@ def display(
     notation of the letters.
     """
     made: Callable[..., SheetPen] = type(pen) if pen else LatexPen
-    return _displayed(equation, letters, width, made)
+    inside = replace(equation, number=None, label="", function="", proved=(), unproved=())
+    return _displayed(inside, letters, width, made)
 
 
 @lru_cache(maxsize=512)  # what was fitted is printed, often in several formats

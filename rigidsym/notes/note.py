@@ -82,6 +82,7 @@ def note(
         functions=names if module else (),
         notation=notation,
         conversions=conversions,
+        is_audit=style == "audit",
     )
     document = composer.document(left_out_of(style, is_short=composer.is_short))
     if notation.frames != FRAMES:

@@ -104,6 +104,7 @@ class Composer:
         functions: Sequence[str] = (),
         notation: Notation = DEFAULT,
         conversions: Conversions | None = None,
+        is_audit: bool = True,
     ) -> None:
         notation.check(derivation.model)
         self.derivation = derivation
@@ -113,7 +114,7 @@ class Composer:
         self.conversions = conversions
         self.letters = letters_of(derivation.arguments, notation, derivation.model)
         self.symbols = symbols_of(derivation)
-        self.fitter = Fitter(derivation, self.letters)
+        self.fitter = Fitter(derivation, self.letters, is_audit=is_audit)
         self.cited: set[Citation] = set()
 
     @property

@@ -63,9 +63,10 @@ class _Form(NamedTuple):
 class Fitter:
     """The equations of one note, each as short as can be."""
 
-    def __init__(self, derivation: Derivation, letters: Letters) -> None:
+    def __init__(self, derivation: Derivation, letters: Letters, *, is_audit: bool) -> None:
         self.derivation = derivation
         self.letters = letters
+        self._is_audit = is_audit
         self._namer = Namer(letters)
         self._explained_at: dict[sp.Symbol, str] = {}  # name of a part: label of its equation
 
@@ -76,6 +77,9 @@ class Fitter:
         short = in_short(step, self.derivation, self.letters) if is_long else None
         if short is not None and is_vector:
             yield _without_entries(equation, short)
+            return
+        if step.quantity.name == "rotation_rate" and not (self._is_audit or shown.is_broken):
+            yield equation  # entries that are long give way to the chain rule: see `styles.py`
             return
         form = self._shortest(equation, shown)
         if form.parts and step.quantity.name in _RATHER_SHORT:

@@ -89,7 +89,8 @@ def module_text(
     written.
     """
     kernels = list(map(_fitted, program.kernels))
-    unwrap = [unwrap_text(program.unwrapping, _unwrapped)] if program.unwrapping else []
+    unwrapping = program.unwrapping
+    unwrap = [unwrap_text(unwrapping, lambda k: _block(_fitted(k)))] if unwrapping else []
     exports = [f"{kernel.name}{twin}" for kernel in kernels for twin in ("", "_scalar")]
     exports += ["unwrap"] if unwrap else []
     return (
@@ -274,11 +275,6 @@ def _block(kernel: Kernel, statements: python.Statements = BLOCK) -> str:
         lines += _unpacked(vector, argument.components, kernel.used)
     lines += _block_lines(kernel, statements, head)
     return "\n".join([*lines, _tuple(4, "return ", outputs)])
-
-
-def _unwrapped(kernel: Kernel) -> str:
-    """The function of arrays of a kernel that `unwrap` needs."""
-    return _block(_fitted(kernel))
 
 
 def _unpacked(vector: str, components: Sequence[str], used: Container[str]) -> list[str]:
