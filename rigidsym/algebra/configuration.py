@@ -15,10 +15,9 @@ from itertools import islice
 from typing import Any
 
 import sympy as sp
-from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.generators import TIME, is_identically_zero
+from rigidsym.algebra.generators import TIME, in_names, is_identically_zero
 from rigidsym.algebra.real_values import (
     DIGITS,
     GUARD,
@@ -104,7 +103,7 @@ class _Search:
 
     def reason(self) -> str:
         """Why no point was found."""
-        conditions = ", ".join(f"{_plain(c)} = 0" for c in self.constraints)
+        conditions = ", ".join(f"{in_names(c)} = 0" for c in self.constraints)
         if self._unproved:
             return (
                 f"a point that satisfies {conditions} was found to {self.digits} digits, but not "
@@ -115,7 +114,7 @@ class _Search:
         if self._not_real is not None:
             return (
                 f"no real values were found: {self._not_real.reason} "
-                f"{_plain(self._not_real.part)}; expected expressions that are real and defined "
+                f"{in_names(self._not_real.part)}; expected expressions that are real and defined "
                 "for some values"
             )
         return (
@@ -283,11 +282,3 @@ def _follows(constraint: sp.Expr, kept: Sequence[sp.Expr]) -> bool:
         return not codec_for([constraint], constraints=kept, order=0).encode(constraint)
     except AlgebraError:
         return False
-
-
-def _plain(expression: sp.Expr) -> str:
-    """An expression with the plain names of functions of time."""
-    names = {
-        f: sp.Symbol(f.func.__name__) for f in expression.atoms(AppliedUndef) if f.args == (TIME,)
-    }
-    return str(expression.xreplace(names))

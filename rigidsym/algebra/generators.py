@@ -16,6 +16,7 @@ from enum import IntEnum
 from fractions import Fraction
 from functools import cached_property, lru_cache, reduce
 from math import gcd, lcm
+from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
@@ -362,6 +363,16 @@ def is_time_function(expression: sp.Expr) -> bool:
     if isinstance(expression, sp.Derivative):
         return set(expression.variables) == {TIME} and is_time_function(expression.expr)
     return isinstance(expression, AppliedUndef) and expression.args == (TIME,)
+
+
+def in_names(value: Any) -> Any:
+    """An expression or a matrix in the plain names of functions of time: theta, theta_dot."""
+    rates = {
+        rate: sp.Symbol(f"{rate.expr.func}_{'d' * rate.derivative_count}ot")
+        for rate in filter(is_time_function, value.atoms(sp.Derivative))
+    }
+    moving = filter(is_time_function, value.atoms(AppliedUndef))
+    return value.xreplace(rates).xreplace({f: sp.Symbol(str(f.func)) for f in moving})
 
 
 @lru_cache(maxsize=1024)

@@ -14,6 +14,7 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from rigidsym.algebra.codec import Codec, codec_for
+from rigidsym.algebra.generators import in_names
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import Rationals
 from rigidsym.algebra.ring import Quotient
@@ -159,13 +160,8 @@ class Prover:
 
     def _plain(self, left: sp.ImmutableMatrix) -> str:
         """The entries that are not zero, in the plain names of the coordinates."""
-        names = {
-            sp.diff(q, TIME, order): sp.Symbol(q.func.__name__ + suffix)
-            for order, suffix in ((2, "_ddot"), (1, "_dot"), (0, ""))
-            for q in self.subject.coordinates
-        }
         entries = [
-            (f"{left[i, j].xreplace(names)}", f" in row {i + 1}, column {j + 1}")
+            (f"{in_names(left[i, j])}", f" in row {i + 1}, column {j + 1}")
             for i in range(left.rows)
             for j in range(left.cols)
             if left[i, j] != 0

@@ -12,7 +12,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.algebra.generators import rate_of, reduced
+from rigidsym.algebra.generators import in_names, rate_of, reduced
 from rigidsym.errors import ModelError
 from rigidsym.models.so3 import AXES, TIME, elementary, rodrigues, symbolic
 from rigidsym.text.names import lettered
@@ -104,8 +104,7 @@ class Turn:
     @property
     def angle_text(self) -> str:
         """The angle in plain text."""
-        names = {f: sp.Symbol(f.func.__name__) for f in self.angle.atoms(AppliedUndef)}
-        plain = self.angle.xreplace(names)
+        plain = in_names(self.angle)
         return lettered(plain.name) if plain.is_Symbol else str(plain)
 
     def __str__(self) -> str:
@@ -272,8 +271,7 @@ class RotationModel:
     @property
     def conditions(self) -> tuple[str, ...]:
         """The conditions on coordinates and constants in plain text: "c**2 + s**2 = 1"."""
-        plain = {q: sp.Symbol(q.func.__name__) for q in self.coordinates}
-        parts = (constraint.xreplace(plain).as_coeff_Add() for constraint in self.constraints)
+        parts = (in_names(constraint).as_coeff_Add() for constraint in self.constraints)
         return tuple(f"{rest} = {-number}" for number, rest in parts)
 
     @property
@@ -291,8 +289,7 @@ class RotationModel:
         return {"text/latex": self._repr_latex_(), "text/plain": self._in_words()}
 
     def _repr_latex_(self) -> str:
-        plain = {q: sp.Symbol(q.func.__name__) for q in self.coordinates}
-        shown = (self.matrix.T if self.passive else self.matrix).xreplace(plain)
+        shown = in_names(self.matrix.T if self.passive else self.matrix)
         symbol = r"\mathbf{A} = \mathbf{R}^{\mathsf T}" if self.passive else r"\mathbf{R}"
         return f"$${symbol} = {sp.latex(shown)}$$"
 

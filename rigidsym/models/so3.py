@@ -8,7 +8,7 @@ from functools import lru_cache
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from rigidsym.algebra.generators import TIME
+from rigidsym.algebra.generators import TIME, in_names
 from rigidsym.errors import ExpressionError, ModelError
 from rigidsym.text.names import check_name
 
@@ -42,9 +42,7 @@ def depends_on_time(value: sp.Basic) -> bool:
 
 def as_typed(value: sp.Basic) -> str:
     """The expression as in a derivation file: theta, and theta_dot for its rate."""
-    rates = {rate: sp.Symbol(f"{rate.expr.func}_dot") for rate in value.atoms(sp.Derivative)}
-    plain = value.xreplace(rates)
-    return str(plain.xreplace({q: sp.Symbol(str(q.func)) for q in plain.atoms(AppliedUndef)}))
+    return str(in_names(value))
 
 
 def symbolic(value: object, what: str) -> sp.Expr:

@@ -212,17 +212,9 @@ def _angular_velocities() -> tuple[Argument, ...]:
             [r"\Omega_1", r"\Omega_2", r"\Omega_3", r"\Omega'_1", r"\Omega'_2", r"\Omega'_3"],
         )
     )
-    return tuple(
-        Argument(
-            name=f"omega_{frame}",
-            symbols=symbols,
-            names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3)),
-            notation=notation,
-            units=("rad/s",) * 3,
-            about=f"{frame} components of the angular velocity",
-        )
-        for frame, symbols, notation in (
-            ("space", _SPACE, shown[:3]),
-            ("body", OMEGA_BODY, shown[3:]),
-        )
-    )
+    found = []
+    for frame, symbols, notation in (("space", _SPACE, shown[:3]), ("body", OMEGA_BODY, shown[3:])):
+        about = f"{frame} components of the angular velocity"
+        vector = _vector(f"omega_{frame}", symbols, "rad/s", about, notation)
+        found.append(vector._replace(names=tuple(f"omega_{frame}_{k}" for k in (1, 2, 3))))
+    return tuple(found)
