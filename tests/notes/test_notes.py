@@ -266,6 +266,12 @@ def test_symbols_in_a_sentence_become_formulas():
     )
 
 
+def test_a_coordinate_that_is_also_a_word_is_a_symbol_before_a_sign():
+    a = Symbol("a")
+    sentence = "The quaternion of a turn is a + v."
+    assert with_symbols(sentence, {"a": a}) == ("The quaternion of a turn is ", a, " + v.")
+
+
 @pytest.mark.parametrize(
     ("unit", "expected"), [("rad/s^2", "rad/s²"), ("", "1"), ("kg m^2 s^-1", "kg m² s⁻¹")]
 )

@@ -49,7 +49,7 @@ _OF_TURNS = tuple(
     map(formula, (r"\mathbf{T}_k", r"\mathbf{n}_k", r"\theta_k", r"\mathbf{P}_0 = \mathbf{1}"))
 )
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
-_ALSO_WORDS = ("a", "A", "I")  # in a sentence these are words, whatever an angle is called
+_ALSO_WORDS = ("a", "A", "I")  # words of a sentence, unless a sign follows: a + i b
 
 
 _ON_OMEGA = words(
@@ -90,7 +90,7 @@ def symbols_of(derivation: Derivation) -> dict[str, Formula]:
     for argument in derivation.arguments:
         if argument.name == "q":
             found |= zip(argument.names, argument.notation, strict=True)
-    return {text: symbol for text, symbol in found.items() if text not in _ALSO_WORDS}
+    return found
 
 
 def with_symbols(sentence: str, symbols: Mapping[str, Formula]) -> Text:
@@ -102,7 +102,8 @@ def with_symbols(sentence: str, symbols: Mapping[str, Formula]) -> Text:
 @lru_cache(maxsize=64)
 def _any_of(texts: tuple[str, ...]) -> re.Pattern[str]:
     longest_first = sorted(texts, key=len, reverse=True)
-    return re.compile(r"(?<!\w)(" + "|".join(map(re.escape, longest_first)) + r")(?!\w)")
+    known = (rf"{t}(?= [+=])" if t in _ALSO_WORDS else re.escape(t) for t in longest_first)
+    return re.compile(r"(?<!\w)(" + "|".join(known) + r")(?!\w)")
 
 
 def with_source(text: Text, source: Citation | None) -> Text:
