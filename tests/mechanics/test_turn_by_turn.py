@@ -49,8 +49,8 @@ def test_the_recursion_is_the_expanded_form_in_the_ring(count, oblique):
         ("rotation_matrix", values.turning.R),
         ("angular_velocity_space", values.turning.omega_space),
         ("angular_velocity_body", values.turning.omega_body),
-        ("rate_matrix_space", values.rate_matrix_space),
-        ("rate_matrix_body", values.rate_matrix_body),
+        ("rate_matrix_space", values.rate_matrices["space"]),
+        ("rate_matrix_body", values.rate_matrices["body"]),
         ("angular_acceleration_space", values.turning.omega_space.dt()),
         ("angular_acceleration_body", values.turning.omega_body.dt()),
     ):

@@ -43,12 +43,13 @@ class EulerEquations(Flow):
                 'expected method = "lagrange"'
             )
         rotation = Values(model)
-        if rotation.inverse_body is None:
+        solved = rotation.inverse("body")
+        if solved is None:
             raise ModelError(
                 f"{model.name}: Euler's equations need coordinates whose rates follow from the "
                 "angular velocity"
             )
-        inverse, divisor = rotation.inverse_body
+        inverse, divisor = solved
         self._inverse = rotation.codec.decoded(inverse)
         self._divisor = rotation.codec.decode(divisor)
         self._matrix = rotation.model.matrix

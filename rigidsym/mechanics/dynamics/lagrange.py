@@ -79,13 +79,15 @@ class Lagrange:
         Raises ModelError if there is no U, and for other parts.
         """
         values = Values(model)
-        if model.pullback is not None or values.inverse_body is None or forces.parts:
+        is_free = model.pullback is None and not forces.parts
+        found = values.inverse("body") if is_free else None
+        if found is None:
             raise ModelError(
                 f"{model.name}: Lagrange's equations need independent coordinates, such as Euler "
                 "angles, or one body whose angular velocity determines the rates; expected such a "
                 'rotation, or method = "euler"'
             )
-        above, below = values.inverse_body
+        above, below = found
         short = values.present.matrix(above, below)
         if all(sp.denom(entry).is_number for entry in short):
             return short, sp.S.One
@@ -103,7 +105,7 @@ class Lagrange:
     def _turning(self, model: RotationModel, inertia: sp.ImmutableMatrix) -> Moving:
         """A body that turns so; its rate matrix has a column for each coordinate of all."""
         values = Values(model)
-        entries = values.codec.decoded(values.rate_matrix_body)
+        entries = values.codec.decoded(values.rate_matrices["body"])
         columns = [
             entries.col(model.coordinates.index(q)) if q in model.coordinates else sp.zeros(3, 1)
             for q in self.model.coordinates

@@ -137,7 +137,7 @@ class Expanded(Kinematics):
         values, passive, spin = self.values, self.model.passive, self._spin
         R, R_dot, active, omega_space, omega_body = values.turning
         omegas = {"space": omega_space, "body": omega_body}
-        rates = {"space": values.rate_matrix_space, "body": values.rate_matrix_body}
+        rates = values.rate_matrices
         inverses = {f: values.inverse(f) for kind, f in kinds if kind in _INVERSE}
         given, column = values.arguments, values.codec.column
         one, unit = values.codec.ring.one, RingMatrix.identity(values.codec.ring, 3)

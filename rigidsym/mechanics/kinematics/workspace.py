@@ -45,6 +45,7 @@ class Values:
         self.body = body
         self.arguments = {argument.name: argument for argument in arguments_of(model, body)}
         self._also = tuple(also)
+        self._inverses: dict[str, Inverse | None] = {}
 
     @cached_property
     def codec(self) -> Codec:
@@ -83,24 +84,25 @@ class Values:
         return Turning(rotation, rate, spin, space, body)
 
     @cached_property
-    def rate_matrix_space(self) -> RingMatrix:
-        return self._jacobian(self.turning.omega_space)
+    def rate_matrices(self) -> dict[str, RingMatrix]:
+        """W = ∂Ω/∂q̇ and W′ by frame: "space" and "body".
 
-    @cached_property
-    def rate_matrix_body(self) -> RingMatrix:
-        return self._jacobian(self.turning.omega_body)
-
-    @cached_property
-    def inverse_space(self) -> Inverse | None:
-        return self._entry_rates("space") or self.rate_matrix_space.right_inverse(self.bound)
-
-    @cached_property
-    def inverse_body(self) -> Inverse | None:
-        return self._entry_rates("body") or self.rate_matrix_body.right_inverse(self.bound)
+        By the generators of the rates themselves, since a constraint may relate them.
+        """
+        index, turning = self.codec.ring.index, self.turning
+        places = [index[q] for q in self.arguments["q_dot"].symbols]
+        in_space, in_body = (
+            turning.omega_space.jacobian(places),
+            turning.omega_body.jacobian(places),
+        )
+        return {"space": in_space, "body": in_body}
 
     def inverse(self, frame: str) -> Inverse | None:
-        """By the name of the frame: "space" or "body"."""
-        return self.inverse_space if frame == "space" else self.inverse_body
+        """The right inverse of the rate matrix of a frame; None if it has none."""
+        if frame not in self._inverses:
+            found = self._entry_rates(frame)
+            self._inverses[frame] = found or self.rate_matrices[frame].right_inverse(self.bound)
+        return self._inverses[frame]
 
     def _entry_rates(self, frame: str) -> Inverse | None:
         """The columns dR/dt of unit angular velocities, where the coordinates are R's entries."""
@@ -118,11 +120,6 @@ class Values:
         binding = [c for c in self.model.constraints if c.has(*coordinates)]
         rows = [[sp.diff(c, q) for q in coordinates] for c in binding]
         return self.codec.matrix(sp.Matrix(rows)) if rows else None
-
-    def _jacobian(self, omega: RingMatrix) -> RingMatrix:
-        """∂Ω/∂q̇, by the generators of the rates themselves: a constraint may relate them."""
-        index = self.codec.ring.index
-        return omega.jacobian([index[q] for q in self.arguments["q_dot"].symbols])
 
     def argument(self, name: str) -> RingMatrix:
         """The components of an argument as a column."""

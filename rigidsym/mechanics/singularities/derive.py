@@ -23,7 +23,7 @@ def singularities_of(values: Values) -> Singularities:
     the minors are reported and nothing is guessed.
     """
     if values.model.pullback is not None:
-        inverse = values.inverse_space
+        inverse = values.inverse("space")
         if inverse is not None and inverse[1].is_ground:
             # W G = 1 with a G that holds no divisor: the rank is 3 wherever the coordinates may be
             return Singularities(
@@ -47,7 +47,7 @@ class _Study:
         # rank, kernel and minors are the same in every frame: between the middle ones of the turns
         # each axis has been moved by few turns, and W is shortest
         matrices = [turn.matrix for turn in model.turns[: len(model.turns) // 2]]
-        rotation, rates = values.turning.R, values.rate_matrix_space
+        rotation, rates = values.turning.R, values.rate_matrices["space"]
         one = RingMatrix.identity(codec.ring, 3)
         to_space = reduce(operator.matmul, map(codec.matrix, matrices), one)
         self.to_both = RingMatrix(codec.ring, (*to_space.rows, *(rotation.T @ to_space).rows))
