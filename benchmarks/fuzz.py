@@ -40,7 +40,7 @@ from rigidsym.errors import LimitReached, RigidsymError
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.motion import derive, kernels
 from rigidsym.pipeline import read_record, read_spec
-from rigidsym.system.limits import memory_limit, time_limit
+from rigidsym.system.processes import memory_limit, time_limit
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 from rigidsym.tools.evaluate.evaluation import evaluation

@@ -32,7 +32,7 @@ from rigidsym.models.forces import forces_on
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.system.cluster import on_cluster
-from rigidsym.system.limits import time_limit
+from rigidsym.system.processes import time_limit
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions

@@ -27,7 +27,7 @@ from rigidsym.motion import CHOICES, DEFAULT, QUANTITIES, Motion, Notation, deri
 from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.record import record
-from rigidsym.notes.sections.styles import STYLES
+from rigidsym.notes.note import STYLES
 from rigidsym.spec import derivation_file
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.spec.faults import Source

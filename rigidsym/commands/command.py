@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rigidsym.errors import printable
-from rigidsym.system.limits import memory_limit, time_limit
+from rigidsym.system.processes import memory_limit, time_limit
 
 if TYPE_CHECKING:
     _Type = click.ParamType[Any]

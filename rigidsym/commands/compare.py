@@ -15,7 +15,7 @@ from rigidsym.commands.options import RotationOptions
 from rigidsym.data.columns import counted
 from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import motion_of, read
-from rigidsym.system.progress import bar
+from rigidsym.system.processes import bar
 from rigidsym.tools.compare.comparison import compare
 from rigidsym.tools.compare.search import search, source_files
 from rigidsym.tools.compare.targets import KnownQuantity

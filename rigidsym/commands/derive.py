@@ -22,8 +22,7 @@ from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import PDF, Output, integrated, motion_of
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
 from rigidsym.system.files import write_bytes
-from rigidsym.system.processes import in_processes
-from rigidsym.system.progress import counter
+from rigidsym.system.processes import counter, in_processes
 
 Made = tuple[Output, bytes | RigidsymError | None]  # with the PDF, or why there is none
 

@@ -25,7 +25,7 @@ from rigidsym.errors import ModelError
 from rigidsym.motion import Motion, derive
 from rigidsym.pipeline import integrated, read
 from rigidsym.spec.derivation_spec import DerivationSpec
-from rigidsym.system.progress import bar
+from rigidsym.system.processes import bar
 from rigidsym.tools.evaluate.callables import derived_for
 from rigidsym.tools.evaluate.evaluation import Evaluated, evaluation
 

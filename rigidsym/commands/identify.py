@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rigidsym.commands.command import EXISTING_FILE, command as make, option, with_options
-from rigidsym.system.progress import bar
+from rigidsym.system.processes import bar
 from rigidsym.tools.identify.identification import identify_file, identify_source
 from rigidsym.tools.identify.readings import ANGLE_NAMES
 from rigidsym.tools.identify.report import Identification

@@ -12,7 +12,7 @@ from rigidsym.commands.command import EXISTING_FILE, NAMES, POSITIVE, command as
 from rigidsym.data.mass.mesh import ENDINGS, mesh_inertia, read_mesh_file
 from rigidsym.data.mass.point_masses import inertia_of
 from rigidsym.data.mass.properties import MassProperties
-from rigidsym.system.progress import bar
+from rigidsym.system.processes import bar
 
 
 @make("rigidsym inertia cloud.npy\n         rigidsym inertia part.stl --density 2700 --scale 0.001")

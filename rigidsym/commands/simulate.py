@@ -22,7 +22,7 @@ from rigidsym.simulation.animation import WRITERS
 from rigidsym.simulation.plot import PICTURES, check_picture
 from rigidsym.simulation.solver import METHODS, needed
 from rigidsym.system.files import whole_file
-from rigidsym.system.progress import bar
+from rigidsym.system.processes import bar
 
 if TYPE_CHECKING:
     from rigidsym.simulation.ensemble import Ensemble

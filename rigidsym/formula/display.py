@@ -17,10 +17,9 @@ from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.pen import Segment, break_lines
 from rigidsym.formula.scalars import factored, formula_of, listed_entries, matrix_of
-from rigidsym.formula.sheet_pen import Aligned, SheetPen
+from rigidsym.formula.sheet_pen import EQUAL, QUAD, Aligned, SheetPen
 from rigidsym.formula.tree import EQUALS, Formula, Matrix, equal, indexed, row
 from rigidsym.formula.unicode_pen import UnicodePen
-from rigidsym.formula.widths import EQUAL, QUAD
 
 PAGE = 39.2  # ems of a display on a page, beside a number such as (13)
 BOX = 0.96  # ems that the box around a result takes

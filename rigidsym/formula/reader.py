@@ -1,6 +1,9 @@
-r"""Formulas as they are typed in the source: a small part of TeX, read once into a tree.
+r"""Formulas, and sentences with formulas in them, as they are typed in the source.
 
     formula(r"\mathbf{I}' = #1\,\mathbf{R}", OMEGA)
+    sentence(r"The axis $\mathbf{e}$ of {}", ROTATION)
+
+A formula is a small part of TeX, read once into a tree.
 
 `#1`, `#2`, ... stand for formulas that are given. Known are letters, numbers, `\mathbf` and
 `\boldsymbol`, `\dot`, primes, indices, powers, `\frac`, `\sqrt`, brackets, functions, sums,
@@ -12,9 +15,10 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
-from typing import Literal
+from typing import Any, Literal, TypeVar
 
 import sympy as sp
 from sympy.printing.conventions import split_super_sub
@@ -22,6 +26,7 @@ from sympy.printing.pretty.pretty_symbology import pretty_symbol, pretty_use_uni
 
 from rigidsym.errors import AlgebraError
 from rigidsym.formula import tree
+from rigidsym.formula.tree import Formula
 
 FUNCTIONS = ("sin", "cos", "tan", "cot", "det", "exp", "arctan")
 _TOKEN = re.compile(
@@ -320,3 +325,32 @@ def _macro(name: str) -> str:
         len(name) > 1 and greek_letter(name) and latex == f"\\{name}".replace("lamda", "lambda")
     )
     return "" if latex == name or is_greek else latex
+
+
+_Span = TypeVar("_Span")
+Sentence = tuple[str | Formula, ...]
+
+
+def sentence(typed: str, *spans: _Span) -> tuple[str | Formula | _Span, ...]:
+    r"""The text r"The axis $\mathbf{e}$ of {}" with its formulas read, and a span for each {}."""
+    given = iter(spans)
+    found: list[str | Formula | _Span] = []
+    for place, part in enumerate(typed.split("$")):
+        if place % 2:
+            found.append(formula(part))
+            continue
+        first, *others = part.split("{}")
+        found.append(first)
+        for words in others:
+            found += [next(given), words]
+    return tuple(span for span in found if span != "")
+
+
+def text_of(words: Iterable[Any]) -> str:
+    """The sentence on one line of Unicode; each span is words, or has a `text`."""
+    return "".join(span if isinstance(span, str) else span.text for span in words)
+
+
+def by_text(formulas: Iterable[Formula]) -> dict[str, Formula]:
+    """Formulas by their plain text, as it may stand in a sentence."""
+    return {found.text: found for found in formulas}

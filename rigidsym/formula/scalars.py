@@ -1,14 +1,17 @@
-"""SymPy scalars as people write them: what is written and in which order is settled here.
+"""SymPy scalars as people write them, and as programs read them.
+
+What is written and in which order is settled here.
 
 A sum never starts with a minus sign if it has a positive term, and no rate ever follows a sine.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from enum import IntEnum
 from functools import lru_cache
+from typing import Any
 
 import sympy as sp
 
@@ -23,6 +26,7 @@ from rigidsym.formula.letters import (
     ordered_terms,
     power_of,
 )
+from rigidsym.formula.tree import Formula
 
 
 class Bound(IntEnum):
@@ -282,3 +286,27 @@ def _is_multiple(angle: sp.Expr) -> bool:
     """Whether an angle is written as a number and a name: 2θ."""
     number, rest = angle.as_coeff_Mul()
     return bool(number.is_Integer and number.is_positive and _is_name(rest))
+
+
+Names = Mapping[sp.Expr, sp.Symbol]
+
+
+def plain_data(data: Any, names: Names) -> Any:
+    """Formulas in both markups, expressions in plain names, matrices as lists of rows."""
+    match data:
+        case Formula():
+            return data.markup
+        case list() | tuple():
+            return [plain_data(value, names) for value in data]
+        case sp.MatrixBase():
+            return plain_data(data.tolist(), names)
+        case sp.Basic():
+            return _text(data.xreplace(names))
+        case Mapping():
+            return {key: plain_data(value, names) for key, value in data.items()}
+    return data
+
+
+@lru_cache(maxsize=4096)  # an entry comes up in several quantities, and again in other conventions
+def _text(expression: sp.Expr) -> str:
+    return str(expression)

@@ -12,7 +12,7 @@ import sympy as sp
 
 from rigidsym.algebra.zeros import Place as Place
 from rigidsym.errors import DerivationError, QuantityError, offer
-from rigidsym.formula.sentence import Sentence
+from rigidsym.formula.reader import Sentence
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.models.rotation import Citation, RotationModel
 

@@ -17,7 +17,7 @@ from rigidsym.models.rotation import RotationModel
 from rigidsym.models.so3 import AXES
 from rigidsym.notes.figure.camera import STANDARD, Vector
 from rigidsym.notes.figure.scene import BODY, MOST_TURNS, RADII, Scene, scene_of, turns_of
-from rigidsym.notes.figure.svg import as_in_formulas
+from rigidsym.notes.formats.drawings import as_in_formulas
 
 _AZIMUTH, _ELEVATION = 35, 22  # degrees, where the note has no figure
 

@@ -18,7 +18,7 @@ from rigidsym.kernels.targets import TARGETS
 from rigidsym.models.library import PARAMETRISATIONS
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.document.document import Paragraph
-from rigidsym.notes.sections.styles import APPENDIX
+from rigidsym.notes.note import APPENDIX
 from rigidsym.pipeline import motion_of, output_of, read_record, read_spec
 
 FILE = """

@@ -22,7 +22,7 @@ from rigidsym.mechanics.derive import derive as derivation_of
 from rigidsym.mechanics.mass import derive as mass
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.system import cluster
-from rigidsym.system.limits import time_limit
+from rigidsym.system.processes import time_limit
 from rigidsym.system.resources import folder
 
 KNOWN = [

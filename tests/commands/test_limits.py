@@ -21,7 +21,7 @@ from helpers.command import RIGIDSYM, ROOT, call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import LimitReached, RequestError, RigidsymError
 from rigidsym.notes.formats.record import SCHEMA, SCHEMA_VERSION
-from rigidsym.system.limits import memory_limit, time_limit
+from rigidsym.system.processes import memory_limit, time_limit
 
 ENDLESS = """\
 [rotation]
@@ -148,7 +148,7 @@ def test_a_check_is_stopped_too(tmp_path, rotations):
 
 def test_a_system_without_timers_or_accounts_has_no_limits(monkeypatch, tmp_path):
     monkeypatch.delattr(signal, "setitimer")
-    monkeypatch.setattr("rigidsym.system.limits.Path", lambda _: tmp_path / "none")
+    monkeypatch.setattr("rigidsym.system.processes.Path", lambda _: tmp_path / "none")
     with time_limit(0.01), memory_limit(1e-9):
         done = len("x" * 100_000)
     monkeypatch.undo()
@@ -179,7 +179,7 @@ def test_other_errors_of_finalizers_are_told_as_ever(monkeypatch):
 
 def test_memory_is_bounded():
     program = (
-        "from rigidsym.system.limits import memory_limit\n"
+        "from rigidsym.system.processes import memory_limit\n"
         "with memory_limit(0.1):\n    b'x' * (1 << 30)"
     )
     done = subprocess.run(

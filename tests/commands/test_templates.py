@@ -12,7 +12,7 @@ from helpers.motions import derived
 from rigidsym.commands.cli import commands
 from rigidsym.errors import TemplateFault
 from rigidsym.system import resources
-from rigidsym.system.sandbox import SandboxedTemplates
+from rigidsym.system.resources import SandboxedTemplates
 
 NAME = "euler_zxz_intrinsic"
 
@@ -132,7 +132,7 @@ def test_what_a_template_puts_together_is_bounded(tmp_path: Path, grown):
     ids=["loops", "macros", "inclusions"],
 )
 def test_the_time_of_a_template_is_bounded_from_python_too(tmp_path: Path, endless, monkeypatch):
-    monkeypatch.setattr("rigidsym.system.sandbox._SECONDS", 0.3)
+    monkeypatch.setattr("rigidsym.system.resources._SECONDS", 0.3)
     with pytest.raises(TemplateFault, match=r"it takes more than 0\.3 s"):
         html_with(tmp_path, endless)
 

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.spatial.transform import Rotation
 
 import rigidsym as rs
-from rigidsym.formula.sentence import text_of
+from rigidsym.formula.reader import text_of
 from rigidsym.mechanics.conversions.conversions import Conversions
 from rigidsym.models.rotation_text import rotation_from
 

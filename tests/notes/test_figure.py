@@ -34,10 +34,9 @@ from rigidsym.notes.figure.drawing import (
     labelled,
 )
 from rigidsym.notes.figure.scene import MOST_TURNS, scene_of
-from rigidsym.notes.figure.svg import svg
-from rigidsym.notes.figure.tikz import tikz
+from rigidsym.notes.formats.drawings import svg, tikz
 from rigidsym.notes.formula.derivation_letters import letters_of
-from rigidsym.notes.prose.figure_words import figure_of
+from rigidsym.notes.prose.turn_words import figure_of
 
 LETTERS = "zxyzxy"
 ANGLES = ("heading", "elevation", "bank")

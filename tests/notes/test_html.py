@@ -23,9 +23,9 @@ from rigidsym.formula.tree import Symbol
 from rigidsym.formula.unicode_pen import UnicodePen
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
+from rigidsym.notes.formats.escape import cleaned
 from rigidsym.notes.formats.html import escape
 from rigidsym.notes.note import note
-from rigidsym.notes.sanitize import cleaned
 from rigidsym.pipeline import output_of, read_file
 from rigidsym.spec.derivation_spec import DerivationSpec
 

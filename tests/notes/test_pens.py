@@ -11,7 +11,7 @@ from sympy.physics.vector import dynamicsymbols
 
 from helpers.reading import Formula as Reader, latex_of
 from helpers.witness import mp, number
-from rigidsym.formula import widths
+from rigidsym.formula import sheet_pen
 from rigidsym.formula.latex_pen import LatexPen, MarkdownPen
 from rigidsym.formula.letters import Letters, VectorLength
 from rigidsym.formula.mathml_pen import MathmlPen, math
@@ -331,33 +331,33 @@ def test_widths_add_up(pen):
     assert both == pytest.approx(upper + width("a+b+c") - width("a"))
     assert both == pytest.approx(lower + width("b+c") - width("d"))
     one, two = (width(rf"\begin{{pmatrix}} {row} \end{{pmatrix}}") for row in ("a", "a & a"))
-    assert one == pytest.approx(width("a") + widths.TALL_BRACKETS)
-    assert two == pytest.approx(one + width("a") + widths.COLUMN_GAP)
-    assert width(r"\sqrt{a}") == pytest.approx(width("a") + widths.ROOT)
-    assert pen.write(Gap()).width == 2 * widths.QUAD  # \qquad
+    assert one == pytest.approx(width("a") + sheet_pen.TALL_BRACKETS)
+    assert two == pytest.approx(one + width("a") + sheet_pen.COLUMN_GAP)
+    assert width(r"\sqrt{a}") == pytest.approx(width("a") + sheet_pen.ROOT)
+    assert pen.write(Gap()).width == 2 * sheet_pen.QUAD  # \qquad
     assert width("12") == 2 * width("1")
-    assert width("a'") == pytest.approx(width("a") + widths.PRIME)
-    assert width("a_b") == pytest.approx(width("a") + widths.SCRIPT * width("b"))
-    assert width("a^b") == pytest.approx(width("a") + widths.SCRIPT * width("b"))
-    assert width(r"\sin^2 a") == pytest.approx(width(r"\sin a") + widths.SCRIPT * width("2"))
+    assert width("a'") == pytest.approx(width("a") + sheet_pen.PRIME)
+    assert width("a_b") == pytest.approx(width("a") + sheet_pen.SCRIPT * width("b"))
+    assert width("a^b") == pytest.approx(width("a") + sheet_pen.SCRIPT * width("b"))
+    assert width(r"\sin^2 a") == pytest.approx(width(r"\sin a") + sheet_pen.SCRIPT * width("2"))
     for quotient in (r"\frac{a + b}{c}", r"\frac{c}{a + b}"):
-        assert width(quotient) == pytest.approx(width("a + b") + widths.FRACTION)
-    assert width("(a)") == pytest.approx(width("a") + 2 * widths.BRACKET)
-    assert width("(a)^2") == pytest.approx(width("(a)") + widths.SCRIPT * width("2"))
+        assert width(quotient) == pytest.approx(width("a + b") + sheet_pen.FRACTION)
+    assert width("(a)") == pytest.approx(width("a") + 2 * sheet_pen.BRACKET)
+    assert width("(a)^2") == pytest.approx(width("(a)") + sheet_pen.SCRIPT * width("2"))
 
 
 @pytest.mark.parametrize("pen", PENS.values(), ids=list(PENS))
 def test_widths_of_rates_and_what_stands_around_them_add_up(pen):
     rate, letter = Rate(formula(r"\varphi")), Symbol("a")
     alone, small = pen.write(rate).width, pen.but(small=True).write(rate).width
-    assert small == pytest.approx(widths.SCRIPT * alone)
-    assert pen.write(Matrix(((rate,),))).width == pytest.approx(small + widths.TALL_BRACKETS)
-    sides = 2 * (widths.BRACKET + widths.LARGE["large"])
+    assert small == pytest.approx(sheet_pen.SCRIPT * alone)
+    assert pen.write(Matrix(((rate,),))).width == pytest.approx(small + sheet_pen.TALL_BRACKETS)
+    sides = 2 * (sheet_pen.BRACKET + sheet_pen.LARGE["large"])
     assert pen.write(Bracket(rate)).width == pytest.approx(alone + sides)
     indexed, a = Indexed(letter, letter), pen.write(letter).width
-    assert pen.write(indexed).width == pytest.approx(a + widths.SCRIPT * a)
+    assert pen.write(indexed).width == pytest.approx(a + sheet_pen.SCRIPT * a)
     superscript = Symbol("a", prime="ᴮ")
-    assert pen.write(superscript).width == pytest.approx(a + widths.SCRIPT)
+    assert pen.write(superscript).width == pytest.approx(a + sheet_pen.SCRIPT)
 
 
 def test_a_quotient_on_one_line_is_bracketed_beside_another_factor_and_nowhere_else():

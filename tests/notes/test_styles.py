@@ -11,10 +11,11 @@ from helpers.typesetting import pages_of
 from rigidsym.errors import ModelError
 from rigidsym.formula.tree import equal
 from rigidsym.notes.document.document import Equation, NoteTable, Paragraph, plain
-from rigidsym.notes.sections.styles import APPENDIX, STYLES, in_style
+from rigidsym.notes.note import APPENDIX, STYLES, without_identities
 from rigidsym.pipeline import motion_of, output_of, read_file, read_spec
 
-AUDIT = derived("ZXZ").note(style="audit").document
+NOTES = {style: derived("ZXZ").note(style=style).document for style in STYLES}
+AUDIT = NOTES["audit"]
 
 
 def titles(document):
@@ -23,14 +24,14 @@ def titles(document):
 
 @pytest.mark.parametrize("style", STYLES)
 def test_every_numbered_equation_is_in_every_style(style):
-    found = in_style(AUDIT, style)
+    found = NOTES[style]
     assert [e.number for e in found.equations] == [e.number for e in AUDIT.equations]
     assert [e.sides[0] for e in found.equations] == [e.sides[0] for e in AUDIT.equations]
 
 
 @pytest.mark.parametrize("style", ["lecture", "paper"])
 def test_nine_long_entries_are_said_by_the_chain_rule(style):
-    rate = next(e for e in in_style(AUDIT, style).equations if e.label == "rotation_rate")
+    rate = next(e for e in NOTES[style].equations if e.label == "rotation_rate")
     shown = "dR/dt = φ̇ (∂R/∂φ) + θ̇ (∂R/∂θ) + ψ̇ (∂R/∂ψ)"
     assert (rate.matrix, equal(*rate.sides).text) == (None, shown)
 
@@ -55,14 +56,14 @@ def test_a_narrow_table_stands_in_three_parts_with_every_row_once():
 
 
 def test_a_lecture_ends_with_its_identities():
-    found = in_style(AUDIT, "lecture")
+    found = NOTES["lecture"]
     assert titles(found)[-1] == APPENDIX
     assert "Functions" not in titles(found)
     assert not any(e.proved or e.function for e in found.equations)
 
 
 def test_a_paper_has_neither_appendix_nor_summary():
-    found = titles(in_style(AUDIT, "paper"))
+    found = titles(NOTES["paper"])
     assert not {APPENDIX, "Identities verified", "Symbols", "Functions", "Summary"} & set(found)
 
 
@@ -73,10 +74,9 @@ def test_what_is_unproved_is_said_in_every_style():
         for b in first.blocks
     )
     changed = replace(AUDIT, sections=(AUDIT.sections[0], first._replace(blocks=blocks), *others))
-    for style in ("lecture", "paper"):
-        found = in_style(changed, style)
-        assert any(e.unproved for e in found.equations)
-        assert found.sections[0] == AUDIT.sections[0]  # which does not call all of it verified
+    found = without_identities(changed)
+    assert any(e.unproved for e in found.equations)
+    assert found.sections[0] == AUDIT.sections[0]  # which does not call all of it verified
 
 
 def test_a_file_chooses_the_style_and_the_record_knows_it():
@@ -90,7 +90,7 @@ def test_a_file_chooses_the_style_and_the_record_knows_it():
 
 def test_an_unknown_style_is_named():
     with pytest.raises(ModelError, match="lecture, paper or audit, and not 'book'"):
-        in_style(AUDIT, "book")
+        derived("ZXZ").note(style="book")
 
 
 def test_the_note_of_the_lecture_begins_with_the_lecture_and_ends_with_how_it_was_proved():

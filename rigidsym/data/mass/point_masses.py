@@ -18,7 +18,7 @@ from rigidsym.data.readers import ArrayReader, npy_reader, reader_of
 from rigidsym.data.text import TextReader
 from rigidsym.errors import BodyError, DataError, MissingExtra
 from rigidsym.system.cluster import on_cluster
-from rigidsym.system.progress import Progress
+from rigidsym.system.processes import Progress
 
 _WINDOW = 128 * BLOCK  # particles that a worker takes at once; whole blocks: nothing differs
 

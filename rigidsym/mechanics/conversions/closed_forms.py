@@ -12,7 +12,7 @@ from functools import partial
 
 import sympy as sp
 
-from rigidsym.formula.sentence import Sentence, sentence
+from rigidsym.formula.reader import Sentence, sentence
 from rigidsym.mechanics.conversions.function import NamedValues, Vector, Where, square
 from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim, in_order
 from rigidsym.mechanics.conversions.unit_quaternions import shepperd, short_way, unit

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import sympy as sp
 
-from rigidsym.formula.sentence import text_of
+from rigidsym.formula.reader import text_of
 from rigidsym.mechanics.conversions.closed_forms import ClosedForm
 from rigidsym.mechanics.conversions.conversions import (
     UNIT,

@@ -16,8 +16,7 @@ from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.errors import AlgebraError
-from rigidsym.formula.reader import formula
-from rigidsym.formula.sentence import Sentence, sentence, text_of
+from rigidsym.formula.reader import Sentence, formula, sentence, text_of
 from rigidsym.mechanics.conversions.closed_forms import ClosedForm, closed_form
 from rigidsym.mechanics.conversions.davenport_angles import DavenportAngles, davenport_angles
 from rigidsym.mechanics.conversions.inverse import claim, vanishing

@@ -15,8 +15,7 @@ from typing import ClassVar
 
 import sympy as sp
 
-from rigidsym.formula.reader import named
-from rigidsym.formula.sentence import Sentence, sentence
+from rigidsym.formula.reader import Sentence, named, sentence
 from rigidsym.mechanics.conversions.function import NamedValues, Vector, nearest, rounded
 from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim, in_order
 from rigidsym.mechanics.conversions.three_turns import ACROSS, at_poles, outer_angles

@@ -11,8 +11,7 @@ from typing import ClassVar
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.formula.reader import formula
-from rigidsym.formula.sentence import Sentence
+from rigidsym.formula.reader import Sentence, formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.conversions.function import NamedValues, Vector
 from rigidsym.mechanics.conversions.unit_quaternions import shepperd

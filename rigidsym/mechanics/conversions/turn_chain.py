@@ -19,8 +19,7 @@ from itertools import combinations, pairwise
 import sympy as sp
 
 from rigidsym.algebra.codec import codec_for
-from rigidsym.formula.reader import named
-from rigidsym.formula.sentence import Sentence, sentence
+from rigidsym.formula.reader import Sentence, named, sentence
 from rigidsym.mechanics.conversions.function import NamedValues, Vector, rounded
 from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim
 from rigidsym.mechanics.conversions.three_axes import of_any_axes

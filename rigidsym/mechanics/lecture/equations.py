@@ -10,8 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from rigidsym.formula.reader import formula
-from rigidsym.formula.sentence import sentence
+from rigidsym.formula.reader import formula, sentence
 from rigidsym.mechanics.derivation import Statement
 from rigidsym.models.rotation import lecture
 

@@ -17,8 +17,8 @@ import sympy as sp
 from rigidsym.formula.display import Equation as Equation
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.reader import sentence, text_of
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.sentence import sentence, text_of
 from rigidsym.formula.tree import Formula, Row, Words
 from rigidsym.models.rotation import Citation
 from rigidsym.notes.document.catalogue import ENGLISH, Catalogue

@@ -1,4 +1,8 @@
-"""Any text as LaTeX text: what is special to TeX is escaped, what the font lacks is replaced."""
+"""Any text as LaTeX text: what is special to TeX is escaped, what the font lacks is replaced.
+
+`cleaned` is text that any format can hold: no control characters, no half characters, no hidden
+direction.
+"""
 
 from __future__ import annotations
 
@@ -106,3 +110,17 @@ def _is_in_font(character: str) -> bool:
 
 def _code(character: str) -> str:
     return f"[U+{ord(character):04X}]"
+
+
+# controls, formats such as a change of direction, surrogates, unassigned; line separators
+_HIDDEN = ("C", "Zl", "Zp")
+
+
+def cleaned(text: str) -> str:
+    """The text with a blank in place of each character that is not printed, or ends a line."""
+    if text.isprintable() and text.isascii():
+        return text
+    return "".join(
+        " " if unicodedata.category(c).startswith(_HIDDEN) else c
+        for c in unicodedata.normalize("NFC", text)
+    )

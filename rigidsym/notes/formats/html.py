@@ -26,9 +26,9 @@ from rigidsym.notes.document.document import (
     Text,
     plain,
 )
-from rigidsym.notes.figure.svg import svg
+from rigidsym.notes.formats.drawings import svg
+from rigidsym.notes.formats.escape import cleaned
 from rigidsym.notes.formats.printer import NotePrinter
-from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
 
 ENDING = "html"

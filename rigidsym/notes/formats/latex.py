@@ -23,10 +23,9 @@ from rigidsym.notes.document.document import (
     Span,
     Text,
 )
-from rigidsym.notes.figure.tikz import tikz
-from rigidsym.notes.formats.escape import escape
+from rigidsym.notes.formats.drawings import tikz
+from rigidsym.notes.formats.escape import cleaned, escape
 from rigidsym.notes.formats.printer import NotePrinter
-from rigidsym.notes.sanitize import cleaned
 from rigidsym.system import resources
 from rigidsym.version import __version__
 

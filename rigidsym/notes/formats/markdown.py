@@ -25,9 +25,9 @@ from rigidsym.notes.document.document import (
     Section,
     Text,
 )
-from rigidsym.notes.figure.svg import alone, svg
+from rigidsym.notes.formats.drawings import alone, svg
+from rigidsym.notes.formats.escape import cleaned
 from rigidsym.notes.formats.printer import NotePrinter
-from rigidsym.notes.sanitize import cleaned
 from rigidsym.version import OWNERSHIP
 
 ENDING = "md"

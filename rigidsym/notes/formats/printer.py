@@ -25,7 +25,7 @@ from rigidsym.notes.document.document import (
     Strong,
     Text,
 )
-from rigidsym.notes.prose.prose import announcement
+from rigidsym.notes.prose.words import announcement
 
 
 class NotePrinter:

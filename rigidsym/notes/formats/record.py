@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from rigidsym.formula.plain_data import Names, plain_data
-from rigidsym.formula.sentence import text_of
+from rigidsym.formula.reader import text_of
+from rigidsym.formula.scalars import Names, plain_data
 from rigidsym.mechanics.derivation import (
     Argument,
     Derivation,

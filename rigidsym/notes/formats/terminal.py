@@ -15,7 +15,6 @@ from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
 from rigidsym.notes.document.document import Equation, words
 from rigidsym.notes.formula.derivation_letters import RESIDUAL, letters_of
-from rigidsym.notes.prose.prose import turn
 from rigidsym.notes.prose.singular_words import (
     failures,
     meaning,
@@ -27,6 +26,7 @@ from rigidsym.notes.prose.words import (
     convention,
     is_body_alone,
     symbols_of,
+    turn,
     unit_in_words,
     with_symbols,
 )

@@ -18,8 +18,8 @@ from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.notes.document.document import Equation, Paragraph, Text, listed, said, words
 from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.problems.exercise import Asked, Exercise, numeral
-from rigidsym.notes.prose.prose import turn
 from rigidsym.notes.prose.singular_words import failures, measured
+from rigidsym.notes.prose.words import turn
 from rigidsym.notes.sections.compose import equation_of
 
 SEQUENCES = ("ZXZ", "XYX", "YZY", "ZYZ", "XZX", "YXY", "ZYX", "XYZ", "YZX", "ZXY", "XZY", "YXZ")

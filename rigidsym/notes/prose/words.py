@@ -1,4 +1,7 @@
-"""Sentences with formulas in them: what the note and the terminal say in words."""
+"""Sentences with formulas in them: what the note and the terminal say in words.
+
+First the convention; then the sentences that lead from one equation to the next.
+"""
 
 from __future__ import annotations
 
@@ -9,20 +12,47 @@ from itertools import chain
 
 import sympy as sp
 
+from rigidsym.formula.display import Done
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import Notation
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
-from rigidsym.formula.tree import Formula, Symbol, equal, transpose_of
+from rigidsym.formula.tree import (
+    COMMA,
+    Apply,
+    Bracket,
+    Formula,
+    Symbol,
+    equal,
+    joined,
+    transpose_of,
+)
 from rigidsym.mechanics.derivation import Argument, Derivation
 from rigidsym.mechanics.quantities.energy import CENTRE
-from rigidsym.mechanics.quantities.kinematics import BODY, COSINES, RATES, ROTATION, SPACE
+from rigidsym.mechanics.quantities.kinematics import (
+    BODY,
+    COSINES,
+    PRESENTED,
+    RATES,
+    ROTATION,
+    SPACE,
+)
 from rigidsym.mechanics.quantities.mass import DIRECTION, MASS, OF_BODY_ALONE, POINT
 from rigidsym.mechanics.quantities.table import is_quaternion
 from rigidsym.models.body import ABOUT_FIXED_POINT
-from rigidsym.models.rotation import Citation
-from rigidsym.models.so3 import AXES
-from rigidsym.notes.document.document import Cited, Code, Text, listed, words
+from rigidsym.models.rotation import SOURCES, Citation, Turn
+from rigidsym.models.so3 import AXES, hat
+from rigidsym.notes.document.document import (
+    Cited,
+    Code,
+    Equation,
+    EquationRow,
+    NoteBlock,
+    Paragraph,
+    Text,
+    listed,
+    words,
+)
 from rigidsym.notes.formula.derivation_letters import VECTOR, length_of, letters_of
 
 POSITION = formula(r"\mathbf{x}")
@@ -221,3 +251,96 @@ def unit_in_words(unit: str) -> str:
 def vector(entries: Iterable[sp.Expr], letters: Letters) -> Text:
     """The components in a row, with a place to break the line after each comma."""
     return ("(", *listed([(formula_of(entry, letters),) for entry in entries], ", "), ")")
+
+
+_OPERATOR = Equation(sides=(OPERATOR,), matrix=hat(sp.Matrix(sp.symbols("u_1:4"))))
+_TURNING = Cited(SOURCES["Landau 31"])
+_R, _A = PRESENTED[False], PRESENTED[True]
+_IS_SKEW = (
+    r"The matrix of $\mathbf{u}\times$ is skew for any $\mathbf{u}$, and so is {}, by "
+    "differentiation of {}:"
+)
+_SHORTHAND = words(
+    r"With the abbreviations $s_\alpha$ for $\sin\alpha$ and $c_\alpha$ for $\cos\alpha$,"
+)
+
+
+# why the derivative times the transpose is the operator of the angular velocity
+ACTIVE_MOTION: tuple[NoteBlock, ...] = (
+    Paragraph(("A point at rest in the body, ", ACTIVE, ", has the velocity")),
+    Equation(
+        sides=(
+            POSITION_RATE,
+            formula(r"\frac{d#1}{dt}#2", _R.matrix, BODY_POSITION),
+            formula("#1#2", _R.spin, POSITION),
+        )
+    ),
+    Paragraph(
+        words(
+            "This velocity is also $\\boldsymbol{\\Omega}\\times\\mathbf{x}$\u00a0{}, so that {} "
+            "is the matrix of the operator $\\boldsymbol{\\Omega}\\times$.",
+            *(_TURNING, _R.spin),
+        )
+    ),
+    Paragraph(words(_IS_SKEW, _R.spin, _R.orthogonal)),
+    EquationRow((_OPERATOR, Equation(sides=(_R.skew,)))),
+)
+PASSIVE_MOTION: tuple[NoteBlock, ...] = (
+    Paragraph(
+        (
+            "A point at rest in space has the body components ",
+            PASSIVE,
+            ", which change at the rate",
+        )
+    ),
+    Equation(
+        sides=(
+            BODY_POSITION_RATE,
+            formula(r"\frac{d#1}{dt}#2", _A.matrix, POSITION),
+            formula("#1#2", _A.spin, BODY_POSITION),
+        )
+    ),
+    Paragraph(
+        words(
+            "As seen from the body, the point moves with the velocity "
+            "$-\\boldsymbol{\\Omega}'\\times\\mathbf{x}'$\u00a0{}, so that {} is the matrix of "
+            "the operator $-\\boldsymbol{\\Omega}'\\times$.",
+            *(_TURNING, _A.spin),
+        )
+    ),
+    Paragraph(words(_IS_SKEW, _A.spin, _A.orthogonal)),
+    EquationRow((_OPERATOR, Equation(sides=(_A.skew,)))),
+)
+
+HOW_VERIFIED = "Each identity was verified exactly, using relations such as sin² + cos² = 1."
+EXACT_MEANS = " “Exact” means that the two sides were shown to be identical."
+_UNPROVED_MEANS = (
+    " “Unproved” means that the difference of the two sides was not shown to vanish; it is given "
+    "below the table."
+)
+
+
+def turn(turn: Turn, letters: Letters) -> Formula:
+    """R_z(φ), or R_[0, 3/5, 4/5](φ)."""
+    return Apply(Symbol("R", "bold", index=axis_of(turn, letters)), formula_of(turn.angle, letters))
+
+
+def axis_of(turn: Turn, letters: Letters) -> Formula:
+    """The axis of a turn: its letter, or its components."""
+    if not turn.components:
+        return Symbol(turn.axis)
+    return Bracket(joined([formula_of(c, letters) for c in turn.components], COMMA), "[]")
+
+
+def announcement(equation: Equation, done: Done) -> Text:
+    """What a reader has to be told of the way an equation is set, before it; often nothing."""
+    if done == "abbreviated":
+        return _SHORTHAND
+    if done == "listed":
+        return words("The entries of {} are", equal(*equation.sides))
+    return ()
+
+
+def proofs_in_words(*, is_proved: bool) -> Text:
+    """What the table of proofs means by its words."""
+    return (HOW_VERIFIED, EXACT_MEANS if is_proved else EXACT_MEANS + _UNPROVED_MEANS)

@@ -40,22 +40,27 @@ from rigidsym.notes.document.document import (
 )
 from rigidsym.notes.formula.derivation_letters import entries_of, letters_of
 from rigidsym.notes.prose.algebra_words import is_told, rates_in_words, rotation_in_words
-from rigidsym.notes.prose.figure_words import figure_of
-from rigidsym.notes.prose.prose import ACTIVE_MOTION, PASSIVE_MOTION, turn
 from rigidsym.notes.prose.singular_words import (
     failures,
     meaning,
     measured,
     singular_title,
 )
-from rigidsym.notes.prose.turn_words import angles_in_words, sum_in_words
-from rigidsym.notes.prose.words import convention, symbols_of, with_source, with_symbols
+from rigidsym.notes.prose.turn_words import angles_in_words, figure_of, sum_in_words
+from rigidsym.notes.prose.words import (
+    ACTIVE_MOTION,
+    PASSIVE_MOTION,
+    convention,
+    symbols_of,
+    turn,
+    with_source,
+    with_symbols,
+)
 from rigidsym.notes.sections.boxed import RESULTS
-from rigidsym.notes.sections.claims_table import claims_in_a_table
+from rigidsym.notes.sections.end_tables import claims_in_a_table, functions, program, symbols
 from rigidsym.notes.sections.fitting import Fitter, as_vectors
 from rigidsym.notes.sections.motion_section import what_follows, what_is_constant, what_moves
 from rigidsym.notes.sections.summary import TITLE as SUMMARY, summary
-from rigidsym.notes.sections.symbol_tables import functions, program, symbols
 
 if TYPE_CHECKING:
     from rigidsym.mechanics.conversions.conversions import Conversions

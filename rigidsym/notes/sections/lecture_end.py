@@ -20,8 +20,8 @@ from rigidsym.notes.document.document import (
     listed,
 )
 from rigidsym.notes.sections.boxed import RESULTS
+from rigidsym.notes.sections.end_tables import symbols
 from rigidsym.notes.sections.summary import SHEET, row_height, summary
-from rigidsym.notes.sections.symbol_tables import symbols
 
 _LEAD = 2.0  # lines that the words before a row of equations take
 # symbol | meaning | unit | equation

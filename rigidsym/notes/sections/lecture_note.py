@@ -27,8 +27,8 @@ from rigidsym.notes.prose.turn_words import PROPER, names_of_angles
 from rigidsym.notes.prose.words import with_symbols
 from rigidsym.notes.sections.body_note import BodyComposer
 from rigidsym.notes.sections.boxed import RESULTS
-from rigidsym.notes.sections.claims_table import Claim, claims_in_a_table
 from rigidsym.notes.sections.compose import claims_of
+from rigidsym.notes.sections.end_tables import Claim, claims_in_a_table
 from rigidsym.notes.sections.lecture_end import summary_of_the_lecture, symbols_of_the_lecture
 
 _WHERE_SHOWN = {  # what has no equation of its own, and the one that it belongs to

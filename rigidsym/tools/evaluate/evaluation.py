@@ -15,7 +15,7 @@ from rigidsym.data.writers import check_ending, table_writer
 from rigidsym.errors import DataError, RequestError
 from rigidsym.motion import Motion
 from rigidsym.system.cluster import on_cluster
-from rigidsym.system.progress import Progress
+from rigidsym.system.processes import Progress
 from rigidsym.tools.evaluate.callables import functions_of
 from rigidsym.tools.evaluate.inputs import inputs_of
 from rigidsym.tools.evaluate.work import Work

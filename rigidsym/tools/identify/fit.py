@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from rigidsym.data.text import MOST_SHOWN
-from rigidsym.system.progress import Progress
+from rigidsym.system.processes import Progress
 from rigidsym.tools.identify.align import aligned
 from rigidsym.tools.identify.calls import calls
 from rigidsym.tools.identify.readings import VELOCITIES, Reading, distinct

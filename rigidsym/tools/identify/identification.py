@@ -7,7 +7,7 @@ from pathlib import Path
 
 from numpy.typing import ArrayLike
 
-from rigidsym.system.progress import Progress
+from rigidsym.system.processes import Progress
 from rigidsym.tools.identify.fit import fit
 from rigidsym.tools.identify.readings import ANGLE_NAMES, VELOCITIES, distinct
 from rigidsym.tools.identify.report import Identification

@@ -9,25 +9,29 @@ from itertools import chain, repeat
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
-from rigidsym.mechanics.derivation import Argument, Derivation, Step
+from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.kinematics import RATES
 from rigidsym.notes.document.document import (
     Code,
     CodeBlock,
+    Equation,
     EquationReference,
     NoteBlock,
     NoteTable,
+    Paragraph,
+    Strong,
     Text,
     listed,
     said,
 )
-from rigidsym.notes.formula.derivation_letters import VECTOR
+from rigidsym.notes.formula.derivation_letters import RESIDUAL, VECTOR
 from rigidsym.notes.prose.singular_words import WITH_CONDITIONS
 from rigidsym.notes.prose.words import (
     BODY_POSITION,
     OPERATOR,
     POSITION,
     is_body_alone,
+    proofs_in_words,
     symbols_of,
     unit_in_words,
     vector,
@@ -198,3 +202,33 @@ def _given(argument: Argument) -> str:
 
 def _reference(step: Step) -> Text:
     return (EquationReference(step.quantity.name),)
+
+
+EXACT: Text = ("exact",)
+Claim = tuple[str, Proof]  # the label of an equation, and what was claimed there
+
+
+def claims_in_a_table(claims: Sequence[Claim]) -> Iterator[NoteBlock]:
+    """Each claim with the label of its equation; below, what is left over of those unproved."""
+    unproved = [proof for _, proof in claims if proof.status != "exact"]
+    yield Paragraph(proofs_in_words(is_proved=not unproved))
+    yield NoteTable(
+        caption="Identities verified",
+        head=(("Eq.",), ("Identity",), ("Status",)),
+        rows=tuple(
+            ((EquationReference(label),), (proof.claim,), _status(proof)) for label, proof in claims
+        ),
+    )
+    for proof in unproved:
+        yield from _left_over(proof)
+
+
+def _status(proof: Proof) -> Text:
+    return EXACT if proof.status == "exact" else (Strong(proof.status),)
+
+
+def _left_over(proof: Proof) -> Iterator[NoteBlock]:
+    """What remains of a claim that could not be decided."""
+    yield Paragraph((Strong("Unproved:"), " ", proof.claim, ". The difference of its two sides is"))
+    if proof.residual is not None:
+        yield Equation(sides=(RESIDUAL,), matrix=proof.residual)
