@@ -267,10 +267,10 @@ def _wrong(decision: Decision) -> str:
     parts = [_head(claim, 3), claim.about, *_printed(claim), "The right formula is"]
     parts.append(_display(latex(claim.repair)))
     if claim.term is not None:
-        parts += ["The printed one exceeds it by", _display(latex(claim.term))]
+        parts += ["The printed expression exceeds it by", _display(latex(claim.term))]
     assert decision.residual is not None
     values = _display(sp.latex(decision.residual))
-    return "\n\n".join([*parts, "At a point, printed less derived is", values])
+    return "\n\n".join([*parts, "The printed minus the derived value at a point is", values])
 
 
 def _entry(decision: Decision) -> str:
