@@ -7,7 +7,7 @@
     motion.kernels().load()             # a NumPy module
     motion.note().latex()               # a LaTeX document
 
-The names and their modules are those of `__init__.pyi`; each is loaded on first use, so that
+`__init__.pyi` lists the names and their modules; each is loaded on first use, so that
 `rigidsym --help` imports neither SymPy nor NumPy.
 """
 

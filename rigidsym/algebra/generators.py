@@ -1,11 +1,11 @@
 """The generators that a set of expressions needs, closed under d/dt.
 
-Nothing here knows a rotation: quaternions, rotation vectors, masses and potentials come in as
-expressions, and leave as the generators of a ring.
+Nothing here is specific to rotations: the input is any expression, such as a quaternion, a mass or
+a potential, and the output the generators of a ring.
 
 Arguments of sine and cosine are rational combinations of atoms. Every sine and cosine is expanded
 over the smallest fraction of each angle that occurs, so that cos 2θ and cos θ meet in one ring.
-Independent sums of coordinates are angles by themselves: beside sin θ, sin(2φ − ψ/2) needs one pair
+Independent sums of coordinates are treated as angles: beside sin θ, sin(2φ − ψ/2) needs one pair
 of generators; beside sin φ, those of φ and ψ/2.
 """
 

@@ -1,8 +1,8 @@
 """Real values of expressions, as intervals that are proved to enclose them.
 
-Roots of negative numbers, quotients by zero and logarithms of what is not positive have no real
-value. A value exists only if it does for every point of the intervals, so that what is said of it
-is proved.
+Roots of negative numbers, quotients by zero and logarithms of zero or negative numbers have no real
+value. A value is returned only if it exists at every point of the intervals, so that statements
+about it are proved.
 """
 
 from __future__ import annotations

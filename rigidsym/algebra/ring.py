@@ -2,9 +2,9 @@
 
 A generator stands for a SymPy expression: cos θ, sin θ, θ̇, a mass, √(v·v), 1/(1 + ρ·ρ).
 The relations between the generators (c² + s² = 1, w² + x² + y² + z² = 1, n·i = 1, ...) become a
-Gröbner basis, and an element is held in its normal form. An element of the ideal always reduces
-to zero, so that a zero is a proof. Where `complete` is true the relations are all there are, and
-anything else is not zero.
+Gröbner basis, and every element is in normal form. An element of the ideal always reduces to zero,
+so a zero is a proof. If `complete` is true, there are no further relations, and any other normal
+form is not zero.
 """
 
 from __future__ import annotations

@@ -2,10 +2,10 @@
 
 Common zeros are solved factor by factor, or not at all.
 
-A factor is solved where it is the sine or the cosine of a rational multiple of one coordinate (or
+A factor is solved if it is the sine or the cosine of a rational multiple of one coordinate (or
 of the length n of all of them), 1 plus or minus such a cosine, or a sum of multiples of the two
-whose squares add up to a known square. What is never zero is told by its form. Of several
-polynomials those that can be solved are, one after the other, and their zeros put into the rest.
+whose squares add up to a known square. Some forms are recognised as never zero. Several polynomials
+are solved one after the other, and the zeros of each are substituted into the others.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`rigidsym simulate`: a motion from its equations, with the drift of what it conserves."""
+"""`rigidsym simulate`: a motion from its equations, with the drift of its first integrals."""
 
 # ruff: noqa: RUF009 -- `option` makes a field, as `dataclasses.field` does
 

@@ -1,6 +1,6 @@
 """The shipped solids as data: a map, bounds and, for lines and surfaces, an element, as texts.
 
-No moment of inertia stands here; all are integrated.
+Moments of inertia are not stored; all are integrated.
 """
 
 from __future__ import annotations

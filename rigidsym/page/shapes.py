@@ -1,4 +1,4 @@
-"""Bodies that turn in the live page, as polyhedra; lengths are those of the unit vectors.
+"""Bodies that turn in the live page, as polyhedra, in units of the unit vectors.
 
 Each shape is made of closed pieces whose faces, seen from outside, run counterclockwise.
 """

@@ -1,4 +1,4 @@
-"""Expressions of the [body] table of a derivation file, and the parameters that they bring.
+"""Expressions of the [body] table of a derivation file, and their parameters.
 
 Texts and integers are exact. A number with a decimal point is measured: it becomes a parameter with
 this value, named after its key, so that the derivation stays exact and its formulas short.

@@ -1,4 +1,4 @@
-"""Tables of a derivation file, read key by key: faults are noted, and reading goes on.
+"""Tables of a derivation file, read key by key; faults are noted, and reading continues.
 
 Each fault has its line and its path in the keys of the file. At the end all are raised together.
 """

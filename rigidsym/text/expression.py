@@ -4,7 +4,7 @@ The text is read in three passes. `_tokens` cuts it into numbers, names and oper
 every other character. `_check_order` checks that values and operators alternate and that brackets
 close. The rest goes to Python's ast with each name and number masked, since Python would take
 `lambda` for a keyword, normalise letters (NFKC) and round 0.1; the walk finds the original text of
-a name or number by its column. The arithmetic is that of `rigidsym.text.bounds`.
+a name or number by its column. `rigidsym.text.bounds` does the arithmetic.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Each block is summed about its own centre, where differences of coordinates in double precision
 are exact or nearly so however far from the origin the body is; the few sums of the blocks are then
 moved to the common centre (parallel axes) and added without rounding (`math.fsum`, after J. R.
-Shewchuk, 1997). The merging of blocks is that of T. F. Chan, G. H. Golub and R. J. LeVeque,
+Shewchuk, 1997). Blocks are merged as by T. F. Chan, G. H. Golub and R. J. LeVeque,
 Updating formulae and a pairwise algorithm for computing sample variances (1979).
 """
 

@@ -1,8 +1,7 @@
 """SymPy expressions -> one graph, with the common subexpressions of all outputs of a kernel.
 
 Expressions are kept as a graph of sums and products in which equal things are one node, whatever
-their sign. What several products or several sums have in common becomes a node of its own, the
-pair that occurs most often first.
+their sign. Common parts of several products or sums become nodes, the most frequent pair first.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""Divisors that vanish: at a pole a kernel gives NaN, not a number of 16 digits' noise.
+"""Divisors that vanish: at a pole a kernel returns NaN instead of a number of pure rounding error.
 
-A sine or cosine that divides is not told from zero where it is at most eps times its angle, which
-is as far as the rounding of the angle reaches. The functions c_k of n² may be off by 4 eps of n,
-a sum by 4 eps of the sizes of its terms; a sum of squares loses digits where it underflows, or
-where what is squared is lost to the rounding of its angles.
+A sine or cosine cannot be distinguished from zero if it is at most eps times its angle, the size of
+the rounding error of the angle. The functions c_k of n² have errors of up to 4 eps of n, a sum of
+up to 4 eps of the sizes of its terms; a sum of squares loses its digits if it underflows, or if
+its terms are smaller than the rounding errors of their angles.
 """
 
 from __future__ import annotations

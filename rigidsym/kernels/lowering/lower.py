@@ -1,10 +1,10 @@
 """Expressions of a derivation -> kernels.
 
-Tangents and their like become sines over cosines, the sine and the cosine of an angle are taken
-once, and what the outputs of a kernel have in common is computed once. Where n = √(v·v) leaves a
-removable singularity, it is written in Stumpff functions of n²; where 1 ± cos θ divides, in
-θ/2; and divisors that can vanish are guarded. Nothing else is changed: put back into each other,
-the assignments are the derivation's own expression.
+Tangents and cotangents become quotients of sines and cosines, and the sine and cosine of an angle
+and the common parts of the outputs are computed once. Removable singularities in n = √(v·v) are
+written in Stumpff functions of n², divisors 1 ± cos θ in θ/2, and divisors that can vanish are
+guarded. Nothing else is changed: substituted into each other, the assignments give the expression
+of the derivation.
 """
 
 from __future__ import annotations

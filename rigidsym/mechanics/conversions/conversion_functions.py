@@ -1,4 +1,4 @@
-"""Conversions as functions: their arguments, their values in order, and what is said of them."""
+"""Conversions as functions: their arguments, their values in order, and remarks on them."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Coordinates to the unit quaternion and back, and to R: what converts, how, and its proofs.
 
-A quaternion p is scalar first here, (p_0, p_1, p_2, p_3); only the results for a model whose own
-quaternion is scalar last are in its order. It is that of R, which turns the body, also where a
-model presents the transpose.
+A quaternion p is scalar first here, (p_0, p_1, p_2, p_3); only the results for a model with a
+scalar-last quaternion have its order. It represents R, which turns the body, even if a model
+presents the transpose.
 """
 
 from __future__ import annotations

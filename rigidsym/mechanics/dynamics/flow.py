@@ -1,4 +1,4 @@
-"""ẏ = f(t, y): equations of motion as an integrator takes them, and what they keep constant.
+"""ẏ = f(t, y): equations of motion in the form for integrators, and their first integrals.
 
 The state y is made of two blocks, (q, q̇) in Lagrange's form and (q, Ω′) in Euler's. The rate of a
 function F of the state is ∇F·f + ∂F/∂t, reduced in the ring: F is a first integral if it vanishes.

@@ -1,4 +1,4 @@
-"""Motion in one dimension: what follows if all momenta but one are constant, as for the heavy top.
+"""Motion in one dimension, if all momenta but one are constant, as for the heavy top.
 
 The remaining coordinate moves in its effective potential, which also gives the rates of the others:
 dq_j/dt = ∂V_eff/∂p_j. See `cosine` for a coordinate that occurs in sines and cosines only.

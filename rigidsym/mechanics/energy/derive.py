@@ -1,8 +1,8 @@
-"""Kinetic energy and angular momentum of a body that turns as a rotation model says.
+"""Kinetic energy and angular momentum of a body whose orientation a rotation model describes.
 
-One algorithm for every rotation and every body, in the ring of both (lecture, eq. 2 and 8 to 14).
-The body is known by its mass and its inertia tensor alone; the sums over its particles that the
-energies are follow from these two.
+One algorithm serves every rotation and every body, in the ring of both (lecture, eq. 2 and 8 to
+14). Only the mass and the inertia tensor of the body are used; sums over its particles follow from
+them.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Vectors and matrices of a vector v: Ω = f v̇ + g v × v̇ + ..., R = 1 + a C(v) + b C(v)².
 
-The coefficients are read off where v points along its first axis. What they make, as it is
-printed, is then proved equal to all entries at every v. No coefficient is assumed.
+The coefficients are read off for v along the first axis. The form with these coefficients, as it is
+printed, is then proved equal to all entries for every v.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The lecture's equations 1 to 16 for any body and any rotation, each proved in the ring.
 
-What is a sum over particles is proved for the generic summand, by the rules of `particles`, with
-Σ m = M and Σ m x = 0 alone. A rotation R(t) is that of a unit quaternion, which every rotation
-is; what holds in its ring holds for all. Vectors without a derivation of their own are free.
+Sums over particles are proved for the generic summand, by the rules of `particles`, using only
+Σ m = M and Σ m x = 0. Without loss of generality, R(t) is represented by a unit quaternion; what
+holds in its ring holds for every rotation. Vectors without a derivation are free.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Mass, centre, inertia tensors, moments about lines, principal axes: the body by itself.
 
-The sums over the mass are those of `moments`; what follows from them is proved over the ring of
-the body's constants, and, for the tensor in space, over the ring of the rotation too.
+`moments` computes the sums over the mass; their consequences are proved over the ring of the
+body's constants, and, for the tensor in space, over the ring of the rotation too.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Singular orientations of long chains of turns, in time linear in their number.
 
-The rate matrix has the axes of the turns as its columns, and fails where all of them lie in one
-plane. Axes of neighbouring turns span a plane wherever they are. So all axes lie in one plane if
-and only if every three that follow one another do, and of these the triple product depends on the
-angle of the middle turn alone.
+The columns of the rate matrix are the axes of the turns; it loses rank if all of them are in one
+plane. The axes of neighbouring turns always span a plane. So all axes are in one plane if and only
+if every three neighbours are, and their triple product depends only on the angle of the middle
+turn.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The readings that fit: all are tried on a few rows, and those that fit them on every row."""
+"""The readings that fit: all are tried on a few rows, and the remaining ones on every row."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Constant rotations between the frames of the turns and those of the data; without NumPy."""
+"""Constant rotations between the frames of the turns and the frames of the data; without NumPy."""
 
 from __future__ import annotations
 

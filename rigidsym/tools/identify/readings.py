@@ -1,7 +1,7 @@
 """Readings: what three angle columns, a matrix or quaternion, and an angular velocity may mean.
 
-Only data, without NumPy: what a reading is, which readings are the same function of the data,
-and the list of different ones.
+This file imports no NumPy. It defines a reading, says which readings are the same function of the
+data, and lists the different ones.
 """
 
 from __future__ import annotations

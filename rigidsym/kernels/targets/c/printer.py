@@ -1,7 +1,7 @@
-"""Kernels in C99: a header and a source that need nothing but the language.
+"""Kernels in C99: a header and a source without dependencies.
 
-No function allocates, recurses or keeps a state; all take and fill what the caller owns. Beside
-them stand the two files with which `rigidsym build` makes a Python module of them.
+No function allocates memory, recurses or keeps state; the caller owns all arguments and results.
+Two more files let `rigidsym build` make a Python module of them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Kernels as a Python module that imports NumPy alone, with scalar twins on plain floats."""
+"""Kernels as a Python module that depends only on NumPy, with scalar twins on plain floats."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Text that all Python modules share, be it for NumPy, Numba, JAX or a compiled module.
+"""Text that all Python modules share: for NumPy, Numba, JAX and compiled modules.
 
 It has the layout that `ruff format` gives it, so that no formatter need run.
 """
