@@ -41,14 +41,33 @@ PROOFS = (
     "tests/house/test_one_door_for_proofs.py",
 )
 LOWERING = ("tests/kernels/test_lowering.py",)
+FILES = "tests/kernels/test_kernel_files.py::test_the_files_of_the_lecture"
 LOWER = (
     "tests/kernels/test_lower.py",
     "tests/kernels/test_degrees.py::test_derivatives_by_an_angle_of_what_is_per_angle_are_per_degree_squared",
-    "tests/kernels/test_kernel_files.py::test_the_files_of_the_lecture",
+    FILES,
     "tests/kernels/test_singular_kernels.py::test_the_margin_of_a_long_chain_takes_constants_that_only_its_axes_hold",
     "tests/kernels/test_singular_kernels.py::test_no_margin_where_the_rates_never_fail",
 )
+PRINTED = "tests/kernels/test_printed_lines.py"
+WIDTHS = f"{PRINTED}::test_lines_of_every_width_are_broken_as_they_were"
+LINES = f"{PRINTED}::test_each_target_prints_the_same_lines"
 FORMULAS = ("tests/notes/test_formula.py", "tests/notes/test_pens.py")
+_OF_PYTHON = (
+    *("numpy.printer", "numpy.unwrap"),
+    *("text.python", "text.python_layout", "text.remarks"),
+)
+_OF_C = (
+    *("c.printer", "c.function", "c.parts", "c.expected_values", "c.module_files"),
+    "text.precision",
+)
+
+
+def _printing(*targets: str) -> tuple[str, ...]:
+    """The tests of the files in some languages."""
+    return tuple(f"{test}[{target}]" for test in (WIDTHS, LINES, FILES) for target in targets)
+
+
 TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the quickest first
     "rigidsym.algebra.ring": RING,
     "rigidsym.algebra.matrix": (*RING, PROOFS[0]),
@@ -71,6 +90,10 @@ TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the 
     "rigidsym.kernels.lowering.lower": LOWER,
     "rigidsym.kernels.lowering.trigonometry": ("tests/kernels/test_trigonometry.py",),
     "rigidsym.kernels.targets.text.infix": ("tests/kernels/test_infix.py",),
+    **{f"rigidsym.kernels.targets.{m}": _printing("numpy", "numba") for m in _OF_PYTHON},
+    **{f"rigidsym.kernels.targets.{module}": _printing("c") for module in _OF_C},
+    **{f"rigidsym.kernels.targets.{t}.printer": _printing(t) for t in ("javascript", "jax")},
+    "rigidsym.kernels.targets.numba.printer": _printing("numba"),
 }
 GROUPS = {
     "ring and prover": ("rigidsym.algebra.", "rigidsym.mechanics."),
@@ -535,6 +558,17 @@ EQUIVALENT: Mapping[tuple[str, str, str], str] = {  # function, change, line: wh
         "Add -> Sub",
         "points = [top * (1 + Fraction(cos(angle))) / 2 for angle in angles]",
     ): "the same points, the last first",
+    (
+        "render",
+        "Mult -> Add",
+        'series=python.series_entries(kernels, more=2 * _DERIVATIVES) if has_series else "",',
+    ): "2 times 2 is 2 plus 2",
+    ("_values", "50 -> 51", "numbers.dps = 50"): "a digit more",
+    (
+        "_entry",
+        "LtE -> Lt",
+        'return line if len(line) <= _WIDTH else f"  {order}: [\\n{inside}  ],"',
+    ): "no series has exactly this width",
     (
         "_Guard._is_positive",
         "Gt -> GtE",

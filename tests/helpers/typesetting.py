@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
+from dataclasses import replace
 
 from rigidsym.notes.document.document import Document
 from rigidsym.notes.formats.latex import render as print_latex
 from rigidsym.notes.formats.pdf import typeset
 
 BEGIN, END = r"\begin{document}", r"\end{document}"
+
+
+def bound(documents: Iterable[Document]) -> str:
+    """Several documents as one, of which some may have the same name."""
+    renamed = (replace(d, name=f"note_{place}") for place, d in enumerate(documents))
+    return bound_together(list(map(print_latex, renamed)))
 
 
 def bound_together(notes: list[str]) -> str:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 import sympy as sp
 
 import rigidsym as rs
 from helpers.printing import text
-from helpers.typesetting import bound_together, pages_of, sheet_of
+from helpers.typesetting import bound, bound_together, pages_of, sheet_of
 from rigidsym.formula.abbreviations import Namer
 from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.scalars import factored, listed_entries
@@ -24,7 +22,6 @@ from rigidsym.notes.document.document import (
     EquationRow,
     Paragraph,
 )
-from rigidsym.notes.formats.latex import render as print_latex
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formula.derivation_letters import length_of, letters_of
 from rigidsym.notes.formula.vector_rates import rates_of_form
@@ -56,15 +53,12 @@ def documents() -> list[Document]:
     moments = rs.principal_moments(*sp.symbols("A B C"))
     motions += [rs.derive("rotation_vector", body=moments)]
     motions += [rs.derive("ZXZ", body=rs.general_inertia())]
-    return [
-        replace(motion.note(style="audit").document, name=f"note_{place}")
-        for place, motion in enumerate(motions)
-    ]
+    return [motion.note(style="audit").document for motion in motions]
 
 
 @pytest.mark.usefixtures("tex")
 def test_every_note_compiles_without_a_warning(documents):
-    assert typeset(bound_together(list(map(print_latex, documents)))).warnings == ()
+    assert typeset(bound(documents)).warnings == ()
 
 
 @pytest.mark.usefixtures("tex")

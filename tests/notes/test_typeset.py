@@ -10,7 +10,7 @@ import pytest
 from sympy import Rational, pi, symbols
 
 import rigidsym as rs
-from helpers.typesetting import BEGIN, END, bound_together
+from helpers.typesetting import BEGIN, END, bound
 from rigidsym.errors import MissingTool, ToolFailed
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.scalars import matrix_of
@@ -32,8 +32,8 @@ WORDS = ("heading", "elevation", "bank")
 INDEXED = ("phi_1", "q2", "phi_body")
 
 
-def _note(sequence: str, angles: tuple[str, ...] = GREEK, *, passive: bool = False) -> str:
-    motion = derive(EulerAngles(sequence, angles, passive=passive))
+def _note(sequence: str) -> str:
+    motion = derive(EulerAngles(sequence, GREEK))
     return note(motion, module=f"{motion.name}.py").latex()
 
 
@@ -42,29 +42,23 @@ def _page(body: str) -> str:
 
 
 @pytest.mark.usefixtures("tex")
-@pytest.mark.parametrize(
-    ("angles", "passive", "sequences"),
-    [
-        (GREEK, False, EULER_SEQUENCES),
-        (WORDS, True, EULER_SEQUENCES[::4]),  # the widest
-        (OTHER_GREEK, True, EULER_SEQUENCES[1::9]),
-        (INDEXED, False, EULER_SEQUENCES[3::9]),
-    ],
-)
-def test_all_24_notes_compile_without_a_warning(angles, passive, sequences):
-    notes = [_note(sequence, angles, passive=passive) for sequence in sequences]
-    assert typeset(bound_together(notes)).warnings == ()
-
-
-@pytest.mark.usefixtures("tex")
-@pytest.mark.parametrize(
-    "axis", [(Rational(3, 5), 0, Rational(4, 5)), symbols("e_1 e_2 e_3"), ()], ids=str
-)
-def test_chains_compile_without_a_warning(axis):
+def test_notes_of_all_conventions_and_of_chains_compile_without_a_warning():
+    motions = [
+        derive(EulerAngles(sequence, angles, passive=passive))
+        for angles, passive, sequences in (
+            (GREEK, False, EULER_SEQUENCES),
+            (WORDS, True, EULER_SEQUENCES[::4]),  # the widest
+            (OTHER_GREEK, True, EULER_SEQUENCES[1::9]),
+            (INDEXED, False, EULER_SEQUENCES[3::9]),
+        )
+        for sequence in sequences
+    ]
     a, b = time_function("a"), time_function("b")
-    oblique = axis_turn(axis, b) if axis else Turn(axis="y", angle=pi / 6)
-    model = chain_of([oblique, Turn(axis="z", angle=a)])
-    assert typeset(note(derive(model)).latex()).warnings == ()
+    for axis in ((Rational(3, 5), 0, Rational(4, 5)), symbols("e_1 e_2 e_3"), ()):
+        oblique = axis_turn(axis, b) if axis else Turn(axis="y", angle=pi / 6)
+        motions.append(derive(chain_of([oblique, Turn(axis="z", angle=a)])))
+    documents = [note(motion, module=f"{motion.name}.py").document for motion in motions]
+    assert typeset(bound(documents)).warnings == ()
 
 
 @pytest.mark.usefixtures("tex")

@@ -79,14 +79,15 @@ class Comparison:
         if not self.repairs:
             return f"equal to {what} ({proof})"
         changes = "; ".join(repair.words for repair in self.repairs)
+        corrected = f"{proof} with {'this change' if len(self.repairs) == 1 else 'these changes'}"
         if self.asked is None:
-            return f"close to {what}: {changes} (with this change, {proof})"
+            return f"close to {what}: {changes}; {corrected}"
         if self.as_it_stands:
             changes += f"; as it stands this is {self.as_it_stands}"
         is_changed = self.asked.quantity == self.found.quantity
         is_changed &= self.asked.rotation == self.found.rotation
-        proof = f"with this change, {proof}" if is_changed else proof
-        return f"not {self.asked}: {changes}{'' if is_changed else self._in_names()} ({proof})"
+        ending = f"; {corrected}" if is_changed else f"{self._in_names()} ({proof})"
+        return f"not {self.asked}: {changes}{ending}"
 
     def _read(self) -> str:
         """What was read, and what was expected if that has another shape."""

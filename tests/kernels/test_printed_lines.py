@@ -1,0 +1,107 @@
+"""What printers write, beside the text of their templates, for rotations that need all of it.
+
+The golden files hold one line for each file: how many lines it has, and a digest of those that are
+not in a template. The files of the lecture, tests/golden/kernels, show what changed; tests of
+values show what is right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from hashlib import sha256
+from typing import Any
+
+import pytest
+import sympy as sp
+
+import rigidsym as rs
+from helpers.swept_kernels import of_series, swept
+from rigidsym import __version__
+from rigidsym.kernels.targets import TARGETS, printer
+from rigidsym.models.rotation_text import rotation_from
+from rigidsym.system import resources
+
+A, C = sp.symbols("A C", positive=True)
+TOP = {"body": rs.principal_moments(A, A, C), "potential": "m*g*l*cos(theta)"}
+BOTH = "rotation_matrix", "angular_velocity_body"
+RATES = "rotation_matrix", "rates_from_angular_velocity_body"
+PRODUCTS = (
+    "rotation_matrix by q",
+    "rotation_matrix by q jvp",
+    "angular_velocity_body by q vjp",
+    "angular_velocity_body by q_dot jvp",
+)
+ROTATIONS: dict[str, tuple[str, tuple[str, ...], dict[str, Any]]] = {  # what acts on them
+    "turn": ("z(a)", BOTH, {}),
+    "turns": ("y(a) x(b)", BOTH, {}),
+    "series": ("rotation_vector", ("rotation_matrix", "inverse_rate_matrix_body"), {}),
+    "long": ("x(a) y(b) z(c) x(d) y(e)", ("angular_acceleration_body",), {}),
+    "matrix": ("direction_cosines", ("angular_velocity_body",), {}),
+    "top": ("ZXZ", ("energy", "accelerations"), TOP),
+    "quaternion": ("quaternion", RATES, {}),
+    "axis": ("axis_angle", ("rotation_matrix",), {}),
+    "constants": ("z(phi) x(alpha0) y(psi)", BOTH, {}),
+    "names": ("z(the_first_of_all_angles) x(the_second_of_all_angles)", BOTH, {}),
+}
+PRINTED: dict[str, list[dict[str, Any]]] = {
+    **{name: [{}] for name in ROTATIONS},
+    "turn": [{}, {"conversions": True, "degrees": True}],
+    "turns": [{"derivatives": PRODUCTS}, {"conversions": True}],
+    "quaternion": [{}, {"conversions": True}],
+    "axis": [{"conversions": True, "degrees": True}],
+    "constants": [{"conversions": True}],
+    "series": [{}, {"conversions": True, "derivatives": ("rotation_matrix by q vjp",)}],
+}
+LEAN = {"precision": "double", "arrays": False, "libm": True}
+OF_C: dict[str, list[dict[str, Any]]] = {
+    "turn": [LEAN | {"conversions": True}],
+    "turns": [{"precision": "float"}, {"arrays": False}, {"libm": True}, {"precision": "double"}],
+    "series": [LEAN, LEAN | {"precision": "float", "libm": False}],
+    "quaternion": [LEAN],
+    "long": [LEAN],
+    "matrix": [LEAN],
+    "top": [LEAN | {"precision": "both"}],
+}
+
+
+@cache
+def motion(name: str) -> rs.Motion:
+    text, only, acting = ROTATIONS[name]
+    return rs.derive(rotation_from(text), only=only, **acting)
+
+
+@cache
+def of_templates() -> set[str]:
+    folder = resources.folder("templates")
+    files = [file for target in TARGETS for file in (folder / target).glob("*.*")]
+    texts = [file.read_text(encoding="utf-8") for file in files]
+    return {line.strip() for text in texts for line in text.splitlines()}
+
+
+def described(file: str, text: str, way: str = "") -> str:
+    lines = text.replace(f"rigidsym {__version__};", "").splitlines()
+    own = [line for line in lines if line.strip() not in of_templates()]
+    digest = sha256("\n".join(own).encode()).hexdigest()
+    return f"{file} {way}: {len(lines)} {digest[:16]}"
+
+
+def printed(target: str) -> Iterator[str]:
+    for name, ways in PRINTED.items():
+        for way in (*ways, *(OF_C.get(name, ()) if target == "c" else ())):
+            for file, text in motion(name).kernels(target, **way).files.items():
+                yield described(file, text, " ".join(way))
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_lines_of_every_width_are_broken_as_they_were(target, golden):
+    programs = swept(), *map(of_series, range(4))
+    ways = ({}, LEAN) if target == "c" else ({},)
+    rendered = [printer(target).render(p, **way) for p in programs for way in ways]
+    lines = [described(*file) for files in rendered for file in files.items()]
+    golden(f"kernels/widths_{target}.txt", "\n".join(lines) + "\n")
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_each_target_prints_the_same_lines(target, golden):
+    golden(f"kernels/lines_{target}.txt", "\n".join(printed(target)) + "\n")
