@@ -49,9 +49,6 @@ LOWER = (
     "tests/kernels/test_singular_kernels.py::test_the_margin_of_a_long_chain_takes_constants_that_only_its_axes_hold",
     "tests/kernels/test_singular_kernels.py::test_no_margin_where_the_rates_never_fail",
 )
-PRINTED = "tests/kernels/test_printed_lines.py"
-WIDTHS = f"{PRINTED}::test_lines_of_every_width_are_broken_as_they_were"
-LINES = f"{PRINTED}::test_each_target_prints_the_same_lines"
 FORMULAS = ("tests/notes/test_formula.py", "tests/notes/test_pens.py")
 _OF_PYTHON = (
     *("numpy.printer", "numpy.unwrap"),
@@ -65,7 +62,9 @@ _OF_C = (
 
 def _printing(*targets: str) -> tuple[str, ...]:
     """The tests of the files in some languages."""
-    return tuple(f"{test}[{target}]" for test in (WIDTHS, LINES, FILES) for target in targets)
+    tests = "lines_of_every_width_are_broken_as_they_were", "each_target_prints_the_same_lines"
+    files = [f"tests/kernels/test_kernel_files.py::test_{test}" for test in tests]
+    return tuple(f"{test}[{target}]" for test in (*files, FILES) for target in targets)
 
 
 TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the quickest first

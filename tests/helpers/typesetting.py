@@ -13,10 +13,10 @@ from rigidsym.notes.formats.pdf import typeset
 BEGIN, END = r"\begin{document}", r"\end{document}"
 
 
-def bound(documents: Iterable[Document]) -> str:
-    """Several documents as one, of which some may have the same name."""
+def warnings_of(documents: Iterable[Document]) -> tuple[str, ...]:
+    """What TeX complains of in documents, of which some may have the same name, all in one run."""
     renamed = (replace(d, name=f"note_{place}") for place, d in enumerate(documents))
-    return bound_together(list(map(print_latex, renamed)))
+    return typeset(bound_together(list(map(print_latex, renamed))), timeout=600).warnings
 
 
 def bound_together(notes: list[str]) -> str:

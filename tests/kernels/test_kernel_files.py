@@ -14,6 +14,7 @@ from numpy.testing import assert_array_equal
 import rigidsym as rs
 from helpers.kernel_modules import QUANTITIES, inputs, module, turned_by
 from helpers.motions import derived
+from helpers.printed_lines import of_rotations, of_widths
 from rigidsym import __version__
 from rigidsym.errors import KernelError
 from rigidsym.kernels.lowering.lower import MARGIN
@@ -31,6 +32,16 @@ def test_the_files_of_the_lecture(target, golden):
     for name, text in generate(motion, target).files.items():
         text = text.replace(f"rigidsym {__version__};", "rigidsym *;")
         golden(f"kernels/{name}.txt", text)
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_lines_of_every_width_are_broken_as_they_were(target, golden):
+    golden(f"kernels/widths_{target}.txt", "\n".join(of_widths(target)) + "\n")
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_each_target_prints_the_same_lines(target, golden):
+    golden(f"kernels/lines_{target}.txt", "\n".join(of_rotations(target)) + "\n")
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import sympy as sp
 
 import rigidsym as rs
 from helpers.printing import text
-from helpers.typesetting import bound, bound_together, pages_of, sheet_of
+from helpers.typesetting import bound_together, pages_of, sheet_of, warnings_of
 from rigidsym.formula.abbreviations import Namer
 from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.scalars import factored, listed_entries
@@ -22,7 +22,6 @@ from rigidsym.notes.document.document import (
     EquationRow,
     Paragraph,
 )
-from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formula.derivation_letters import length_of, letters_of
 from rigidsym.notes.formula.vector_rates import rates_of_form
 from rigidsym.notes.prose.vector_words import (
@@ -58,7 +57,7 @@ def documents() -> list[Document]:
 
 @pytest.mark.usefixtures("tex")
 def test_every_note_compiles_without_a_warning(documents):
-    assert typeset(bound(documents)).warnings == ()
+    assert warnings_of(documents) == ()
 
 
 @pytest.mark.usefixtures("tex")

@@ -10,7 +10,7 @@ import pytest
 from sympy import Rational, pi, symbols
 
 import rigidsym as rs
-from helpers.typesetting import BEGIN, END, bound
+from helpers.typesetting import BEGIN, END, warnings_of
 from rigidsym.errors import MissingTool, ToolFailed
 from rigidsym.formula.latex_pen import LatexPen
 from rigidsym.formula.scalars import matrix_of
@@ -58,7 +58,7 @@ def test_notes_of_all_conventions_and_of_chains_compile_without_a_warning():
         oblique = axis_turn(axis, b) if axis else Turn(axis="y", angle=pi / 6)
         motions.append(derive(chain_of([oblique, Turn(axis="z", angle=a)])))
     documents = [note(motion, module=f"{motion.name}.py").document for motion in motions]
-    assert typeset(bound(documents)).warnings == ()
+    assert warnings_of(documents) == ()
 
 
 @pytest.mark.usefixtures("tex")
