@@ -7,6 +7,7 @@ values show what is right.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache
 from hashlib import sha256
@@ -52,6 +53,7 @@ PRINTED: dict[str, list[dict[str, Any]]] = {
     "constants": [{"conversions": True}],
     "series": [{}, {"conversions": True, "derivatives": ("rotation_matrix by q vjp",)}],
 }
+_PROSE = re.compile(r'""".*?"""|/\*.*?\*/', re.DOTALL)
 LEAN = {"precision": "double", "arrays": False, "libm": True}
 OF_C: dict[str, list[dict[str, Any]]] = {
     "turn": [LEAN | {"conversions": True}],
@@ -86,11 +88,11 @@ def described(file: str, text: str, way: str = "") -> str:
 
 
 def of_rotations(target: str) -> Iterator[str]:
-    """What is printed of each rotation, a line for each file."""
+    """What is printed of each rotation without docstrings and comments, a line for each file."""
     for name, ways in PRINTED.items():
         for way in (*ways, *(OF_C.get(name, ()) if target == "c" else ())):
             for file, text in motion(name).kernels(target, **way).files.items():
-                yield described(file, text, " ".join(way))
+                yield described(file, _PROSE.sub("", text), " ".join(way))
 
 
 def of_widths(target: str) -> Iterator[str]:
