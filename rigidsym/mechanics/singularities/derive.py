@@ -49,9 +49,9 @@ class _Study:
         matrices = [turn.matrix for turn in model.turns[: len(model.turns) // 2]]
         rotation, rates = values.turning.R, values.rate_matrices["space"]
         one = RingMatrix.identity(codec.ring, 3)
-        to_space = reduce(operator.matmul, map(codec.matrix, matrices), one)
-        self.to_both = RingMatrix(codec.ring, (*to_space.rows, *(rotation.T @ to_space).rows))
-        here = to_space.T @ rates
+        self.to_space = reduce(operator.matmul, map(codec.matrix, matrices), one)
+        self.to_body = rotation.T @ self.to_space
+        here = self.to_space.T @ rates
         self.whole = RingMatrix(codec.ring, (*here.rows, *(bound.rows if bound else ())))
         self.falling = FallingRank(
             codec,
@@ -105,10 +105,15 @@ class _Study:
             axis = next(row for row in reached.T.rows if any(row))
         in_space = in_body = None
         if axis is not None:
-            both = matrix_at(self.to_both, zero) @ RingMatrix.column(there.ring, axis[:3])
-            entries = primitive(there.ring, both.entries)
-            shown = self.present.matrix(RingMatrix.column(there.ring, entries))
-            in_space, in_body = shown[:3, :], shown[3:, :]
+            ring, column = there.ring, RingMatrix.column
+            here = column(ring, axis[:3])
+            space, body = (
+                matrix_at(self.to_space, zero) @ here,
+                matrix_at(self.to_body, zero) @ here,
+            )
+            entries = primitive(ring, (*space.entries, *body.entries))
+            in_space = self.present.matrix(column(ring, entries[:3]))
+            in_body = self.present.matrix(column(ring, entries[3:]))
         return Singularity(
             places=places,
             rank=rank,
