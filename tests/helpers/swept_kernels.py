@@ -18,6 +18,7 @@ from rigidsym.kernels.ir import (
     Product,
     Program,
     Sum,
+    Unwrapping,
 )
 
 WIDEST = 44
@@ -30,7 +31,9 @@ def swept() -> Program:
     """Kernels for each length of names."""
     kernels = [kernel for length in range(1, WIDEST) for kernel in _of_length(length)]
     kernels += [_long(length, 97) for length in LONG]
-    return _program("swept", [*kernels, _long(1, 96)])
+    constants = _vector("parameters", ["p"])
+    unwrapping = Unwrapping("quaternion", (_vector("q", ["w"]), constants), ("word " * 99,))
+    return _program("swept", [*kernels, _long(1, 96)])._replace(unwrapping=unwrapping)
 
 
 def of_series(order: int) -> Program:

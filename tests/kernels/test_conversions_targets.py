@@ -75,6 +75,7 @@ def given(text: str) -> dict[str, list[np.ndarray]]:
     return {name: arrays for name, arrays in found.items() if hasattr(known, name)}
 
 
+@cache
 def offered(text: str, target: str) -> tuple[set[str], str]:
     """The functions of a target's file, and the words on it."""
     files = motion(text).kernels(target, conversions=True).files

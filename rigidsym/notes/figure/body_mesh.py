@@ -174,6 +174,13 @@ def _map(solid: Solid, scale: Scale) -> Map:
     return point
 
 
+_OF_TWO: Mapping[type, Callable[[Evaluator, Evaluator], Evaluator]] = {  # nothing is collected
+    sp.Add: lambda one, two: lambda values: one(values) + two(values),
+    sp.Mul: lambda one, two: lambda values: one(values) * two(values),
+    sp.Pow: lambda one, two: lambda values: one(values) ** two(values),
+}
+
+
 def evaluator(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> Evaluator:
     """The value of an expression in floats, for values of the symbols in their order."""
     if expression.is_number:
@@ -183,13 +190,12 @@ def evaluator(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> Evaluator:
         place = symbols.index(expression)
         return lambda values: values[place]
     parts = [evaluator(part, symbols) for part in expression.args]
+    if len(parts) == 2 and expression.func in _OF_TWO:
+        return _OF_TWO[expression.func](*parts)
     if expression.is_Add:
         return lambda values: sum(part(values) for part in parts)
     if expression.is_Mul:
         return lambda values: math.prod(part(values) for part in parts)
-    if expression.is_Pow:
-        base, exponent = parts
-        return lambda values: base(values) ** exponent(values)
     name = expression.func.__name__
     function = _FUNCTIONS.get(name) or getattr(math, name)
     return lambda values: function(*(part(values) for part in parts))
