@@ -335,7 +335,7 @@ def top() -> tuple[dict[str, Any], dict[str, Any]]:
     A, C = sp.symbols("A C", positive=True)
     motion = rs.derive(
         "ZXZ",
-        ["rotation_matrix", *OF_MOTION, *NOT_COVERED],
+        [*BASIC[:2], *OF_MOTION, *NOT_COVERED],
         body=rs.principal_moments(A, A, C),
         potential="m*g*l*cos(theta)",
         forces={"psi": "-k*psi_dot"},
@@ -345,13 +345,13 @@ def top() -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 OF_MOTION = ("potential_energy", "lagrangian", "energy", "generalised_momenta", "mass_matrix")
-OF_MOTION += ("bias_vector", "accelerations", "coriolis_matrix")
-NOT_COVERED = ("hamiltonian", "principal_moments", "principal_axes")
+OF_MOTION += ("bias_vector", "accelerations", "coriolis_matrix", "hamiltonian")
+NOT_COVERED = ("principal_moments", "principal_axes")
 
 
 def test_lagrange_s_equations_are_proved(top):
     found, certificate = top
-    proved = {"R is a rotation", "rotation_matrix", *OF_MOTION, "constant momentum_phi"}
+    proved = {"R is a rotation", *BASIC[:2], *OF_MOTION, "constant momentum_phi"}
     assert {*checker.verify(found, certificate)} == proved
     assert {*certificate["uncovered"]} == {*NOT_COVERED}
 
@@ -374,6 +374,9 @@ def test_a_claim_that_the_checker_does_not_know_is_refused(top, name):
         ("bias_vector", "g*l*m", "2*g*l*m"),
         ("accelerations", "k*", "2*k*"),
         ("coriolis_matrix", "/2", "/4"),
+        ("hamiltonian", "p_theta**2", "p_psi**2"),
+        ("hamiltonian", "2*p_phi*p_psi", "p_phi*p_psi"),
+        ("hamiltonian", "g*l*m", "-g*l*m"),
         ("constant momentum_phi", "sin(theta)**2", "sin(theta)"),
     ],
 )
@@ -398,6 +401,35 @@ def test_the_energy_is_proved_constant_and_a_wrong_one_is_refused():
         spoil(wrong, "constant energy", before, after)
         with pytest.raises(ValueError, match="constant energy: its cofactors do not prove"):
             checker.verify(wrong, certificate)
+
+
+def test_a_hamiltonian_in_the_rates_is_refused(top):
+    # the energy itself would satisfy H(q, p(q, q̇)) = E(q, q̇)
+    found, certificate = copy.deepcopy(top)
+    energy = printed(found, "energy")["expression"]
+    printed(found, "hamiltonian")["expression"] = energy
+    certificate["claims"]["hamiltonian"] = certificate["claims"]["energy"]
+    with pytest.raises(ValueError, match="hamiltonian holds phi_dot"):
+        checker.verify(found, certificate)
+
+
+def test_the_momenta_of_a_hamiltonian_are_those_of_its_coordinates(top):
+    found, certificate = copy.deepcopy(top)
+    group = next(group for group in found["arguments"] if group["name"] == "momenta")
+    group["components"].reverse()
+    spoil(found, "hamiltonian", "p_theta**2", "p_phi**2")
+    with pytest.raises(ValueError, match="hamiltonian: its cofactors do not prove"):
+        checker.verify(found, certificate)
+
+
+def test_a_wrong_angular_velocity_proves_nothing_about_the_energy(top):
+    # the kinetic energy is stated in the printed Ω′, which is why this has to be proved as well
+    found, certificate = copy.deepcopy(top)
+    spoil(found, "angular_velocity_body", "psi_dot", "2*psi_dot")
+    for quantity in ("energy", "lagrangian"):
+        spoil(found, quantity, "psi_dot", "2*psi_dot")
+    with pytest.raises(ValueError, match="angular_velocity_body: its cofactors do not prove"):
+        checker.verify(found, certificate)
 
 
 @pytest.mark.parametrize("expression", ["0", "1", "A", "momentum", "phi", "energy"])
@@ -504,8 +536,8 @@ RATES = ("rotation_matrix", "rate_matrix_body")
 
 
 def test_coq_accepts_the_lagrangian_and_the_mass_matrix(tmp_path):
-    # a constant momentum takes Coq six seconds, the bias vector half a minute, q̈ minutes
-    names = ("lagrangian", "mass_matrix")
+    # a Hamiltonian takes Coq half a minute, q̈ minutes
+    names = ("angular_velocity_body", "lagrangian", "mass_matrix")
     body = rs.principal_moments(*sp.symbols("A A C", positive=True))
     motion = rs.derive("ZXZ", names, body=body, potential="m*g*l*cos(theta)")
     found = json.loads(json.dumps(record(motion, {}))) | {"first_integrals": []}

@@ -1,8 +1,7 @@
 """Checks certificates without the program that wrote them: `python checker.py FOLDER...`
 
-A claim about what NAME.json prints is built from definitions. NAME.cert.json makes it a sum of
-cofactors times relations: cos² + sin² = 1, squares of roots, divisors times inverses, conditions.
-At a point modulo PRIME all of them hold: none contradict, and no divisor is zero.
+Claims about what NAME.json prints are built from definitions; NAME.cert.json makes each a sum of
+cofactors times relations, which hold at a point: none contradict, and no divisor is zero.
 """
 
 from __future__ import annotations
@@ -27,6 +26,7 @@ FORMS = {  # a vector v and numbers c and s: R = 1 + s C(v) + (1 - c) C(v)²
     "modified_rodrigues": "2*{1}; 2*{2}; 2*{3}; 1 - 2/N**2; 2*(2 - N)/N**2",  # {0} is 1
 }
 SQUARE = "({0}**2 + {1}**2 + {2}**2 + {3}**2)"  # N
+VECTORS = "X Y Z", "X_dot Y_dot Z_dot", "n_x n_y n_z", "p_x p_y p_z", "torque_1 torque_2 torque_3"
 PRIME, MOST = 29682952539239999999, 99  # roots to 37 exist modulo PRIME; powers are below MOST
 ERRORS = (LookupError, ArithmeticError, AttributeError, TypeError, ValueError, SyntaxError)
 BROKEN = (*ERRORS, RecursionError, MemoryError)  # raised for what is refused
@@ -91,7 +91,7 @@ def hat(vector: Array) -> Array:  # C(v), the operator v ×
     return Array([[ZERO, z * -1, y], [z, ZERO, x * -1], [y * -1, x, ZERO]])
 
 
-ZERO, ONE = Poly({}), Poly({(): 1})
+ZERO, ONE, HALF = Poly({}), Poly({(): 1}), Fraction(1, 2)
 UNITS = Array([ONE if j == k else ZERO for k in range(3)] for j in range(3))
 
 
@@ -102,10 +102,11 @@ class Language:
         self.groups = {g["name"]: [c["name"] for c in g["components"]] for g in record["arguments"]}
         self.parts = parts  # of the angle φ, φ/n has a cosine
         self.relations: dict[str, Poly] = {}
+        self.meaning, self.momenta = dict[str, Poly](), dict[str, Poly]()  # of names, of p
         self.flow = dict.fromkeys(("pi", *self.groups.get("parameters", ())), ZERO)  # d/dt
         self.rates, self.second = ([q + d for q in self.groups["q"]] for d in ("_dot", "_ddot"))
-        for q in self.groups["q"]:
-            self.flow |= {q: letter(f"{q}_dot"), f"{q}_dot": letter(f"{q}_ddot")}
+        rates = map(letter, self.rates + self.second)
+        self.flow |= zip(self.groups["q"] + self.rates, rates, strict=True)
 
     def matrix(self, given: Any) -> Array:
         rows = given if isinstance(given, list) else [given]
@@ -128,7 +129,7 @@ class Language:
             case ast.Constant(value=int(value)):
                 found = ONE * value
             case ast.Name(id=name):
-                found = letter(name)
+                found = self.meaning.get(name, letter(name))
             case ast.Call(func=ast.Name(id="sqrt"), args=[argument]):
                 found = self.root(self.read(argument))
             case ast.Call(func=ast.Name(id=name), args=[argument]):
@@ -160,7 +161,7 @@ class Language:
             if whole % k == 0:
                 return self.root(ONE * k) * self.root(ONE * (whole // k))
         x, y = letter(f"sqrt({value})"), letter(f"1/(1*sqrt({value}))")
-        self._new(x, x * x + value * -1, self.rate(value) * y * Fraction(1, 2))
+        self._new(x, x * x + value * -1, self.rate(value) * y * HALF)
         self.inverse(x)  # which the rate needs
         return x
 
@@ -208,59 +209,58 @@ class Language:
 def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> dict[str, Any]:
     """What each of the printed quantities x must satisfy: x = B, A x = B or x q̇ = B, by entries."""
     R, d, slope, read = known.rotation(record["rotation"]), known.d, known.slope, known.matrix
+    texts = [(q["name"], q["expression"]) for q in record["quantities"]]
+    texts += [("constant " + f["name"], f["expression"]) for f in record["first_integrals"]]
     shown = R.T if record["presentation"] == "passive" else R
     B = {"rotation_matrix": shown, "rotation_rate": d(shown), "spin_matrix": d(shown) * shown.T}
     for f, spin in ("space", d(R) * R.T), ("body", R.T * d(R)):  # C(Ω), C(Ω′)
         w = Array([[spin.rows[2][1]], [spin.rows[0][2]], [spin.rows[1][0]]])
         B[f"angular_velocity_{f}"], B[f"angular_acceleration_{f}"] = w, d(w)
         B[f"rate_matrix_{f}"], B[f"inverse_rate_matrix_{f}"] = w, UNITS
-        B[f"rates_from_angular_velocity_{f}"] = given = read([f"omega_{f}_{k}" for k in "123"])
+        B[f"rates_from_angular_velocity_{f}"] = omega = read([f"omega_{f}_{k}" for k in "123"])
     A = {f"{k}_{f}": slope(B[f"rate_matrix_{f}"]) for k in RATES[1:] for f in ("space", "body")}
-    if "body" in record:  # w and given are those of the body
+    w = read(dict(texts)["angular_velocity_body"]) if "angular_velocity_body" in names else w
+    if "body" in record:  # w, as printed if this is proved as well, and omega are those of the body
         m, at, tensor = (read(record["body"][g]) for g in ("mass", "centre", "inertia"))
-        letters = "X Y Z", "X_dot Y_dot Z_dot", "n_x n_y n_z", "p_x p_y p_z"
-        r, v, n, p = (read(each.split()) for each in letters)
-        arm, torque = hat(p + at * -1), read([f"torque_{k}" for k in (1, 2, 3)])
+        r, v, n, p, torque = (read(each.split()) for each in VECTORS)
+        arm, orbital, spun = hat(p + at * -1), hat(r) * v * m, tensor * w
+        moving, turning = v.T * v * m * HALF, w.T * spun * HALF
         B["mass"], B["centre_of_mass"], B["inertia_tensor"] = m, at, tensor
         B["inertia_tensor_point"] = about = tensor + arm.T * arm * m.entries[0]
         B["inertia_tensor_space"], B["moment_of_inertia"] = R * tensor * R.T, n.T * about * n
-        B["translational_energy"] = moving = v.T * v * m * Fraction(1, 2)
-        B["rotational_energy"] = turning = w.T * tensor * w * Fraction(1, 2)
-        B["kinetic_energy"] = moving + turning
-        B["angular_momentum_centre"] = orbital = hat(r) * v * m
-        spun = B["angular_momentum_rotation_body"] = tensor * w
-        B["angular_momentum_rotation"], B["angular_momentum"] = R * spun, orbital + R * spun
-        A["angular_acceleration_from_torque"] = tensor
-        B["angular_acceleration_from_torque"] = torque + hat(given) * tensor * given * -1
+        B["translational_energy"], B["rotational_energy"] = moving, turning
+        B["kinetic_energy"], B["angular_momentum"] = moving + turning, orbital + R * spun
+        B["angular_momentum_rotation_body"], B["angular_momentum_rotation"] = spun, R * spun
+        B["angular_acceleration_from_torque"] = torque + hat(omega) * tensor * omega * -1
+        A["angular_acceleration_from_torque"], B["angular_momentum_centre"] = tensor, orbital
     if "motion" in record:  # Lagrange's equations are 2 dp/dt − ∂(dL/dt)/∂q̇ = M q̈ + h = Q
         potential, forces = (read(record["motion"][g]) for g in ("potential", "forces"))
-        B["potential_energy"], B["energy"] = potential, turning + potential
-        B["lagrangian"] = free = turning + potential * -1
+        B["energy"] = B["hamiltonian"] = turning + potential
+        B["potential_energy"], B["lagrangian"] = potential, turning + potential * -1
         B["generalised_momenta"] = p = slope(turning).T
         B["mass_matrix"] = A["accelerations"] = mass = slope(p)
-        lacking = d(p) * 2 + (slope(d(free)).T + forces) * -1  # M q̈ + h − Q, zero along a motion
+        lacking = d(p) * 2 + (slope(d(B["lagrangian"])).T + forces) * -1  # M q̈ + h − Q = 0
         B["accelerations"] = mass * read(known.second) + lacking * -1
         B["bias_vector"] = forces + B["accelerations"] * -1
-        B["coriolis_matrix"] = (d(mass) + slope(d(p)) + slope(d(p)).T * -1) * Fraction(1, 2)
+        B["coriolis_matrix"] = (d(mass) + slope(d(p)) + slope(d(p)).T * -1) * HALF
         B["constant energy"] = read([known.rates]) * lacking
-        for q, row in zip(known.groups["q"], lacking.rows, strict=True):
-            B[f"constant momentum_{q}"] = Array([row])
+        for q, row, each in zip(known.groups["q"], lacking.rows, p.entries, strict=True):
+            B[f"constant momentum_{q}"], known.momenta[f"p_{q}"] = Array([row]), each
     volume = Array([R.rows[0]]) * hat(Array([R.rows[1]])) * Array([R.rows[2]]).T
     lengths = zip((R * R.T).entries, UNITS.entries, strict=True)
     found = {"R is a rotation": [*lengths, (volume.entries[0], ONE)]}
     steady = {"sqrt", "cos", "sin", "tan", "cot", *known.flow} - {*known.rates}
-    texts = [(q["name"], q["expression"]) for q in record["quantities"]]
-    texts += [("constant " + f["name"], f["expression"]) for f in record["first_integrals"]]
-    for name, text in texts:
-        if name in names:
-            x, (kind, _, frame) = read(text), name.rpartition("_")
-            x = d(x) if name.startswith("constant ") else x
-            used = {getattr(n, "id", "pi") for n in ast.walk(ast.parse(str(text).replace("'", "")))}
-            if kind in RATES and (left := used - steady - {f"omega_{frame}_{k}" for k in "123"}):
-                raise ValueError(f"{name} holds {min(left)}")
-            x = x * read(known.rates) if kind == RATES[0] else x
-            x = A[name] * x if name in A else x
-            found[name] = [*found.get(name, ()), *zip(x.entries, B[name].entries, strict=True)]
+    for name, text in ((n, text) for n, text in texts if n in names):
+        kind, _, frame = name.rpartition("_")
+        known.meaning = known.momenta if name == "hamiltonian" else {}
+        used = {getattr(n, "id", "pi") for n in ast.walk(ast.parse(str(text).replace("'", "")))}
+        left = used - steady - {f"omega_{frame}_{k}" for k in "123"} - {*known.meaning}
+        if left and (kind in RATES or name == "hamiltonian"):
+            raise ValueError(f"{name} holds {min(left)}")
+        x = d(read(text)) if name.startswith("constant ") else read(text)
+        x = x * read(known.rates) if kind == RATES[0] else x
+        x = A[name] * x if name in A else x
+        found[name] = [*found.get(name, ()), *zip(x.entries, B[name].entries, strict=True)]
     return found
 
 
