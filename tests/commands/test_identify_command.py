@@ -119,7 +119,7 @@ def test_no_fit_is_an_answer_with_exit_code_1(tmp_path):
             [
                 "--angles: expected 3 numbers, got 2",
                 "--matrix: 'x' is not a number",
-                "rates and omega belong together",
+                "expected both rates and omega",
             ],
         ),
         (("--angles", "1,2,3"), ["a matrix or a quaternion is missing"]),

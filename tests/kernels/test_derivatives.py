@@ -271,7 +271,7 @@ def test_spellings_of_one_request():
 
 
 def test_what_a_quantity_does_not_take_is_refused():
-    with pytest.raises(KernelError, match=r"^rotation_matrix by q_dot: rotation_matrix takes q "):
+    with pytest.raises(KernelError, match=r"^rotation_matrix by q_dot: .* depends only on q$"):
         motion("ZXZ").kernels(derivatives=["rotation_matrix by q_dot"])
     with pytest.raises(QuantityError, match="no quantity 'speed'"):
         motion("ZXZ").kernels(derivatives=["speed by q"])

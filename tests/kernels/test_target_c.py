@@ -120,7 +120,7 @@ def test_it_needs_nothing_and_keeps_nothing(sources):
     assert not re.search(r"\b(malloc|calloc|alloca|goto|setjmp)\b", text)
     (tile,) = re.findall(r"TILE = (\d+)", text)
     header = (sources / f"{NAME}.h").read_text(encoding="utf-8").replace("\n * ", " ")
-    assert f"takes room for {tile} orientations" in header
+    assert f"keeps {tile} orientations" in header
 
 
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no gcc")

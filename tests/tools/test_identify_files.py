@@ -237,7 +237,7 @@ def test_quaternions_that_are_not_unit(quaternion, message):
     [
         ({}, "a matrix or a quaternion is missing"),
         ({"matrix": np.eye(3), "quaternion": [1, 0, 0, 0]}, "not both"),
-        ({"matrix": np.eye(3), "rates": [1, 2, 3]}, "rates and omega belong together"),
+        ({"matrix": np.eye(3), "rates": [1, 2, 3]}, "expected both rates and omega"),
         (
             {"matrix": np.eye(4)},
             r"matrix: expected the shape \(n, 3, 3\) or \(n, 9\), got \(4, 4\)",
@@ -295,7 +295,7 @@ def test_missing_columns_are_named_with_the_nearest_that_are_there():
             ["line 2: matrix: a number that is miss"],
         ),
         ("HEADER\n0,0,1_0,1,0,0,0,1,0,0,0,1\n", ["line 2: field 3: '1_0' is not a number"]),
-        ("HEADER\n0,0,1°,1,0,0,0,1,0,0,0,1\n", ["'1°' is not a number; degrees are written"]),
+        ("HEADER\n0,0,1°,1,0,0,0,1,0,0,0,1\n", ["'1°' is not a number; write degrees without °"]),
         ("a1;a2;a3;w;x;y;z\n0;0,5;0;1.0;0;0;0\n", ["line 2: decimal commas and decimal points"]),
     ],
 )
