@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 R = TypeVar("R")
+_WAITING = 1 << 20  # bytes of results
 _PATIENCE = 2.0  # seconds for a copy to end what it started
 
 
@@ -65,7 +66,8 @@ def _copies(
     if not shares:
         yield []
         return
-    from multiprocessing import get_context  # few commands have several items
+    from fcntl import F_SETPIPE_SZ, fcntl  # of Linux, and few commands have several items
+    from multiprocessing import get_context
 
     context = get_context("fork")
     running, ends = [], []
@@ -73,6 +75,8 @@ def _copies(
     try:
         for share in shares:
             here, there = context.Pipe(duplex=False)
+            with suppress(OSError):  # a copy goes on while its results wait, if the system has room
+                fcntl(there.fileno(), F_SETPIPE_SZ, _WAITING)
             copy = context.Process(target=_done, args=(work, share, here, there), daemon=True)
             before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
             copy.start()  # Ctrl-C does not reach it: this process ends it

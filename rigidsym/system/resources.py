@@ -60,7 +60,14 @@ def folder(kind: str) -> Path:
 
 def text(kind: str, name: str) -> str:
     """The text of one file of a folder."""
-    return (folder(kind) / name).read_text(encoding="utf-8")
+    return _shipped(kind, name)[0]
+
+
+@cache
+def _shipped(kind: str, name: str) -> tuple[str, str]:
+    """(text, path) of a file of the package, which is read once."""
+    path = folder(kind) / name
+    return path.read_text(encoding="utf-8"), str(path)
 
 
 def names(kind: str, suffix: str) -> tuple[str, ...]:
@@ -122,9 +129,9 @@ def template(name: str) -> tuple[str, str]:
         raise FileNotFoundError(f"{name} is not the name of a file among the templates")
     is_of_notes = len(path.parts) == 1
     own = _OWN.get() if is_of_notes else None
-    shipped = folder(NOTES if is_of_notes else "templates") / name
-    path = own / name if own is not None and (own / name).is_file() else shipped
-    return path.read_text(encoding="utf-8"), str(path)
+    if own is not None and (own / name).is_file():
+        return (own / name).read_text(encoding="utf-8"), str(own / name)
+    return _shipped(NOTES if is_of_notes else "templates", name)
 
 
 Find = Callable[[str], tuple[str, str]]  # name -> text, file
