@@ -291,6 +291,17 @@ def test_the_angular_velocity_of_a_quaternion_is_known_unaided(text):
     assert (found.is_equal, found.is_proved, len(found.record()["names"])) == (True, True, 8)
 
 
+@pytest.mark.parametrize("rotation", ["unit_quaternion", "gibbs_vector"])
+def test_p_q_r_are_body_rates_beside_components_called_q(rotation):
+    rates = right(rotation, "rates_from_angular_velocity_body")
+    motion = rs.derive(rotation, "rates_from_angular_velocity_body")
+    old = [n for argument in motion.arguments for n in argument.names]
+    new = [f"q{k}" for k in range(1, len(old) - 2)] + [*"pqr"]
+    names = {sp.Symbol(a, real=True): sp.Symbol(b) for a, b in zip(old, new, strict=True)}
+    found = rs.compare(str(rates.xreplace(names).tolist()))
+    assert str(found.found) == f"rates_from_angular_velocity_body of {rotation}"
+
+
 @pytest.mark.parametrize("last", [False, True], ids=["first", "last"])
 def test_the_rate_matrix_of_a_quaternion_is_known_without_its_factor(last):
     matrix = right("unit_quaternion", "rate_matrix_body") / 2
@@ -343,6 +354,52 @@ def test_what_is_no_formula_is_said(text, read):
     found = rs.compare(text, "ZYX", "rate_matrix_body").text()
     expected = "" if "vector" in read and "3x3" in read else "; expected a 3x3 matrix)"
     assert found.endswith(expected)
+
+
+@pytest.mark.parametrize(
+    ("change", "place", "after"),
+    [
+        (lambda m: m.T, (2, 3), 1),
+        (lambda m: 2 * m[[1, 2, 3, 0], [1, 2, 3, 0]], (4, 3), 2),
+        (lambda m: m[:, [1, 2, 3, 0]] / 2, (1, 2), sp.Rational(1, 2)),
+    ],
+    ids=["transposed", "scalar last, twice", "scalar last, half"],
+)
+def test_the_wrong_entry_is_that_of_the_formula_however_it_is_written(change, place, after):
+    if after == 1:
+        matrix = right("ZXZ", "rotation_matrix")
+    elif after == 2:
+        a, b, c = sp.symbols("w_1:4", real=True)
+        rows = [[0, -a, -b, -c], [a, 0, c, -b], [b, -c, 0, a], [c, b, -a, 0]]
+        matrix = sp.Matrix(rows) / 2
+    else:
+        matrix = right("unit_quaternion", "rate_matrix_body")
+    written = sp.Matrix(change(matrix))
+    i, j = place[0] - 1, place[1] - 1
+    wanted = written[i, j]
+    written[i, j] = turned_sign(wanted)
+    found = rs.compare(written)
+    (repair,) = found.repairs
+    assert (repair.place, repair.kind, found.is_proved) == (place, "sign", True)
+    assert (repair.before, repair.after) == (written[i, j], wanted)
+
+
+def test_a_transpose_is_said_of_the_convention_that_a_formula_is():
+    matrix = right("xyz", "rotation_matrix").T
+    found = rs.compare(matrix, "ZYX", "rotation_matrix")
+    assert "this is rotation_matrix of xyz, transposed (passive" in found.text()
+
+
+def test_texts_call_the_versine_v_and_the_length_by_the_letter_of_its_components():
+    rodrigues = (
+        "[[x*x*v + c, x*y*v - z*s, x*z*v + y*s], [x*y*v + z*s, y*y*v + c, y*z*v - x*s], "
+        "[x*z*v - y*s, y*z*v + x*s, z*z*v + c]]"
+    )
+    assert str(rs.compare(rodrigues).found) == "rotation_matrix of axis_angle"
+    s = "col(s_1, s_2, s_3)"
+    found = rs.compare(f"((1 - s**2)*one(3) + 2*C({s}) + 2*outer({s}, {s}))/4")
+    assert str(found.found) == "inverse_rate_matrix_body of modified_rodrigues"
+    assert found.is_equal
 
 
 def test_functions_may_return_anything_with_entries():

@@ -31,7 +31,7 @@ W_BODY = "[[1, 0, -sin(b)], [0, cos(a), sin(a)*cos(b)], [0, -sin(a), cos(a)*cos(
         ("[1 -s; 0 q(2)^2]", "[[1,-s],[0,q_2**2]]"),
         ("[1 - s, 0\n 2 c*s]", "[[1-s,0],[2,c*s]]"),
         ("[a; b]'", "[[a],[b]].T"),
-        ("np.array([self.phi, x[3]*2.0f], dtype=float)", "array([phi,x_3*2.0])"),
+        ("np.array([self.phi, x[3]*2.0f], dtype=float)", "array([phi,x_3%2.0])"),
         ("pow(q.w(), 2) + state->roll", "pow(q_w,2)+roll"),
         (r"\dot\phi \sin^2\theta + \tfrac12 x_1", "phi_dot*sin(theta)**(2)+((1)/(2))*x_1"),
         (r"\sqrt{x^2}\,(a + b)", "sqrt(x**(2))*(a+b)"),
@@ -73,6 +73,48 @@ def test_the_length_of_a_vector_is_called_n_as_in_notes(quantity):
 def test_hostile_text_is_refused(text):
     with pytest.raises(ExpressionError):
         rs.compare(text)
+
+
+ABOUT_X = r"\begin{bmatrix}1&0&0\\0&c\phi&-s\phi\\0&s\phi&c\phi\end{bmatrix}"
+ABOUT_Z = r"\begin{bmatrix}\cosψ&-\sin\psi&0\\ \sin\psi&\cos\psi&0\\0&0&1\end{bmatrix}"
+RATES = r"\begin{pmatrix}\dot\phi\\ \dot\theta\\ \dot\psi\end{pmatrix}"
+TO_BODY = r"[1&0&-s_\theta\\0&c_\phi&s_\phi c_\theta\\0&-s_\phi&c_\phi c_\theta]"
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        (f"R = {ABOUT_Z}{ABOUT_X}", "rotation_matrix of z(first) x(second)"),
+        (
+            rf"\mathbf{{A}} = \left({ABOUT_Z}{ABOUT_X}\right)^\top.",
+            "rotation_matrix of z(first) x(second), transposed (passive, the direction cosine "
+            "matrix)",
+        ),
+        (
+            rf"{RATES} = \left[\begin{{array}}{{ccc}}{TO_BODY[1:-1]}\end{{array}}\right] {RATES}",
+            "angular_velocity_body of xyz",
+        ),
+    ],
+)
+def test_products_and_transposes_of_matrices_are_read_in_latex(text, read):
+    found = rs.compare(text)
+    assert found.found.described == read
+    assert found.is_proved
+
+
+def test_a_letter_without_a_meaning_is_refused_in_latex():
+    with pytest.raises(ExpressionError, match="unexpected 'é' in LaTeX"):
+        rs.compare(r"\begin{pmatrix}\cos é&0\\0&1\end{pmatrix}")
+
+
+def test_products_of_numpy_arrays_are_those_of_their_entries(tmp_path):
+    a = "np.array([[cos(a), -sin(a), 0], [sin(a), cos(a), 0], [0, 0, 1]])"
+    b = "np.array([[1, 0, 0], [0, cos(b), -sin(b)], [0, sin(b), cos(b)]])"
+    assert rs.compare(f"{a} @ {b}").is_equal
+    assert rs.compare(f"{a} * {b}").found is None
+    for line, count in (("import numpy as np", 2), ("from sympy import *", 3)):
+        text = f"{line}\ndef f(a, b):\n    A = {a}\n    B = {b}\n    return A * B\n"
+        assert len(found_in(tmp_path, "a.py", text)) == count
 
 
 def run(*arguments):

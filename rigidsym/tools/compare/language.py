@@ -3,9 +3,9 @@
     read_formula("[[cos(a), -sin(a)], [sin(a), cos(a)]]")          any name is a symbol
     read_formula("one(3) + C(v)/2", {"v": sp.Matrix(...)})          only these names are known
 
-Products of matrices are `*` or `@`. Known besides the functions of expressions: C (the matrix of
-the vector product), T or `.T`, one, col, dot, cross, outer, diag, stack, trace, pow and `m[i, j]`,
-counted from 1. Sizes are bounded as in `rigidsym.text.bounds`.
+Products of matrices are `*` or `@`, and `%` entry by entry. Known besides the functions of
+expressions: C (the matrix of the vector product), T or `.T`, one, col, dot, cross, outer, diag,
+stack, trace, pow and `m[i, j]`, counted from 1. Sizes are bounded as in `rigidsym.text.bounds`.
 """
 
 from __future__ import annotations
@@ -163,14 +163,17 @@ class _FormulaWalk:
 
     def _operate(self, op: ast.operator, left: Any, right: Any, column: int) -> Any:
         if isinstance(left, Sized) and isinstance(right, Sized):
-            return operate(ast.Mult() if isinstance(op, ast.MatMult) else op, left, right, column)
+            is_product = isinstance(op, ast.MatMult | ast.Mod)
+            return operate(ast.Mult() if is_product else op, left, right, column)
         one, other = _plain(left), _plain(right)
+        if isinstance(op, ast.Mod) and Sized not in (type(left), type(right)):
+            return _checked(sp.matrix_multiply_elementwise(sp.Matrix(one), sp.Matrix(other)))
         match op:
             case ast.Add():
                 return _checked(one + other)
             case ast.Sub():
                 return _checked(one - other)
-            case ast.Mult() | ast.MatMult():
+            case ast.Mult() | ast.MatMult() | ast.Mod():
                 product = one * other
                 is_scalar = isinstance(product, sp.MatrixBase) and product.shape == (1, 1)
                 return _checked(product[0] if is_scalar else product)
@@ -213,11 +216,11 @@ def _number(number: float, column: int) -> Sized:
     return Sized.number(sp.Rational(text))
 
 
-_SHORTENED = re.compile(r"(sin|cos|tan|[sct])_?([A-Za-z0-9]\w*|)")
+_SHORTENED = re.compile(r"(sin|cos|tan|[sctv])_?([A-Za-z0-9]\w*|)")
 _ANGLE = re.compile(
     r"(phi|theta|psi|alpha|beta|gamma|roll|pitch|yaw|th|ph|ps|[abg]|[xyz])_?\d?", re.IGNORECASE
 )
-_FULL = {"s": sp.sin, "c": sp.cos, "t": sp.tan}
+_FULL = {"s": sp.sin, "c": sp.cos, "t": sp.tan, "v": lambda angle: 1 - sp.cos(angle)}
 
 
 def spelled_out(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
@@ -232,6 +235,8 @@ def spelled_out(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
             found.setdefault(match[2], {})[match[1][0]] = symbol
     values: dict[sp.Symbol, sp.Expr] = {}
     for stem, letters in found.items():
+        if not {"s", "c"} <= letters.keys():
+            letters.pop("v", None)  # a versine has a sine and a cosine beside it
         if {"s", "c"} <= letters.keys() or (len(stem) > 1 and _ANGLE.fullmatch(stem)):
             angle = sp.Symbol(stem if stem[:1].isalpha() else f"angle{stem}", real=True)
             values |= {symbol: _FULL[letter](angle) for letter, symbol in letters.items()}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
+from itertools import chain, islice
 from typing import Any
 
 import sympy as sp
@@ -35,9 +35,13 @@ class Comparison:
     found: KnownQuantity | None = None  # what it is after the repairs
     names: Names | None = None
     repairs: tuple[Repair, ...] = ()
-    arrangement: str = ""  # "transposed", "scalar last", "twice": what it is of what was found
     as_it_stands: KnownQuantity | None = None  # what it is before a repair of its entries
     is_proved: bool = False  # that the repaired formula is what was found
+
+    @property
+    def arrangement(self) -> str:
+        """How what was found is written: "transposed", "scalar last", "twice"."""
+        return self.found.arrangement if self.found else ""
 
     @property
     def is_equal(self) -> bool:
@@ -83,7 +87,7 @@ class Comparison:
         if self.asked is None:
             return f"close to {what}: {changes}; {corrected}"
         if self.as_it_stands:
-            changes += f"; as it stands this is {self.as_it_stands}"
+            changes += f"; as it stands this is {self.as_it_stands.described}"
         is_changed = self.asked.quantity == self.found.quantity
         is_changed &= self.asked.rotation == self.found.rotation
         ending = f"; {corrected}" if is_changed else f"{self._in_names()} ({proof})"
@@ -128,7 +132,7 @@ def against(formula: sp.ImmutableMatrix, goal: KnownQuantity) -> Comparison:
     if found:
         return replace(_made(*found, goal), as_it_stands=other.found)
     if other.found:
-        words = f"this is {other.found}"
+        words = f"this is {other.found.described}"
         repair = Repair(kind="convention", words=words, formula=formula, goal=other.found)
         return replace(other, asked=goal, repairs=(repair, *other.repairs))
     if found := next(((m, (r,)) for m in meant for r in twofold_repairs(m)), None):
@@ -155,48 +159,27 @@ def identified(
     formula: sp.ImmutableMatrix, *, only_equal: bool = False, also: Sequence[KnownQuantity] = ()
 ) -> Comparison:
     """Compare with all quantities of the catalogue, and `also`; the nearest if none is equal."""
-    near: list[tuple[float, str, Meaning]] = []
-    whole: tuple[str, Meaning] | None = None
-    for goal in (*catalogue(formula), *also):
-        for arrangement, arranged in _arranged(formula, goal):
-            for names in readings(arranged, goal):
-                reading = Meaning.of(arranged, goal, names)
-                right = reading.right
-                if right.all():
-                    return replace(_made(reading, (), None), arrangement=arrangement)
-                whole = whole or ((arrangement, reading) if reading.is_whole else None)
-                near.append((float(right.mean()), arrangement, reading))
+    near: list[tuple[float, Meaning]] = []
+    whole: Meaning | None = None
+    known = (goal for goal in (*catalogue(formula), *also) if goal.matrix.shape == formula.shape)
+    for goal in chain.from_iterable(goal.arrangements for goal in known):
+        for names in readings(formula, goal):
+            reading = Meaning.of(formula, goal, names)
+            right = reading.right
+            if right.all():
+                return _made(reading, (), None)
+            whole = whole or (reading if reading.is_whole else None)
+            near.append((float(right.mean()), reading))
     if only_equal:
         return Comparison(formula=formula, asked=None)
     if whole:
-        arrangement, reading = whole
-        repairs = tuple(islice(whole_repairs(reading), 1))
-        return replace(_made(reading, repairs, None), arrangement=arrangement)
+        return _made(whole, tuple(islice(whole_repairs(whole), 1)), None)
     near.sort(key=lambda each: -each[0])
-    for share, arrangement, reading in near[:8]:
+    for share, reading in near[:8]:
         repairs = entry_repairs(reading) if share >= _NEAR else ()
         if 0 < len(repairs) <= _MOST_REPAIRS and all(r.kind != "entry" for r in repairs):
-            found = _made(reading, repairs, None)
-            return replace(found, arrangement=arrangement)
+            return _made(reading, repairs, None)
     return Comparison(formula=formula, asked=None)
-
-
-def _arranged(
-    formula: sp.ImmutableMatrix, goal: KnownQuantity
-) -> Iterator[tuple[str, sp.ImmutableMatrix]]:
-    """(what the formula is of the quantity, the formula as the quantity is written)."""
-    if formula.shape != goal.matrix.shape:
-        return
-    yield "", formula
-    if goal.quantity == "rotation_matrix":
-        yield "transposed (passive, the direction cosine matrix)", formula.T
-    if 4 in formula.shape:
-        rows, columns = ([3, 0, 1, 2] if n == 4 else [*range(n)] for n in formula.shape)
-        for words, each in (("", formula), ("scalar last", formula.extract(rows, columns))):
-            yield from ((words, each),) if words else ()
-            yield ", ".join(filter(None, (words, "twice"))), each / 2
-            if formula.rows == 3:  # G with Ω = 2 G q̇
-                yield ", ".join(filter(None, (words, "half"))), 2 * each
 
 
 _SIGNS = {"+": "-", "-": "+", "sin": "cos", "cos": "sin", "**2": ""}

@@ -24,7 +24,7 @@ _TOKEN = re.compile(
     r"|(?P<name>[^\W\d]\w*(?:(?:::|->|\.(?!T\b))[^\W\d]\w*)*(?:\(\))?)"
     r"|(?P<operator>\.T\b|\*\*|\.\*|\./|\.\^|\.'|[-+*/@^()\[\]{},;'=])"
 )
-_SAME = {"^": "**", ".^": "**", ".*": "*", "./": "/", "{": "[", "}": "]", "'": ".T", ".'": ".T"}
+_SAME = {"^": "**", ".^": "**", ".*": "%", "./": "/", "{": "[", "}": "]", "'": ".T", ".'": ".T"}
 _NAMES = {f + "f": f for f in FUNCTIONS} | {"power": "pow", "powf": "pow", "square": "sq"}
 _NAMES |= {"arctan2": "atan2", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "SQ": "sq"}
 _NAMES |= {"fabs": "abs", "Sqrt": "sqrt", "Sin": "sin", "Cos": "cos", "Tan": "tan"}
@@ -32,19 +32,26 @@ _CALLS = {*FUNCTIONS, "pow", "sq", "pi", "M_PI", "one"}
 _OPTION = re.compile(r",\s*\w+\s*=\s*[\w.]+")  # dtype=float
 _COMPONENT = re.compile(r"\b(?P<name>[^\W\d]\w*)(?P<index>(?:\[\s*\d+\s*\])+|\(\s*\d+\s*\))")
 _BLANKS = (" ", "\n")
+_NUMPY_ARRAY = re.compile(r"\b(?:np|numpy|jnp)\.(?:array|asarray)\b")
 _OPEN, _CLOSE = "([", ")]"
 
 
-def plain(text: str) -> str:
+def plain(text: str, *, is_numpy: bool = False) -> str:
     """The formula for `read_formula`; raises ExpressionError for characters without a meaning
-    and for a text that is too long."""
+    and for a text that is too long.
+
+    With `is_numpy`, and for the arrays of NumPy, * is a product entry by entry, which is written %.
+    """
     if len(text) > MOST_CHARACTERS:
         raise ExpressionError(
             f"a formula of {len(text)} characters; expected at most {MOST_CHARACTERS}"
         )
     if "\\" in text and re.search(r"\\[A-Za-z]", text):
         return _tex(text)
-    return "".join(_rows(_tokens(_COMPONENT.sub(_component, _OPTION.sub("", text)))))
+    tokens = _tokens(_COMPONENT.sub(_component, _OPTION.sub("", text)))
+    if is_numpy or _NUMPY_ARRAY.search(text):
+        tokens = ["%" if token == "*" else token for token in tokens]
+    return "".join(_rows(tokens))
 
 
 def _component(match: re.Match[str]) -> str:
@@ -156,35 +163,52 @@ def _columns(row: Sequence[str]) -> list[str]:
 
 # LaTeX
 
-_TEX_TOKEN = re.compile(r"\\[A-Za-z]+|\d+(?:\.\d+)?|[A-Za-z]|[-+*/=^_(){}\[\]'|,]")
+_FIRST = 0xE000  # a matrix stands in a formula as a letter of the private use area
+_MARKS = "\ue000-\uf8ff"
+_TEX_TOKEN = re.compile(
+    rf"\\[A-Za-z]+|\d+(?:\.\d+)?|[A-Za-z{GREEK_LETTERS}{_MARKS}]|[-+*/=^_(){{}}\[\]'|,]|(?P<other>\S)"
+)
 _LAYOUT = re.compile(
     r"\\(?:left|right|[bB]igg?[lr]?|displaystyle|textstyle|quad|qquad)(?![A-Za-z])"
-    r"|\\[,;:! ]|[~$]|\\(?:mathrm|operatorname|mathit|text)(?=\{)"
+    r"|\\[,;:! \[\]]|[~$]|\\(?:begin|end)\{(?:align|aligned|equation|gather|split)\*?\}"
+    r"|\\(?:tag|label)\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])"
+)
+_STYLED = re.compile(
+    r"\\(?:math(?:rm|it|sf|bf)|operatorname|text|boldsymbol|bm)\s*(?:\{\s*(\\?[A-Za-z]+)\s*\}|(?=\{))"
 )
 _MATRIX = re.compile(r"\\begin\{([pbB]?matrix|array)\}(?:\{[lcr]*\})?(.*?)\\end\{\1\}", re.DOTALL)
 _DOTS = {r"\dot": "_dot", r"\ddot": "_ddot"}
 _LETTERS = set(map(spelled, GREEK_LETTERS))
-_GREEK = {r"\varphi": "phi", r"\vartheta": "theta"}
+_GREEK = {r"\varphi": "phi", r"\vartheta": "theta", r"\top": "T", r"\intercal": "T"}
+_ANGLES = {"\\" + name for name in ("phi", "varphi", "theta", "vartheta", "psi", "alpha", "beta")}
+_ANGLES.add(r"\gamma")
+_SHORT = {"c": "cos", "C": "cos", "s": "sin", "S": "sin"}  # c\theta
 
 
 def _tex(text: str) -> str:
-    """LaTeX: the last matrix in it with its factor, or what stands behind the last equals sign."""
-    matrix = list(_MATRIX.finditer(text))
-    if not matrix:
-        return _TexWalk(text.rsplit("=", 1)[-1]).sum()
-    rows = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?", matrix[-1][2]) if row.strip()]
-    cells = [[_TexWalk(cell).sum() for cell in row.split("&")] for row in rows]
-    before = text[matrix[-2].end() if len(matrix) > 1 else 0 : matrix[-1].start()]
-    factor = _TexWalk(before.rsplit("=", 1)[-1]).sum() if "=" in before or before.strip() else ""
-    listed = ", ".join(f"[{', '.join(row)}]" for row in cells)
-    return f"({factor})*[{listed}]" if factor else f"[{listed}]"
+    """LaTeX: what stands behind the last equals sign outside of matrices."""
+    matrices: list[str] = []
+
+    def kept(match: re.Match[str]) -> str:
+        rows = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?", match[2]) if row.strip()]
+        cells = (", ".join(_TexWalk(cell).sum() for cell in row.split("&")) for row in rows)
+        matrices.append(f"[{', '.join(f'[{row}]' for row in cells)}]")
+        return chr(_FIRST + len(matrices) - 1)
+
+    marked = _MATRIX.sub(kept, text).rstrip(" \n.,;")
+    formula = _TexWalk(marked.rsplit("=", 1)[-1]).sum()
+    return re.sub(f"[{_MARKS}]", lambda match: matrices[ord(match[0]) - _FIRST], formula)
 
 
 class _TexWalk:
     """One entry, from left to right, with the signs of multiplication put in."""
 
     def __init__(self, text: str) -> None:
-        self.tokens = _TEX_TOKEN.findall(_LAYOUT.sub(" ", text))[::-1]
+        found = list(_TEX_TOKEN.finditer(_LAYOUT.sub(" ", _STYLED.sub(r"\1 ", text))))
+        for match in found:
+            if match["other"]:
+                raise ExpressionError(f"unexpected {match['other']!r} in LaTeX")
+        self.tokens = [match[0] for match in found][::-1]
 
     def sum(self, end: str = "") -> str:
         """Up to the bracket `end`, or to the end."""
@@ -203,7 +227,9 @@ class _TexWalk:
         base = self._atom()
         while self.tokens and self.tokens[-1] == "^":
             self.tokens.pop()
-            base = f"{base}**({self._argument()})"
+            power = self._argument()
+            is_transposed = power == "T" and re.search(f"[{_MARKS}]", base)
+            base = f"{base}.T" if is_transposed else f"{base}**({power})"
         return base
 
     def _argument(self) -> str:
@@ -229,10 +255,14 @@ class _TexWalk:
             return self._argument() + self._script() + _DOTS[token]
         if token[1:] in FUNCTIONS and token[0] == "\\":
             return self._call(token[1:])
-        if token[:1].isdigit():
+        if token in _SHORT and self.tokens and self.tokens[-1] in _ANGLES:
+            return f"{_SHORT[token]}({self._atom()})"
+        if token[:1].isdigit() or re.fullmatch(f"[{_MARKS}]", token):
             return token
         name = _GREEK.get(token, token.lstrip("\\"))
-        if not name.isalpha() or (token[0] == "\\" and name not in _LETTERS):
+        if not name.isalpha() or (
+            token[0] == "\\" and name not in _LETTERS and token not in _GREEK
+        ):
             raise ExpressionError(f"unexpected {token or 'end'!r} in LaTeX")
         return name + self._script()
 
@@ -251,6 +281,8 @@ class _TexWalk:
         if self.tokens and self.tokens[-1] == "^":
             self.tokens.pop()
             power = f"**({self._argument()})"
+            if power == "**(-1)":
+                function, power = f"a{function}", ""
         argument = self._power()
         while argument.isdigit() and self.tokens and self.tokens[-1][0] == "\\":  # sin 2 theta
             argument += "*" + self._power()

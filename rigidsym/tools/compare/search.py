@@ -27,6 +27,8 @@ _MARKS = re.compile(r"[()\[\]{},;\n]|(?<![=!<>])=(?!=)")
 _DEEPEST = 12  # nested brackets
 _LONGEST = 4_000  # characters of a statement
 _MOST_SYMBOLS = 12
+_NUMPY = re.compile(r"^\s*(?:import|from) (?:numpy|jax)\b", re.MULTILINE)
+_MATRICES = re.compile(r"\bsympy\b|\bcasadi\b|\b[mM]atrix\(")  # whose * is the product of matrices
 _SHAPES = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 
@@ -114,7 +116,8 @@ def formulas(text: str, suffix: str) -> Iterator[tuple[int, str, sp.ImmutableMat
     language = suffix if suffix in _COMMENTS else ".c"
     comments = re.compile(_COMMENTS[language], re.DOTALL | re.MULTILINE)
     text = comments.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
-    reader = _FileReader()
+    is_numpy = bool(language == ".py" and _NUMPY.search(text) and not _MATRICES.search(text))
+    reader = _FileReader(is_numpy=is_numpy)
     found: list[tuple[int, str, sp.ImmutableMatrix]] = []
     place, line, counted = 0, 1, 0
     while match := _STATEMENT.search(text, place):
@@ -123,7 +126,7 @@ def formulas(text: str, suffix: str) -> Iterator[tuple[int, str, sp.ImmutableMat
         counted = match.start()
         if match["scope"] is not None:
             found += reader.finished()
-            reader = _FileReader()
+            reader = _FileReader(is_numpy=is_numpy)
             continue
         end = _end(text, place, is_c=language == ".c")
         if end > place:
@@ -162,6 +165,7 @@ def _end(text: str, start: int, *, is_c: bool) -> int:
 class _FileReader:
     """What is known at a place of a file: short names, and the entries of unfinished matrices."""
 
+    is_numpy: bool = False  # whether * is a product entry by entry
     known: dict[str, Any] = field(default_factory=dict)
     entries: dict[str, dict[tuple[int, ...], sp.Expr]] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
@@ -176,7 +180,9 @@ class _FileReader:
         if match["stream"]:
             text = f"[{text}]"
         try:
-            value = _shaped(read_formula(plain(text), self.known, free=True))
+            value = _shaped(
+                read_formula(plain(text, is_numpy=self.is_numpy), self.known, free=True)
+            )
         except ExpressionError:
             self.known.pop(name, None)
             return

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import permutations, product
 from typing import Any
@@ -68,9 +68,33 @@ class KnownQuantity:
     rotation: str  # as it was asked for: "ZYX"
     quantity: str
     is_named: bool = False  # whether `rotation` says all about it
+    arrangement: str = ""  # "transposed", "scalar last", "twice": how it is written
 
     @cached_property
     def matrix(self) -> sp.ImmutableMatrix:
+        matrix = self._derived
+        if "transposed" in self.arrangement:
+            matrix = matrix.T
+        if "scalar last" in self.arrangement:
+            order = ([1, 2, 3, 0] if count == 4 else [*range(count)] for count in matrix.shape)
+            matrix = matrix.extract(*order)
+        factor = {"twice": 2, "half": sp.Rational(1, 2)}.get(self.arrangement.rpartition(" ")[2])
+        return sp.ImmutableMatrix(matrix * (factor or 1))
+
+    @cached_property
+    def arrangements(self) -> tuple[KnownQuantity, ...]:
+        """This quantity as it is, and in other ways in which texts write it."""
+        words = [""]
+        if self.quantity == "rotation_matrix":
+            words.append("transposed (passive, the direction cosine matrix)")
+        if 4 in self.matrix.shape:
+            factors = ("", "twice", "half")[: 3 if self.matrix.rows == 3 else 2]
+            parts = product(("", "scalar last"), factors)
+            words = [", ".join(filter(None, each)) for each in parts]
+        return tuple(replace(self, arrangement=each) if each else self for each in words)
+
+    @cached_property
+    def _derived(self) -> sp.ImmutableMatrix:
         if self.quantity.startswith(OPERATOR):
             frame = self.quantity.removeprefix(OPERATOR)
             rates = getattr(self.motion, f"rates_from_angular_velocity{frame}")
@@ -142,6 +166,11 @@ class KnownQuantity:
             return target(self.rotation, quantity)
         motion = derive(self.motion.model, quantity, body=self.motion.body)
         return KnownQuantity(motion=motion, rotation=self.rotation, quantity=quantity)
+
+    @property
+    def described(self) -> str:
+        """The name, and how it is written."""
+        return ", ".join(filter(None, (str(self), self.arrangement)))
 
     def __str__(self) -> str:
         return f"{self.quantity} of {self.rotation}"
@@ -236,7 +265,9 @@ def readings(matrix: sp.MatrixBase, goal: KnownQuantity) -> Iterator[Names]:
     and so are other names that texts give to a length.
     """
     model = goal.motion.model
-    lengths = _LENGTHS[:1] if model.constraints else _LENGTHS
+    indexed = {s.name.rstrip("123").rstrip("_") for s in matrix.free_symbols if s.name[-1] == "1"}
+    lengths = {*_LENGTHS, *indexed} - {*"pqr"}  # sigma of sigma_1, but no body rate
+    lengths = {_LENGTHS[0]} if model.constraints else lengths
     length = next((s for s in matrix.free_symbols if s.name in lengths), None)
     if length and model.vector and length.name not in goal.names:
         for names in readings(matrix.xreplace({length: sp.Integer(1)}), goal):
