@@ -303,9 +303,9 @@ def test_build_takes_a_rotation_and_a_file_and_says_what_is_missing(tmp_path):
     assert made == "mine/mine_c.py"
     (folder / "quaternion.h").unlink()
     wrong = call("build", "quaternion/quaternion.c", cwd=tmp_path, status=2).stderr
-    assert wrong.startswith("rigidsym: quaternion/quaternion.h: not there;")
+    assert wrong.startswith("rigidsym: quaternion/quaternion.h: not found;")
     bare = call("build", "quaternion", "--out", ".", cwd=tmp_path, status=4, PATH="/nowhere", CC="")
-    assert "needs a C compiler, cc, gcc, clang, not found here" in bare.stderr
+    assert "needs a C compiler, and none was found (cc, gcc, clang)" in bare.stderr
     assert (folder / "quaternion.h").is_file()
     checked = call("check", "quaternion", cwd=tmp_path).stdout
     assert "quaternion/quaternion.c: up to date" in checked
