@@ -52,7 +52,7 @@ LOWER = (
 FORMULAS = ("tests/notes/test_formula.py", "tests/notes/test_pens.py")
 _OF_PYTHON = (
     *("numpy.printer", "numpy.unwrap"),
-    *("text.python", "text.python_layout", "text.remarks"),
+    *("text.python", "text.python_layout"),
 )
 _OF_C = (
     *("c.printer", "c.function", "c.parts", "c.expected_values", "c.module_files"),
@@ -92,6 +92,7 @@ TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the 
     **{f"rigidsym.kernels.targets.{m}": _printing("numpy", "numba") for m in _OF_PYTHON},
     **{f"rigidsym.kernels.targets.{module}": _printing("c") for module in _OF_C},
     **{f"rigidsym.kernels.targets.{t}.printer": _printing(t) for t in ("javascript", "jax")},
+    "rigidsym.kernels.targets.text.remarks": _printing("c", "numpy", "javascript"),
     "rigidsym.kernels.targets.numba.printer": _printing("numba"),
 }
 GROUPS = {

@@ -16,7 +16,7 @@ from typing import Any
 import sympy as sp
 
 import rigidsym as rs
-from helpers.swept_kernels import of_series, swept
+from helpers.swept_kernels import of_series, staged, swept
 from rigidsym import __version__
 from rigidsym.kernels.targets import TARGETS, printer
 from rigidsym.models.rotation_text import rotation_from
@@ -97,7 +97,9 @@ def of_rotations(target: str) -> Iterator[str]:
 
 def of_widths(target: str) -> Iterator[str]:
     """The same of kernels made by hand, whose lines have every width."""
-    for program in (swept(), *map(of_series, range(4))):
-        for way in ({}, LEAN) if target == "c" else ({},):
-            for file, text in printer(target).render(program, **way).items():
-                yield described(file, text)
+    programs = [(program, {}) for program in (swept(), *map(of_series, range(4)))]
+    if target == "c":
+        programs += [(program, LEAN) for program in (swept(), of_series(0), staged())]
+    for program, way in programs:
+        for file, text in printer(target).render(program, **way).items():
+            yield described(file, text)

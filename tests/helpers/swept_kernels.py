@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import cycle, islice
 
 from rigidsym.kernels.ir import (
     Assignment,
@@ -32,7 +33,8 @@ def swept() -> Program:
     kernels = [kernel for length in range(1, WIDEST) for kernel in _of_length(length)]
     kernels += [_long(length, 97) for length in LONG]
     constants = _vector("parameters", ["p"])
-    unwrapping = Unwrapping("quaternion", (_vector("q", ["w"]), constants), ("word " * 99,))
+    remarks = "word " * 99, "long" * 30 + "-" + "words" * 9
+    unwrapping = Unwrapping("quaternion", (_vector("q", ["w"]), constants), remarks)
     return _program("swept", [*kernels, _long(1, 96)])._replace(unwrapping=unwrapping)
 
 
@@ -60,7 +62,13 @@ def _program(name: str, kernels: list[Kernel]) -> Program:
     )
 
 
-def _long(length: int, count: int) -> Kernel:
+def staged() -> Program:
+    """Long kernels with few and with many results, which lean C computes in stages."""
+    sizes = (40, 2), (58, 5), (97, 1), (97, 5), (240, 1), (320, 2)
+    return _program("staged", [_long(3, count, every) for count, every in sizes])
+
+
+def _long(length: int, count: int, every: int = 8) -> Kernel:
     """So many assignments, with every function that long ones may call."""
     names = [letter * length for letter in "abc"]
     functions = ("sin", "cos", "sqrt", "abs")
@@ -72,11 +80,11 @@ def _long(length: int, count: int) -> Kernel:
         sums.append(Assignment(f"x{k}", Sum((known[k % 5], product))))
         known.append(Name(f"x{k}"))
     return Kernel(
-        name=f"long_{length}_{count}",
+        name=f"long_{length}_{count}_{every}",
         arguments=(_vector(f"q{length}", names),),
         assignments=(*calls, *sums),
-        outputs=(*(Name(a.name) for a in sums[::-8]),),
-        shape=(len(sums[::-8]),),
+        outputs=(*(Name(a.name) for a in sums[::-every]),),
+        shape=(len(sums[::-every]),),
     )
 
 
@@ -93,8 +101,18 @@ def _of_length(length: int) -> Iterator[Kernel]:
     yield Kernel(
         name=f"vector_{length}",
         arguments=(_vector(f"q{length}", names),),
-        assignments=(*sines, Assignment("x", Sum((product, Negative(a), c)))),
-        outputs=(Sum((product, Name("x"))), Negative(product), Product((c,), (a,)), a),
+        assignments=(
+            *sines,
+            Assignment("x", Sum((product, Negative(a), c))),
+            Assignment("angle", Sum((a, b))),
+            Assignment("sine", Call("sin", Name("angle"))),
+        ),
+        outputs=(
+            Sum((product, Name("x"), Name("sine"))),
+            Negative(product),
+            Product((c,), (a,)),
+            a,
+        ),
         shape=(2, 2),
     )
     yield Kernel(
@@ -105,7 +123,7 @@ def _of_length(length: int) -> Iterator[Kernel]:
         ),
         assignments=(
             Assignment("size", Call("abs", a)),
-            Assignment("t", Product((b,), (a,))),
+            Assignment("t", Sum((Product((b,), (a,)), *(c,) * (length % 20)))),
             Assignment("g", Guarded(Name("t"), Name("size"), 1 + length % 2)),
             Assignment("upper", Choice(Compare("<", b, c), c, b)),
             Assignment("lower", Choice(Compare("<", b, c), b, c)),
@@ -113,7 +131,12 @@ def _of_length(length: int) -> Iterator[Kernel]:
             Assignment("is_far", Compare(">", b, Number(0.25))),
             Assignment("y", Choice(Name("is_far"), Name("g"), Negative(b))),
         ),
-        outputs=(Name("y"), c, Name("d" * length), *map(Name, ("upper", "lower", "other"))),
+        outputs=(
+            Product((Name("y"),), (Name("g"),)),
+            c,
+            Name("d" * length),
+            *map(Name, ("upper", "lower", "other")),
+        ),
         shape=(6,),
     )
     yield Kernel(
@@ -135,4 +158,5 @@ def _of_length(length: int) -> Iterator[Kernel]:
 
 
 def _vector(name: str, components: list[str]) -> KernelArgument:
-    return KernelArgument(name, (*components,), ("",) * len(components), "a vector")
+    units = tuple(islice(cycle(("rad", "", "m")), len(components)))  # some have none
+    return KernelArgument(name, (*components,), units, "a vector")
