@@ -81,8 +81,7 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     if len(entries) < 2 or len(below) > 1:
         return sp.S.One, matrix
     (divisor,) = below
-    numbers = matrix.atoms(sp.Rational)
-    if divisor == 1 and all(n.is_Integer for n in numbers) and _constants_in_all(entries) == 1:
+    if divisor == 1 and not any(map(_has_ratios, entries)) and _constants_in_all(entries) == 1:
         return sp.S.One, matrix
     contents = [_over(entry, divisor).as_content_primitive() for entry in matrix]
     number = sp.gcd_list([content for content, rest in contents if rest != 0])
@@ -96,6 +95,12 @@ def factored(matrix: sp.ImmutableMatrix) -> tuple[sp.Expr, sp.ImmutableMatrix]:
     return number * constants / divisor, sp.ImmutableMatrix(*matrix.shape, rest)
 
 
+@lru_cache(maxsize=8192)  # entries come up in several quantities
+def _has_ratios(entry: sp.Expr) -> bool:
+    return not all(number.is_Integer for number in entry.atoms(sp.Rational))
+
+
+@lru_cache(maxsize=8192)
 def _below(expression: sp.Expr) -> sp.Expr:
     """The denominator without its number."""
     return sp.fraction(expression)[1].as_coeff_Mul()[1]

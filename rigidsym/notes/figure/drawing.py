@@ -104,8 +104,9 @@ class Box(NamedTuple):
                 if change == 0:
                     continue
                 half = half if change > 0 else -half
-                start = max(start, (-half - position) / change)
-                end = min(end, (half - position) / change)
+                enters, leaves = (-half - position) / change, (half - position) / change
+                start = start if start >= enters else enters
+                end = end if end <= leaves else leaves
             if start <= end:
                 found.append(segment)
         return found
