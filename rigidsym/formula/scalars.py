@@ -299,6 +299,8 @@ Names = Mapping[sp.Expr, sp.Symbol]
 def plain_data(data: Any, names: Names) -> Any:
     """Formulas in both markups, expressions in plain names, matrices as lists of rows."""
     match data:
+        case str() | int() | None:
+            return data
         case Formula():
             return data.markup
         case list() | tuple():
@@ -306,12 +308,12 @@ def plain_data(data: Any, names: Names) -> Any:
         case sp.MatrixBase():
             return plain_data(data.tolist(), names)
         case sp.Basic():
-            return _text(data.xreplace(names))
+            return _text(data, tuple(names.items()))
         case Mapping():
             return {key: plain_data(value, names) for key, value in data.items()}
     return data
 
 
 @lru_cache(maxsize=4096)  # an entry comes up in several quantities, and again in other conventions
-def _text(expression: sp.Expr) -> str:
-    return str(expression)
+def _text(expression: sp.Basic, names: tuple[tuple[sp.Expr, sp.Symbol], ...]) -> str:
+    return str(expression.xreplace(dict(names)))
