@@ -143,7 +143,14 @@ def _of_length(length: int) -> Iterator[Kernel]:
         name=f"both_{length}",
         arguments=(_vector(f"q{length}", names), _vector(f"u{length}", ["e" * (length + 30)])),
         assignments=(),
-        outputs=(a, Sum((a, b)), b, c, Product((a, c)), Number(1.5)),
+        outputs=(
+            a,
+            Sum((a, b)),
+            b,
+            c,
+            Product((a, c)),
+            Sum((Name("e" * (length + 30)), Number(1.5))),
+        ),
         shape=(6,),
         parts=((2,), (2, 2)),
     )
