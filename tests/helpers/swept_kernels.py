@@ -64,7 +64,7 @@ def _program(name: str, kernels: list[Kernel]) -> Program:
 
 def staged() -> Program:
     """Long kernels with few and with many results, which lean C computes in stages."""
-    sizes = (40, 2), (58, 5), (97, 1), (97, 5), (240, 1), (320, 2)
+    sizes = (40, 2), (58, 5), (97, 1), (97, 5), (97, 60), (240, 1), (320, 2)
     return _program("staged", [_long(3, count, every) for count, every in sizes])
 
 
