@@ -387,6 +387,21 @@ def test_a_wrong_equation_of_motion_is_refused(top, quantity, before, after):
         checker.verify(found, certificate)
 
 
+def test_a_torque_along_the_axes_of_the_body_is_proved_to_act():
+    motion = rs.derive(
+        "ZYX",
+        ["angular_velocity_body", "accelerations"],
+        body=rs.principal_moments(*sp.symbols("A A C", positive=True)),
+        torque=["l*F", "0", "k*F"],
+    )
+    found = json.loads(json.dumps(record(motion, {})))
+    certificate = json.loads(certificate_of(found).json)
+    assert "accelerations" in checker.verify(found, certificate)
+    found["motion"]["torque"] = ["l*F", "k*F", "0"]
+    with pytest.raises(ValueError, match="accelerations: its cofactors do not prove"):
+        checker.verify(found, certificate)
+
+
 def test_the_energy_is_proved_constant_and_a_wrong_one_is_refused():
     A, C = sp.symbols("A C", positive=True)
     motion = rs.derive(

@@ -24,6 +24,7 @@ from rigidsym.mechanics.derivation import (
     VectorForm,
 )
 from rigidsym.mechanics.dynamics.lagrange import is_bound
+from rigidsym.models.forces import OMEGA_BODY
 from rigidsym.version import OWNERSHIP, __version__
 
 if TYPE_CHECKING:
@@ -131,17 +132,20 @@ def _part(part: Sequence[Any]) -> dict[str, Any]:
 
 
 def _motion(derivation: Derivation) -> dict[str, Any]:
-    """V and the generalised forces, if nothing else enters Lagrange's equations of the body."""
+    """V, the forces and the torque in body components, if they depend on q and q̇ only."""
     acting, groups = derivation.forces, {argument.name for argument in derivation.arguments}
     if acting is None or "momenta" not in groups:
         return {}
-    if acting.depend_on_time or any(acting.torque) or acting.parts or acting.frame_rate:
+    if acting.depend_on_time or acting.parts or acting.frame_rate:
+        return {}
+    torque = acting.torque or (sp.S.Zero,) * 3
+    if any(component.has(*OMEGA_BODY) for component in torque):
         return {}
     if is_bound(derivation.model) or "torque_body" in (s.quantity.name for s in derivation.steps):
         return {}  # Euler's equations, or those of coordinates that depend on one another
     coordinates = derivation.model.coordinates
     forces = [sp.sympify(acting.generalised.get(q, 0)) for q in coordinates]
-    return {"motion": {"potential": acting.potential, "forces": forces}}
+    return {"motion": {"potential": acting.potential, "forces": forces, "torque": torque}}
 
 
 def _conversions(found: Conversions) -> dict[str, Any]:

@@ -100,8 +100,7 @@ class Language:
 
     def __init__(self, record: Mapping[str, Any], parts: Mapping[str, int]) -> None:
         self.groups = {g["name"]: [c["name"] for c in g["components"]] for g in record["arguments"]}
-        self.parts = parts  # of the angle φ, φ/n has a cosine
-        self.relations: dict[str, Poly] = {}
+        self.parts, self.relations = parts, dict[str, Poly]()  # of an angle φ, φ/n has a cosine
         self.meaning, self.momenta = dict[str, Poly](), dict[str, Poly]()  # of names, of p
         self.flow = dict.fromkeys(("pi", *self.groups.get("parameters", ())), ZERO)  # d/dt
         self.rates, self.second = ([q + d for q in self.groups["q"]] for d in ("_dot", "_ddot"))
@@ -234,9 +233,10 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
         B["angular_acceleration_from_torque"] = torque + hat(omega) * tensor * omega * -1
         A["angular_acceleration_from_torque"], B["angular_momentum_centre"] = tensor, orbital
     if "motion" in record:  # Lagrange's equations are 2 dp/dt − ∂(dL/dt)/∂q̇ = M q̈ + h = Q
-        potential, forces = (read(record["motion"][g]) for g in ("potential", "forces"))
-        B["energy"] = B["hamiltonian"] = turning + potential
-        B["potential_energy"], B["lagrangian"] = potential, turning + potential * -1
+        u, forces, torque = (read(record["motion"][g]) for g in ("potential", "forces", "torque"))
+        forces += slope(w).T * torque
+        B["energy"] = B["hamiltonian"] = turning + u
+        B["potential_energy"], B["lagrangian"] = u, turning + u * -1
         B["generalised_momenta"] = p = slope(turning).T
         B["mass_matrix"] = A["accelerations"] = mass = slope(p)
         lacking = d(p) * 2 + (slope(d(B["lagrangian"])).T + forces) * -1  # M q̈ + h − Q = 0
