@@ -8,7 +8,12 @@ from pathlib import Path
 from types import ModuleType
 
 from rigidsym.errors import KernelError
-from rigidsym.kernels.lowering.derivatives import Asked, derivatives_of, read_requests
+from rigidsym.kernels.lowering.derivatives import (
+    Asked,
+    Derivative,
+    derivatives_of,
+    read_requests,
+)
 from rigidsym.kernels.lowering.lower import NO_CONVERSIONS, lower
 from rigidsym.kernels.targets import TARGETS, check_options, printer
 from rigidsym.mechanics.derivation import Derivation
@@ -88,7 +93,9 @@ def generate(
     if type(degrees) is not bool:
         raise KernelError(f"degrees: expected True or False, got {degrees!r}")
     language = printer(target)
-    asked = derivatives_of(derivation, read_requests(derivatives))
+    asked: tuple[Derivative, ...] = ()
+    if derivatives != ():
+        asked = derivatives_of(derivation, read_requests(derivatives))
     added = NO_CONVERSIONS
     if conversions:
         from rigidsym.mechanics.conversions.conversion_functions import converted
