@@ -14,13 +14,14 @@ from functools import cache
 from types import MappingProxyType
 from typing import Any
 
+from rigidsym.formula.reader import sentence
 from rigidsym.formula.tree import NOTHING, Numeral, Symbol
 from rigidsym.kernels.lowering.lower import MARGIN
 from rigidsym.mechanics.derivation import Derivation, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
 from rigidsym.models.example import OMEGA_COMPONENTS, initial_values
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import Document, Equation, Paragraph, Text, words
+from rigidsym.notes.document.document import Document, Equation, Paragraph, Text
 from rigidsym.notes.figure.body_mesh import own_shape
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
@@ -240,7 +241,7 @@ def _turn_words(model: RotationModel, document: Document, printer: PagePrinter) 
     angles = [turn["name"] for turn in stage_of(model, document.letters)["turns"]]
     sentences = [
         printer.sentence(
-            words("Turn {} of {}: by {} about {}", str(k), str(len(axes)), angle, axis)
+            sentence("Turn {} of {}: by {} about {}", str(k), str(len(axes)), angle, axis)
         )
         for k, (angle, axis) in enumerate(zip(angles, axes, strict=True), start=1)
     ]

@@ -11,7 +11,7 @@ import sympy as sp
 from hypothesis import given, strategies as st
 
 import rigidsym as rs
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.tree import Symbol
 from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.chain import axis_turn, chain
@@ -21,7 +21,6 @@ from rigidsym.models.rotation import Citation, RotationModel, Turn
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.models.so3 import time_function
 from rigidsym.models.solids import shaped
-from rigidsym.notes.document.document import plain
 from rigidsym.notes.figure.camera import STANDARD, camera, combined, cross, dot, turned, unit
 from rigidsym.notes.figure.drawing import (
     Box,
@@ -137,18 +136,18 @@ def test_both_frames_the_nodes_and_three_arcs_are_shown(sequence):
 
 def test_what_the_turns_of_the_lecture_do():
     figure = drawn(EulerAngles("ZXZ"))
-    assert plain(figure.caption) == (
+    assert text_of(figure.caption) == (
         "Shown are the axes x, y, z of space, the axes x′, y′, z′ of the body and the line of "
         "nodes N."
     )
-    assert plain(figure.description) == (
+    assert text_of(figure.description) == (
         "The turn by φ about z takes x to N. The turn by θ about N takes z to z′. "
         "The turn by ψ about z′ takes N to x′."
     )
 
 
 def test_an_axis_that_is_drawn_nowhere_is_called_turned():
-    assert "The turn by θ about N takes the turned x to x′." in plain(
+    assert "The turn by θ about N takes the turned x to x′." in text_of(
         drawn(EulerAngles("ZYX")).description
     )
 
@@ -156,7 +155,7 @@ def test_an_axis_that_is_drawn_nowhere_is_called_turned():
 def test_one_turn_keeps_its_axis():
     figure = drawn(CHAINS["chain z"])
     assert "z = z′" in [label.symbol.text for label in figure.drawing.labels]
-    assert plain(figure.description) == "The turn by a about z = z′ takes x to x′."
+    assert text_of(figure.description) == "The turn by a about z = z′ takes x to x′."
 
 
 def test_the_axes_between_are_numbered():
@@ -178,15 +177,15 @@ def test_the_axes_between_are_numbered():
 def test_a_vector_is_the_axis_of_one_turn(model, named, angle):
     figure = drawn(model)
     letter = named.split()[2]
-    assert plain(figure.caption).endswith(f"z′ of the body and {named} of the turn.")
-    assert plain(figure.description) == f"The turn by {angle} about {letter} takes x to x′."
+    assert text_of(figure.caption).endswith(f"z′ of the body and {named} of the turn.")
+    assert text_of(figure.description) == f"The turn by {angle} about {letter} takes x to x′."
     (vector,) = (stroke for stroke in figure.drawing.strokes if stroke.kind == "vector")
     assert vector.has_arrow
     assert vector.points[0] == (0.0, 0.0)
 
 
 def test_the_axis_of_an_oblique_turn_is_no_line_of_nodes():
-    assert "the axis N of a turn" in plain(drawn(CHAINS["oblique"]).caption)
+    assert "the axis N of a turn" in text_of(drawn(CHAINS["oblique"]).caption)
 
 
 def test_what_is_no_product_of_turns_has_no_figure():
@@ -342,4 +341,4 @@ def test_the_z_axis_of_an_aircraft_points_down_and_others_up():
         figure = figure_of(model, letters_of((), model=model))
         z = next(label for label in figure.drawing.labels if label.symbol.text == "z")
         assert sign * z.place[1] > 1
-        assert ("points down" in plain(figure.caption)) is (sign < 0)
+        assert ("points down" in text_of(figure.caption)) is (sign < 0)

@@ -13,9 +13,9 @@ import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.commands.cli import commands
 from rigidsym.errors import ModelError
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, sentence
 from rigidsym.notes.document.catalogue import Catalogue, language_of
-from rigidsym.notes.document.document import Document, Figure, Section, words
+from rigidsym.notes.document.document import Document, Figure, Section
 from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.figure.chart import Range, chart
 from rigidsym.notes.formats import FORMATS
@@ -107,7 +107,7 @@ def test_a_page_says_its_language():
 
 
 def test_what_the_catalogue_lacks_stays_in_english():
-    text = words(r"The axis $\mathbf{e}$ stays. This is gimbal lock. My own words.")
+    text = sentence(r"The axis $\mathbf{e}$ stays. This is gimbal lock. My own words.")
     assert GERMAN.text(text) == (
         "The axis ",
         formula(r"\mathbf{e}"),
@@ -118,7 +118,7 @@ def test_what_the_catalogue_lacks_stays_in_english():
 def test_holes_may_change_their_order_and_lists_get_a_german_and():
     turned = Catalogue(code="xx", babel="", sentences={"{} of {}.": "{2}: {1}.", " and ": " und "})
     a, b, c = map(formula, "abc")
-    assert turned.text(words("{} of {} and {}.", a, b, c)) == (b, " und ", c, ": ", a, ".")
+    assert turned.text(sentence("{} of {} and {}.", a, b, c)) == (b, " und ", c, ": ", a, ".")
 
 
 def test_a_title_with_braces_and_strange_letters_is_left_alone():

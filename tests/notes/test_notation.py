@@ -16,11 +16,10 @@ from rigidsym import pipeline
 from rigidsym.commands import cli
 from rigidsym.errors import ModelError, SpecError
 from rigidsym.formula.notation import CHOICES, DEFAULT, Notation
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.unicode_pen import columns
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.parametrisations import UnitQuaternion
-from rigidsym.notes.document.document import plain
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formats.terminal import show
 from rigidsym.pipeline import read_file, read_record, read_spec
@@ -279,7 +278,8 @@ def test_a_quaternion_is_printed_in_letters_that_are_no_axes(scalar_last):
     note = motion.note(style="lecture")
     order = "xyzw" if scalar_last else "wxyz"
     said = f"), in programs {', '.join(order)}"
-    texts = [plain(b.text) for s in note.document.sections for b in s.blocks if hasattr(b, "text")]
+    blocks = [block for section in note.document.sections for block in section.blocks]
+    texts = [text_of(block.text) for block in blocks if hasattr(block, "text")]
     assert sum(said in text for text in texts) == 1
     assert r"q_0^2" in note.latex()
     assert "<mi>w</mi>" not in note.html()

@@ -11,7 +11,7 @@ import sympy as sp
 import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.formula.letters import TIME
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, text_of
 from rigidsym.formula.tree import Symbol, indexed
 from rigidsym.formula.unicode_pen import columns
 from rigidsym.mechanics.derivation import Derivation, Place, Proof, Singularity
@@ -28,7 +28,6 @@ from rigidsym.notes.document.document import (
     NoteTable,
     Paragraph,
     listed,
-    plain,
 )
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.terminal import show
@@ -49,7 +48,7 @@ def _note(motion: Derivation) -> Note:
 def _words(document: Document) -> str:
     """All running text of a note."""
     blocks = [block for section in document.sections for block in section.blocks]
-    return "\n".join(plain(block.text) for block in blocks if isinstance(block, Paragraph))
+    return "\n".join(text_of(block.text) for block in blocks if isinstance(block, Paragraph))
 
 
 def _two_turns(**changes: object) -> RotationModel:
@@ -250,7 +249,7 @@ def test_styles_change_no_column():
     ("items", "expected"), [([], ""), (["a"], "a"), (["a", "b"], "a and b"), ("abc", "a, b and c")]
 )
 def test_lists_in_words(items, expected):
-    assert plain(listed([(item,) for item in items])) == expected
+    assert text_of(listed([(item,) for item in items])) == expected
 
 
 def test_symbols_in_a_sentence_become_formulas():
@@ -375,7 +374,7 @@ def _symbols(motion: rs.Motion) -> dict[str, tuple[str, str]]:
     (section,) = (s for s in motion.note(style="audit").document.sections if s.title == "Symbols")
     (table,) = section.blocks
     assert isinstance(table, NoteTable)
-    return {plain(row[0]): (plain(row[1]), plain(row[2])) for row in table.rows}
+    return {text_of(row[0]): (text_of(row[1]), text_of(row[2])) for row in table.rows}
 
 
 def test_one_turn_is_not_called_a_product():

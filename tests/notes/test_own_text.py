@@ -11,8 +11,9 @@ import sympy as sp
 import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.errors import RigidsymError, SpecError
+from rigidsym.formula.reader import text_of
 from rigidsym.models.rotation import LECTURE
-from rigidsym.notes.document.document import Paragraph, plain
+from rigidsym.notes.document.document import Paragraph
 from rigidsym.notes.document.own_text import OwnText
 from rigidsym.notes.formats.fragment import render as print_fragment
 from rigidsym.notes.formats.latex import render as print_latex
@@ -43,7 +44,9 @@ def with_text(**own):
 def spoken(document):
     """The paragraphs and the labels of equations, in order."""
     blocks = (block for section in document.sections for block in section.blocks)
-    return [plain(b.text) if isinstance(b, Paragraph) else getattr(b, "label", "") for b in blocks]
+    return [
+        text_of(b.text) if isinstance(b, Paragraph) else getattr(b, "label", "") for b in blocks
+    ]
 
 
 def test_sentences_stand_before_and_after_an_equation():
@@ -55,7 +58,7 @@ def test_sentences_stand_before_and_after_an_equation():
 
 def test_sentences_stand_at_both_ends_of_a_section():
     document = with_text(before={"convention": "First."}, after={"Convention": "Last."})
-    assert [plain(document.sections[0].blocks[k].text) for k in (0, -1)] == ["First.", "Last."]
+    assert [text_of(document.sections[0].blocks[k].text) for k in (0, -1)] == ["First.", "Last."]
 
 
 def test_a_quantity_keeps_its_name_in_every_language():

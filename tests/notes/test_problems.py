@@ -15,7 +15,8 @@ from scipy.spatial.transform import Rotation
 
 from rigidsym.commands import problems
 from rigidsym.commands.cli import commands
-from rigidsym.notes.document.document import Equation, Paragraph, plain
+from rigidsym.formula.reader import text_of
+from rigidsym.notes.document.document import Equation, Paragraph
 from rigidsym.notes.formats import FORMATS
 from rigidsym.notes.formats.pdf import Typeset
 from rigidsym.notes.problems import body_problems as bodies, euler_problems as euler
@@ -28,7 +29,7 @@ def sheet(variant: int, count: int = 7) -> Sheet:
 
 
 def asked(problem: Exercise) -> str:
-    return " ".join(plain(b.text) for b in problem.question if isinstance(b, Paragraph))
+    return " ".join(text_of(b.text) for b in problem.question if isinstance(b, Paragraph))
 
 
 def numbers(text: str) -> list[float]:
@@ -73,7 +74,7 @@ def test_where_a_kind_has_no_more_questions_the_next_one_follows():
 
 def test_the_convention_is_asked_of_the_candidates_that_are_compared():
     problem = euler.identify(Random(1))
-    (compared,) = (plain(block.text) for block in problem.solution)
+    (compared,) = (text_of(block.text) for block in problem.solution)
     candidates = sorted(problem.answers[0].choices)
     assert re.findall("[XYZ]{3}", asked(problem)) == candidates
     assert re.findall("[XYZ]{3}", compared) == candidates
@@ -130,7 +131,7 @@ def test_every_letter_of_a_solution_is_named_in_its_question(variant):
     letters = "[A-Za-zα-ωΩ]"
 
     def used(blocks):
-        text = " ".join(plain(b.text) for b in blocks if isinstance(b, Paragraph))
+        text = " ".join(text_of(b.text) for b in blocks if isinstance(b, Paragraph))
         shown = [s.text for b in blocks if isinstance(b, Equation) for s in b.sides]
         formulas = [f.text for b in blocks if isinstance(b, Paragraph)
                     for f in b.text if not isinstance(f, str)]  # fmt: skip

@@ -9,8 +9,9 @@ import pytest
 from helpers.motions import derived
 from helpers.typesetting import pages_of
 from rigidsym.errors import ModelError
+from rigidsym.formula.reader import text_of
 from rigidsym.formula.tree import equal
-from rigidsym.notes.document.document import Equation, NoteTable, Paragraph, plain
+from rigidsym.notes.document.document import Equation, NoteTable, Paragraph
 from rigidsym.notes.note import APPENDIX, STYLES, without_identities
 from rigidsym.pipeline import motion_of, output_of, read_file, read_spec
 
@@ -97,5 +98,5 @@ def test_the_note_of_the_lecture_begins_with_the_lecture_and_ends_with_how_it_wa
     (spec,) = read_file("lecture").singles()
     first, *_, last = motion_of(spec).note().document.sections
     assert first.title == "The centre of mass and the kinetic energy"
-    words = [plain(block.text) for block in last.blocks if isinstance(block, Paragraph)]
+    words = [text_of(block.text) for block in last.blocks if isinstance(block, Paragraph)]
     assert any("generic summand" in text for text in words)

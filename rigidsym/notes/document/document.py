@@ -79,10 +79,6 @@ Draft = tuple[Span | sp.Basic, ...]
 _Part = TypeVar("_Part")
 
 
-words = sentence
-plain = text_of
-
-
 def written(drafts: Iterable[Draft], letters: Letters) -> list[Text]:
     """The texts with a formula in place of each expression or equation of SymPy."""
     drafts = list(drafts)
@@ -106,8 +102,8 @@ class Paragraph(NamedTuple):
 
 
 def said(typed: str, *spans: Span) -> Paragraph:
-    """A paragraph of `words`."""
-    return Paragraph(words(typed, *spans))
+    """A paragraph of a `sentence`."""
+    return Paragraph(sentence(typed, *spans))
 
 
 class EquationRow(NamedTuple):
@@ -297,6 +293,6 @@ def _changed(block: NoteBlock, change: Callable[[Text], Text]) -> NoteBlock:
             return block._replace(caption=caption, description=description)
         case NoteTable():
             rows = tuple(tuple(map(change, row)) for row in block.rows)
-            head, called = tuple(map(change, block.head)), plain(change((block.caption,)))
+            head, called = tuple(map(change, block.head)), text_of(change((block.caption,)))
             return block._replace(caption=called, head=head, rows=rows)
     return block

@@ -12,6 +12,7 @@ from itertools import pairwise
 
 from rigidsym.formula.display import Display, display, spoken
 from rigidsym.formula.mathml_pen import MathmlPen, math
+from rigidsym.formula.reader import text_of
 from rigidsym.formula.sheet_pen import Inline
 from rigidsym.formula.tree import Formula
 from rigidsym.notes.document.document import (
@@ -24,7 +25,6 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Section,
     Text,
-    plain,
 )
 from rigidsym.notes.formats.drawings import svg
 from rigidsym.notes.formats.escape import cleaned
@@ -162,7 +162,7 @@ class HtmlPrinter(NotePrinter):
         drawing = svg(
             figure.drawing,
             title=self.said(f"Figure {number}"),
-            description=plain((*figure.caption, " ", *figure.description)),
+            description=text_of((*figure.caption, " ", *figure.description)),
             name=f"figure-{number}",
         )
         words = self.figure_words(figure)

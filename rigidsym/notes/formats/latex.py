@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from itertools import chain
 
 from rigidsym.formula.display import PAGE, Rows, pack
 from rigidsym.formula.latex_pen import LatexPen
@@ -120,12 +119,9 @@ class _LatexPrinter(NotePrinter):
 
     def __init__(self, document: Document) -> None:
         super().__init__(document, LatexPen(document.letters.notation))
-        blocks = chain.from_iterable(section.blocks for section in document.sections)
-        self.rows = {
-            block: pack(block.equations, document.letters, _LINE, self.pen)
-            for block in blocks
-            if isinstance(block, EquationRow)
-        }
+        blocks = [block for section in document.sections for block in section.blocks]
+        rows = [block for block in blocks if isinstance(block, EquationRow)]
+        self.rows = {r: pack(r.equations, document.letters, _LINE, self.pen) for r in rows}
 
     def body(self, section: Section) -> str:
         self.heading = section.title

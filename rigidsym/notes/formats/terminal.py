@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 from rigidsym.formula.console import INDENT, Block, Headline, Line, Style, lines_of, unstyled
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import DEFAULT, Notation
+from rigidsym.formula.reader import sentence
 from rigidsym.formula.tree import equal, row
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.rotation import RotationModel
-from rigidsym.notes.document.document import Equation, words
+from rigidsym.notes.document.document import Equation
 from rigidsym.notes.formula.derivation_letters import RESIDUAL, letters_of
 from rigidsym.notes.prose.singular_words import (
     failures,
@@ -178,7 +179,7 @@ class _Screen:
             yield from _blocks_of(step, self.derivation.arguments, self.letters)
         from rigidsym.notes.sections.conversion_section import COLUMNS, columns_of_matrix
 
-        yield words("Each column of {} is a multiple of the quaternion.", COLUMNS)
+        yield sentence("Each column of {} is a multiple of the quaternion.", COLUMNS)
         yield Equation(sides=(COLUMNS,), matrix=columns_of_matrix())
         back = found.inverse
         yield from (back.because, back.branch) if back else ((found.without,),)

@@ -8,14 +8,14 @@ from random import Random
 
 import sympy as sp
 
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, sentence
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import MINUS, Formula, Matrix, Numeral, equal, indexed, row
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.quantities.kinematics import BODY, ROTATION, SPACE
 from rigidsym.models.euler_angles import EulerAngles
-from rigidsym.notes.document.document import Equation, Paragraph, Text, listed, said, words
+from rigidsym.notes.document.document import Equation, Paragraph, Text, listed, said
 from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.problems.exercise import Asked, Exercise, numeral
 from rigidsym.notes.prose.singular_words import failures, measured
@@ -84,7 +84,7 @@ def angular_velocity(rng: Random) -> Exercise:
                 _values(found.argument("q").notation, angles, "°"),
                 (", in this order. They change at the rates ",),
                 _values(found.argument("q_dot").notation, rates, " rad/s"),
-                words(
+                sentence(
                     f". Find the components of the angular velocity {{}} along the axes of {axes}.",
                     frame.omega,
                 ),

@@ -10,7 +10,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.formula.letters import TIME
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, sentence
 from rigidsym.formula.tree import Formula, Numeral, Symbol
 from rigidsym.mechanics.derivation import (
     Derivation,
@@ -20,7 +20,7 @@ from rigidsym.mechanics.derivation import (
     Singularity,
 )
 from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
-from rigidsym.notes.document.document import Code, Draft, Text, listed, words, written
+from rigidsym.notes.document.document import Code, Draft, Text, listed, written
 from rigidsym.notes.formula.derivation_letters import letters_of
 from rigidsym.notes.prose.turn_words import are_euler_angles
 
@@ -46,7 +46,7 @@ _MEASURED: dict[Measure, tuple[Formula, ...]] = {
 }
 _MEANING: dict[Measure, Text] = {
     "det W": ("Both rate matrices have the determinant",),
-    "det [W, J]": words(
+    "det [W, J]": sentence(
         "The conditions on the coordinates bind the rates by the rows {}. Together with the "
         "rate matrix they have the determinant",
         WITH_CONDITIONS,

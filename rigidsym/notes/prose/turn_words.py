@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, sentence
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import (
     PLUS,
@@ -30,7 +30,6 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Text,
     listed,
-    words,
 )
 from rigidsym.notes.figure.camera import Vector
 from rigidsym.notes.figure.drawing import drawn
@@ -78,7 +77,7 @@ def angles_in_words(model: RotationModel, letters: Letters) -> Iterator[Text]:
         called = ["{}"] * 3
     if found:
         text = f"The angles are {called[0]}, {called[1]} and {called[2]}; "
-        yield words(
+        yield sentence(
             f"{text}each orientation has exactly one set with {{}} and {{}}, except for the "
             "singular ones.",
             first,
@@ -87,7 +86,7 @@ def angles_in_words(model: RotationModel, letters: Letters) -> Iterator[Text]:
             *ranges,
         )
     else:
-        yield words(
+        yield sentence(
             "Each orientation has exactly one set of angles with {} and {}, except for the "
             "singular ones.",
             *ranges,

@@ -15,7 +15,7 @@ import sympy as sp
 from rigidsym.formula.display import Done
 from rigidsym.formula.letters import Letters
 from rigidsym.formula.notation import Notation
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, sentence
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import (
     COMMA,
@@ -51,7 +51,6 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Text,
     listed,
-    words,
 )
 from rigidsym.notes.formula.derivation_letters import VECTOR, length_of, letters_of
 
@@ -82,20 +81,20 @@ _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 _ALSO_WORDS = ("a", "A", "I")  # words of a sentence, unless a sign follows: a + i b
 
 
-_ON_OMEGA = words(
+_ON_OMEGA = sentence(
     "The angular velocity has the components {} along the axes of space and {} along the axes of "
     "the body.",
     SPACE.omega,
     BODY.omega,
 )
 _DIRECTION = {  # whether the passive form is shown
-    True: words(
+    True: sentence(
         "The matrix shown is the direction cosine matrix {}, the passive form: {} takes "
         "components along the axes of space to components along the axes of the body.",
         TRANSPOSED,
         PASSIVE,
     ),
-    False: words(
+    False: sentence(
         "The rotation is active: {} takes components along the axes of the body to components "
         "along the axes of space.",
         ACTIVE,
@@ -123,9 +122,9 @@ def symbols_of(derivation: Derivation) -> dict[str, Formula]:
     return found
 
 
-def with_symbols(sentence: str, symbols: Mapping[str, Formula]) -> Text:
+def with_symbols(words: str, symbols: Mapping[str, Formula]) -> Text:
     """A plain sentence, with the symbols in it made into formulas."""
-    parts = _any_of(tuple(symbols)).split(sentence)
+    parts = _any_of(tuple(symbols)).split(words)
     return tuple(symbols.get(part, part) for part in parts if part)
 
 
@@ -154,7 +153,7 @@ def convention(
     q = derivation.argument("q")
     named = q.names if is_quaternion(q.names, q.units) else ()  # printed in other letters
     return (
-        *(with_symbols(sentence, symbols) for sentence in derivation.model.convention),
+        *(with_symbols(words, symbols) for words in derivation.model.convention),
         _DIRECTION[derivation.model.passive],
         _ON_OMEGA,
         _coordinates(q, named, has_dots=notation.rates == "dot"),
@@ -179,8 +178,8 @@ def vector_in_words(derivation: Derivation, notation: Notation) -> Iterator[Text
     whole = formula("|#1|", v)
     yield (
         *((*said, " ") if said else ()),
-        *words("The length {} is written {}, so that {}", whole, n, _square(n, v)),
-        *words(
+        *sentence("The length {} is written {}, so that {}", whole, n, _square(n, v)),
+        *sentence(
             " and {}.",
             formula(r"#1\,#2 = #3\cdot\dot{#3}", n, rate, v),
         ),
@@ -212,7 +211,7 @@ def _body(derivation: Derivation, notation: Notation) -> Iterator[Text]:
         return
     given = formula_of(body.mass, letters)
     centre = listed([(name,) for name in derivation.argument("centre").notation], ", ")
-    head = words(
+    head = sentence(
         "The body has the mass {}, and its inertia tensor is about the centre of mass, along the "
         "axes of the body; the centre of mass is at {} = (",
         MASS if any(s.quantity.name == "mass" for s in derivation.steps) else given,
@@ -227,7 +226,7 @@ def _conditions(derivation: Derivation, notation: Notation) -> Iterator[Text]:
     for constraint in derivation.model.constraints:
         number, rest = constraint.as_coeff_Add()
         sides = (formula_of(rest, letters), formula_of(-number, letters))
-        yield words("All identities hold under the condition {}.", equal(*sides))
+        yield sentence("All identities hold under the condition {}.", equal(*sides))
 
 
 def _coordinates(argument: Argument, in_programs: Iterable[str], *, has_dots: bool) -> Text:
@@ -260,7 +259,7 @@ _IS_SKEW = (
     r"The matrix of $\mathbf{u}\times$ is skew for any $\mathbf{u}$, and so is {}, by "
     "differentiation of {}:"
 )
-_SHORTHAND = words(
+_SHORTHAND = sentence(
     r"With the abbreviations $s_\alpha$ for $\sin\alpha$ and $c_\alpha$ for $\cos\alpha$,"
 )
 
@@ -276,13 +275,13 @@ ACTIVE_MOTION: tuple[NoteBlock, ...] = (
         )
     ),
     Paragraph(
-        words(
+        sentence(
             "This velocity is also $\\boldsymbol{\\Omega}\\times\\mathbf{x}$\u00a0{}, so that {} "
             "is the matrix of the operator $\\boldsymbol{\\Omega}\\times$.",
             *(_TURNING, _R.spin),
         )
     ),
-    Paragraph(words(_IS_SKEW, _R.spin, _R.orthogonal)),
+    Paragraph(sentence(_IS_SKEW, _R.spin, _R.orthogonal)),
     EquationRow((_OPERATOR, Equation(sides=(_R.skew,)))),
 )
 PASSIVE_MOTION: tuple[NoteBlock, ...] = (
@@ -301,14 +300,14 @@ PASSIVE_MOTION: tuple[NoteBlock, ...] = (
         )
     ),
     Paragraph(
-        words(
+        sentence(
             "As seen from the body, the point moves with the velocity "
             "$-\\boldsymbol{\\Omega}'\\times\\mathbf{x}'$\u00a0{}, so that {} is the matrix of "
             "the operator $-\\boldsymbol{\\Omega}'\\times$.",
             *(_TURNING, _A.spin),
         )
     ),
-    Paragraph(words(_IS_SKEW, _A.spin, _A.orthogonal)),
+    Paragraph(sentence(_IS_SKEW, _A.spin, _A.orthogonal)),
     EquationRow((_OPERATOR, Equation(sides=(_A.skew,)))),
 )
 
@@ -337,7 +336,7 @@ def announcement(equation: Equation, done: Done) -> Text:
     if done == "abbreviated":
         return _SHORTHAND
     if done == "listed":
-        return words("The entries of {} are", equal(*equation.sides))
+        return sentence("The entries of {} are", equal(*equation.sides))
     return ()
 
 

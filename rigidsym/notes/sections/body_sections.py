@@ -10,7 +10,7 @@ import sympy as sp
 
 from rigidsym.data.mass.properties import MassProperties
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, sentence
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Big, Differential, Formula, bracketed, row
 from rigidsym.mechanics.derivation import Derivation
@@ -35,7 +35,6 @@ from rigidsym.notes.document.document import (
     Text,
     listed,
     said,
-    words,
 )
 from rigidsym.notes.prose.words import unit_in_words, vector
 
@@ -132,13 +131,13 @@ def _element(solid: Solid, element: sp.Expr, letters: Letters) -> Text:
         else "the square root of det JᵀJ, where J is the Jacobian matrix of this map"
     )
     factor = "" if element == 1 else f"; the factor is {how}"
-    head = words(f"The element of {_KINDS[count - 1]} is {{}}{factor}. ", whole)
+    head = sentence(f"The element of {_KINDS[count - 1]} is {{}}{factor}. ", whole)
     if solid.mass is not None:
         mass = formula_of(solid.mass, letters)
         uniform = (
             "The density is uniform, and its integral is the mass {}. The element integrates to"
         )
-        return (*head, *words(uniform, mass))
+        return (*head, *sentence(uniform, mass))
     return (*head, "The mass is the integral of the density,")
 
 

@@ -15,7 +15,7 @@ import sympy as sp
 
 from rigidsym.formula.display import PAGE, Display, display
 from rigidsym.formula.notation import DEFAULT, Notation
-from rigidsym.formula.reader import formula
+from rigidsym.formula.reader import formula, sentence
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula, row
 from rigidsym.mechanics.derivation import Argument, Derivation, Proof, Step
@@ -36,7 +36,6 @@ from rigidsym.notes.document.document import (
     Paragraph,
     Section,
     Text,
-    words,
 )
 from rigidsym.notes.formula.derivation_letters import entries_of, letters_of
 from rigidsym.notes.prose.algebra_words import is_told, rates_in_words, rotation_in_words
@@ -69,7 +68,7 @@ IDENTITIES, SYMBOLS, FUNCTIONS = "Identities verified", "Symbols", "Functions"
 _TURN_ANGLES = ("beta", "chi", "delta", "epsilon")  # one that no coordinate is called by is taken
 
 _RATE_MATRICES = Paragraph(
-    words(
+    sentence(
         "The rate matrices are defined by {} and {}, so that {}.",
         formula("#1 = #2#3", SPACE.omega, SPACE.matrix, RATES),
         formula("#1 = #2#3", BODY.omega, BODY.matrix, RATES),

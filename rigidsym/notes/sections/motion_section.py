@@ -9,7 +9,7 @@ from functools import partial, reduce
 import sympy as sp
 
 from rigidsym.formula.letters import Letters
-from rigidsym.formula.reader import decimal, formula
+from rigidsym.formula.reader import decimal, formula, sentence
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
@@ -28,7 +28,6 @@ from rigidsym.notes.document.document import (
     Text,
     listed,
     said,
-    words,
 )
 from rigidsym.notes.figure.motion_picture import motion_picture
 from rigidsym.notes.figure.phase_portrait import phase_portrait
@@ -59,12 +58,12 @@ def what_moves(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
 def _part(part: MovingPart, letters: Letters) -> Text:
     entries = [formula_of(entry, letters) for entry in (*part.velocity, *part.inertia)]
     if part.rotation is None:
-        return words(
+        return sentence(
             "A point of mass {} moves with the body, with the velocity ({}, {}, {}) in space.",
             *(entries[3], *entries[:3]),
         )
     turns = listed([(formula_of(turn.angle, letters),) for turn in part.rotation.turns])
-    moments = words(" only; its principal moments are {}, {} and {}.", *entries)
+    moments = sentence(" only; its principal moments are {}, {} and {}.", *entries)
     return ("Another body turns with it by ", *turns, *moments)
 
 
@@ -89,7 +88,7 @@ def what_follows(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock
 
     for found in derivation.consequences:
         head = (Strong(f"{found.title}."), " ") if found.title else ()
-        yield Paragraph((*head, *words(found.text, *map(printed, found.spans))))
+        yield Paragraph((*head, *sentence(found.text, *map(printed, found.spans))))
         claims = [proof.claim for proof in found.proofs]
         exact = all(proof.is_exact for proof in found.proofs)
         yield Equation(
@@ -113,8 +112,10 @@ def _phase_portrait(derivation: Derivation, letters: Letters) -> Iterator[NoteBl
             (formula("#1 = #2", letters.name(symbol), formula_of(value, letters)),)
             for symbol, value in shown.momenta.items()
         ]
-        caption = words("The phase portrait of {}, for constants of 1 and momenta of ", shown.name)
-        description = words(
+        caption = sentence(
+            "The phase portrait of {}, for constants of 1 and momenta of ", shown.name
+        )
+        description = sentence(
             "Each curve is the motion with one energy, and the mark in the middle is the steady "
             "motion."
         )
@@ -173,7 +174,7 @@ def _pictures(derivation: Derivation, letters: Letters) -> Iterator[NoteBlock]:
     traces = [_TRACES[kind] for kind in shown.traces]
     if {*shown.traces} - {"path"}:
         traces.append(_ON_A_SURFACE)
-    yield Figure(shown.drawing, caption, words(" ".join(traces)))
+    yield Figure(shown.drawing, caption, sentence(" ".join(traces)))
 
 
 def _filled(typed: str, *lists: Text) -> Text:
