@@ -398,6 +398,18 @@ def test_half_of_what_is_compared_with_is_refused(given, message, tmp_path):
     assert message in wrong.stderr
 
 
+def test_names_that_unpack_a_vector_are_names(tmp_path):
+    text = f"def f(e):\n    a, b, c = e\n    return np.array({W_BODY})\n"
+    (found,) = found_in(tmp_path, "a.py", text)
+    assert str(found.comparison.found) == "rate_matrix_body of xyz"
+
+
+def test_a_transposed_rate_matrix_of_a_program_may_be_meant(tmp_path):
+    transposed = "[[1, 0, 0], [0, cos(a), -sin(a)], [-sin(b), sin(a)*cos(b), cos(a)*cos(b)]]"
+    assert [r.kind for r in rs.compare(transposed).repairs] == ["transpose"]
+    assert found_in(tmp_path, "a.py", f"W_T = {transposed}\n") == []
+
+
 def test_rates_in_arrays_are_read_in_c(tmp_path):
     quaternion = "\n".join(
         f"  w[{k}] = 2*(q[0]*qd[{k + 1}] - q[{k + 1}]*qd[0] - q[{a}]*qd[{b}] + q[{b}]*qd[{a}]);"

@@ -156,9 +156,16 @@ def likely(
 
 
 def identified(
-    formula: sp.ImmutableMatrix, *, only_equal: bool = False, also: Sequence[KnownQuantity] = ()
+    formula: sp.ImmutableMatrix,
+    *,
+    only_equal: bool = False,
+    is_in_program: bool = False,
+    also: Sequence[KnownQuantity] = (),
 ) -> Comparison:
-    """Compare with all quantities of the catalogue, and `also`; the nearest if none is equal."""
+    """Compare with all quantities of the catalogue, and `also`; the nearest if none is equal.
+
+    In a program, a transpose, a sign or a factor of the whole formula may be meant.
+    """
     near: list[tuple[float, Meaning]] = []
     whole: Meaning | None = None
     known = (goal for goal in (*catalogue(formula), *also) if goal.matrix.shape == formula.shape)
@@ -172,7 +179,7 @@ def identified(
             near.append((float(right.mean()), reading))
     if only_equal:
         return Comparison(formula=formula, asked=None)
-    if whole:
+    if whole and not is_in_program:
         return _made(whole, tuple(islice(whole_repairs(whole), 1)), None)
     near.sort(key=lambda each: -each[0])
     for share, reading in near[:8]:

@@ -104,7 +104,7 @@ def search(path: Path, also: Sequence[KnownQuantity] = ()) -> Iterator[FormulaIn
     text = path.read_text(encoding="utf-8", errors="replace")
     for line, name, matrix in formulas(text, path.suffix):
         try:
-            found = identified(matrix, also=also)
+            found = identified(matrix, also=also, is_in_program=True)
         except ExpressionError:  # a function without values
             continue
         if found.found is not None:
@@ -191,6 +191,9 @@ class _FileReader:
         if value.shape == (len(names), 1):
             for each, entry in zip(names, value, strict=True):
                 yield from self._assigned(line, each, match["index"], entry)
+        elif len(names) > 1:  # w, x, y, z = q: the names are free
+            for each in names:
+                self.known.pop(each, None)
         else:
             self.known[name] = value
             yield line, name, value
