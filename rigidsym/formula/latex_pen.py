@@ -10,7 +10,7 @@ from typing import ClassVar
 from rigidsym.formula.pen import Height, Piece
 from rigidsym.formula.reader import FUNCTIONS, LETTERS, SIGNS
 from rigidsym.formula.sheet_pen import Aligned, SheetPen, Size
-from rigidsym.formula.tree import Big, Formula, FunctionCall, Numeral, Radical, Rate, Row, Symbol
+from rigidsym.formula.tree import Big, Formula, FunctionCall, Numeral, Radical, Rate, Symbol
 
 _SIGNS = {"−": "-"} | {sign: f"{macro} " for macro, sign in SIGNS.items()}
 _LETTERS = {letter: macro for macro, letter in LETTERS.items()} | {"∗": "*"}
@@ -92,7 +92,7 @@ class LatexPen(SheetPen):
         is_raised = isinstance(base, Symbol) and (
             base.prime == "ᴮ" or (base.prime and base.index is not None)
         )
-        is_whole = is_raised or isinstance(base, Rate | Radical | Row)
+        is_whole = is_raised or isinstance(base, Rate | Radical)
         return f"{{{inside}}}^{_braced(exponent)}" if is_whole else f"{inside}^{_braced(exponent)}"
 
     def spelt_bracket(self, bracket: str, size: Size, is_open: bool) -> str:

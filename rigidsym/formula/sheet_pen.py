@@ -174,6 +174,8 @@ class SheetPen(Pen):
 
     def power(self, node: tree.Power) -> Piece:
         base, raised = node.base, self.node(node.exponent)
+        if isinstance(base, tree.Row | tree.Fraction | tree.Power | tree.FunctionCall):
+            base = tree.Bracket(base)
         if isinstance(base, tree.Bracket):
             within = self.node(base.inside)
             if self.size_around(within) != "stretched":

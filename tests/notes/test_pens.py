@@ -178,6 +178,21 @@ def forms() -> Iterator[tuple[str, Formula]]:
         )
 
 
+@pytest.mark.parametrize(
+    ("base", "latex", "text"),
+    [
+        ("a + b", "(a + b)^2", "(a + b)²"),
+        (r"a\,b", r"(a\,b)^2", "(a b)²"),
+        (r"\cos\tau", r"(\cos\tau)^2", "(cos τ)²"),
+        (r"\frac{a}{b}", r"\left(\frac{a}{b}\right)^2", "(a/b)²"),
+        ("x^2", "(x^2)^2", "(x²)²"),
+    ],
+)
+def test_the_base_of_a_power_is_put_in_brackets(base, latex, text):
+    power = formula("#1^2", formula(base))
+    assert (power.latex, power.text) == (latex, text)
+
+
 def test_the_forms_of_the_pens_are_as_they_were(golden):
     lines = []
     for name, tree in forms():

@@ -165,7 +165,7 @@ class Expanded(Kinematics):
                         left = [active.dt() - hat(matrix)]
                     else:
                         left = [R @ matrix - omega_space.dt()]
-                case _:
+                case "inverse_rate_matrix" | "rates_from_angular_velocity":
                     inverse = inverses[frame]
                     if inverse is None:
                         continue
@@ -175,6 +175,8 @@ class Expanded(Kinematics):
                         whole = column(given[f"omega_{frame}"].symbols)
                         matrix = matrix @ whole
                     left = [rates[frame] @ matrix - whole.scale(below)]
+                case _:
+                    raise LookupError(f"no rule finds {name}; say it in {__name__}")
             found[name] = WorkedOut(matrix, below, left)
         return found
 

@@ -51,7 +51,8 @@ class TurnByTurn(Kinematics):
         expression = self._expression(name)
         if expression is None:
             return None
-        words, recursion = _WORDS[kind_and_frame(name)[0] if name not in _WORDS else name]
+        kind, _ = kind_and_frame(name)
+        words, recursion = _WORDS[name if name in _WORDS else kind]
         words = words or WORDS[name]
         if self.model.passive and name in _PASSIVE_WORDS:
             words, recursion = _PASSIVE_WORDS[name]
@@ -59,7 +60,9 @@ class TurnByTurn(Kinematics):
             sp.ImmutableMatrix(expression),
             words,
             tuple(self.proofs(name)),
-            recursion=self._columns(name) if recursion is None else self._formula(name, recursion),
+            recursion=self._columns(name)
+            if kind == "rate_matrix"
+            else self._formula(name, recursion),
         )
 
     def definitions(self, expressions: Sequence[sp.Basic]) -> tuple[Definition, ...]:
@@ -89,6 +92,10 @@ class TurnByTurn(Kinematics):
                 return r.alpha_space[0] if is_in_space else r.alpha_body[-1]
             case "rate_matrix":
                 return r.rate_matrix(r.axes_space if is_in_space else r.axes_body)
+            case "inverse_rate_matrix" | "rates_from_angular_velocity":
+                pass
+            case _:
+                raise LookupError(f"no recursion finds {name}; say it in {__name__}")
         rows = self._rows(frame)
         if rows is None:
             return None
@@ -248,7 +255,7 @@ _TURNING = (
     "Turn k has the matrix Tₖ, the axis nₖ and the angle θₖ; the turns are multiplied one after "
     "the other, from left to right, starting from P₀ = 1"
 )
-_WORDS: dict[str, tuple[str, str | None]] = {  # how it follows, and the recursion that is shown
+_WORDS = {  # how it follows, and the recursion; of W, the columns are shown
     "rotation_matrix": (f"{_TURNING}.", _LAWS["product"]),
     "rotation_rate": ("The derivative follows from the angular velocity.", r"\mathbf{C}(#1)\,#2"),
     "spin_matrix": ("The derivative times the transpose is the operator of Ω.", r"\mathbf{C}(#1)"),
@@ -262,8 +269,8 @@ _WORDS: dict[str, tuple[str, str | None]] = {  # how it follows, and the recursi
         "first one it is 0.",
         rf"\mathbf{{w}}_{{LAST}}, \quad {_LAWS['omega_body']}",
     ),
-    "rate_matrix_space": ("The columns of W are the axes of the turns.", None),
-    "rate_matrix_body": (WORDS["rate_matrix_body"], None),
+    "rate_matrix_space": ("The columns of W are the axes of the turns.", ""),
+    "rate_matrix_body": (WORDS["rate_matrix_body"], ""),
     "inverse_rate_matrix_body": (
         "The right inverse of W′ is found in the same way.",
         r"#2\left(#1\,#2\right)^{-1}",
@@ -283,7 +290,7 @@ _WORDS: dict[str, tuple[str, str | None]] = {  # how it follows, and the recursi
         rf"\dot{{\mathbf{{w}}}}_{{LAST}}, \quad {_LAWS['alpha_body']}",
     ),
 }
-_PASSIVE_WORDS: dict[str, tuple[str, str | None]] = {
+_PASSIVE_WORDS = {
     "rotation_matrix": (f"{_TURNING}, and the product is transposed.", _LAWS["product"]),
     "rotation_rate": ("The derivative follows from the angular velocity.", r"\mathbf{C}(#1)\,#2"),
     "spin_matrix": (
