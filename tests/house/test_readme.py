@@ -49,7 +49,3 @@ def test_the_readme_is_read_in_ninety_seconds():
 
 def test_the_picture_is_small():
     assert (ROOT / "docs" / "_static" / "rigidsym.png").stat().st_size <= 300_000
-
-
-def test_the_page_for_contributors_stays_short():
-    assert (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").count("\n") <= 120
