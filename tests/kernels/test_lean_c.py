@@ -171,7 +171,7 @@ def test_other_options_are_refused_by_name(target, options, named):
 
 
 def test_no_python_module_is_made_of_lean_c():
-    with pytest.raises(CheckError, match=r"_c\.py: not there.* with arrays"):
+    with pytest.raises(CheckError, match=r"_c\.py: not found.* with arrays"):
         rs.derive("ZXZ", only="rotation_matrix").kernels("c", **LEAN).load()
 
 

@@ -31,6 +31,7 @@ from rigidsym.kernels.targets.text.infix import infix
 from rigidsym.version import OWNERSHIP, __version__
 
 _LONGEST_DIVISOR = 16  # operations and inputs
+_MOST_NAMES = 8
 
 Paragraph = str | Sequence[str]  # filled, or lines that are kept
 
@@ -172,7 +173,9 @@ def _divisor(kernel: Kernel, divisor: Name) -> str:
         behind = dict.fromkeys(i for n in names_in(value) for i in inputs[n])
         inputs[name] = tuple(n for n in kernel.components if n in behind)
     if sizes[divisor.text] > _LONGEST_DIVISOR:
-        return f"an expression in {', '.join(inputs[divisor.text])}"
+        names = inputs[divisor.text]
+        listed = ", ".join(names) if len(names) <= _MOST_NAMES else f"{len(names)} of the inputs"
+        return f"an expression in {listed}"
     return infix(_in_inputs(divisor, dict(kernel.assignments)))
 
 
