@@ -25,8 +25,8 @@ from scipy.spatial.transform import Rotation
 from benchmarks.measure import Settings, progress
 from benchmarks.report import Column, Figure, Report, Table
 from rigidsym.errors import LimitReached
+from rigidsym.models.rotation import TIME
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.models.so3 import TIME
 from rigidsym.motion import derive
 
 WHOLE = 100_000

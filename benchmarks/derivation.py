@@ -25,7 +25,7 @@ from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix
 from rigidsym.algebra.present import presenter_for
 from rigidsym.models.euler_angles import AXIS_SEQUENCES, EULER_SEQUENCES, EulerAngles
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME
 from rigidsym.motion import derive
 
 ALL_12, ALL_24 = len(AXIS_SEQUENCES), len(EULER_SEQUENCES)

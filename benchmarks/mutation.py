@@ -85,7 +85,11 @@ TESTS: Mapping[str, tuple[str, ...]] = {  # module: the files that test it, the 
     "rigidsym.formula.letters": FORMULAS,
     "rigidsym.kernels.lowering.cse": LOWERING,
     "rigidsym.kernels.lowering.schedule": LOWERING,
-    "rigidsym.kernels.lowering.guard": ("tests/kernels/test_guard.py", *LOWERING),
+    "rigidsym.kernels.lowering.rounding": (
+        "tests/kernels/test_guard.py",
+        "tests/kernels/test_rounding.py",
+        *LOWERING,
+    ),
     "rigidsym.kernels.lowering.lower": LOWER,
     "rigidsym.kernels.lowering.trigonometry": ("tests/kernels/test_trigonometry.py",),
     "rigidsym.kernels.targets.text.infix": ("tests/kernels/test_infix.py",),

@@ -23,8 +23,8 @@ import rigidsym as rs
 from rigidsym.errors import DerivationError
 from rigidsym.formula.tree import Words
 from rigidsym.mechanics.prove import identity
+from rigidsym.models.rotation import TIME
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.models.so3 import TIME
 from rigidsym.tools.compare.language import read_formula
 
 FOLDER = Path(__file__).parent / "literature"

@@ -30,7 +30,7 @@ from rigidsym.notes.formats.record import record
 from rigidsym.notes.note import STYLES
 from rigidsym.spec import derivation_file
 from rigidsym.spec.derivation_spec import DerivationSpec, spec_for
-from rigidsym.spec.faults import Source
+from rigidsym.spec.tables import Source
 from rigidsym.spec.vocabulary import Vocabulary
 from rigidsym.system import resources
 

@@ -86,5 +86,5 @@ def _prune(home: Path) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-__path__: list[str] = []
-_home()
+_CACHE = cache_folder("kernels")  # where another process may have put what is unpickled here
+__path__ = [] if _CACHE is None else [str(_CACHE)]

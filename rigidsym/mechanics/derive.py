@@ -46,8 +46,7 @@ from rigidsym.mechanics.singularities.derive import singularities_of
 from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.distribution import Distribution
 from rigidsym.models.forces import Forces
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import depends_on_time
+from rigidsym.models.rotation import RotationModel, depends_on_time
 
 _STUDIED = 5  # turns up to which the minors of W are few enough to solve for their zeros
 

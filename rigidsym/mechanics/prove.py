@@ -23,8 +23,7 @@ from rigidsym.algebra.witness import Example, Rows, witness_for
 from rigidsym.errors import Defect, DerivationError, NotARotation, RigidsymError
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Proof, Status
-from rigidsym.models.rotation import Pullback, RotationModel
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME, Pullback, RotationModel
 
 
 class Conditions(NamedTuple):

@@ -15,8 +15,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.generators import not_exact
 from rigidsym.errors import BodyError
 from rigidsym.models.distribution import Distribution
-from rigidsym.models.rotation import SOURCES, Citation
-from rigidsym.models.so3 import TIME, symbolic
+from rigidsym.models.rotation import SOURCES, TIME, Citation, symbolic
 
 _MODULE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 _AXES = ("x", "y", "z")

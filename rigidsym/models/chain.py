@@ -9,8 +9,7 @@ from sympy.core.function import AppliedUndef
 
 from rigidsym.algebra.generators import is_identically_zero
 from rigidsym.errors import ModelError
-from rigidsym.models.rotation import SOURCES, Citation, RotationModel, Turn, product_of
-from rigidsym.models.so3 import AXES
+from rigidsym.models.rotation import AXES, SOURCES, Citation, RotationModel, Turn, product_of
 
 _NUMBERS = ("Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten")
 _SOURCE = SOURCES["Goldstein 4.4"]

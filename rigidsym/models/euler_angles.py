@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rigidsym.errors import ModelError
-from rigidsym.models.rotation import SOURCES, RotationModel, Turn, product_of
-from rigidsym.models.so3 import AXES, time_functions
+from rigidsym.models.rotation import AXES, SOURCES, RotationModel, Turn, product_of, time_functions
 from rigidsym.text.names import lettered
 
 AXIS_SEQUENCES = tuple(

@@ -13,9 +13,8 @@ import sympy as sp
 from rigidsym.errors import ModelError, offer
 from rigidsym.models.body import Parameter, RigidBody
 from rigidsym.models.example import Example, examples_of
-from rigidsym.models.rotation import RotationModel
+from rigidsym.models.rotation import TIME, RotationModel, as_typed, depends_on_time, symbolic
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.models.so3 import TIME, as_typed, depends_on_time, symbolic
 from rigidsym.text.expression import names_in, parse_expression
 from rigidsym.text.names import check_name
 

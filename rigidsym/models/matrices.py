@@ -10,8 +10,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.errors import ModelError, offer
-from rigidsym.models.rotation import Citation, RotationModel
-from rigidsym.models.so3 import TIME, symbolic
+from rigidsym.models.rotation import TIME, Citation, RotationModel, symbolic
 
 GIVEN = "given by the user"  # the source of a rotation without another
 

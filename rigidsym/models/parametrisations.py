@@ -14,8 +14,16 @@ from typing import Any
 
 import sympy as sp
 
-from rigidsym.models.rotation import SOURCES, Citation, Pullback, RotationModel
-from rigidsym.models.so3 import hat, rodrigues, rotation_of, time_functions
+from rigidsym.models.rotation import (
+    SOURCES,
+    Citation,
+    Pullback,
+    RotationModel,
+    hat,
+    rodrigues,
+    rotation_of,
+    time_functions,
+)
 from rigidsym.text.names import lettered
 
 SHUSTER = Citation(

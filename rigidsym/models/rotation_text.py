@@ -24,8 +24,7 @@ from rigidsym.models.euler_angles import (
 )
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
 from rigidsym.models.matrices import given
-from rigidsym.models.rotation import RotationModel, Turn, product_of
-from rigidsym.models.so3 import AXES, time_function
+from rigidsym.models.rotation import AXES, RotationModel, Turn, product_of, time_function
 from rigidsym.text.expression import names_in, parse_expression, parse_turns
 from rigidsym.text.names import check_name
 

@@ -13,7 +13,7 @@ import sympy as sp
 
 from rigidsym.errors import BodyError, offer
 from rigidsym.models.distribution import Solid
-from rigidsym.models.so3 import symbolic
+from rigidsym.models.rotation import symbolic
 from rigidsym.text.expression import parse_expression
 
 

@@ -25,8 +25,8 @@ from rigidsym.notes.document.document import Document, Equation, Paragraph, Text
 from rigidsym.notes.figure.body_mesh import own_shape
 from rigidsym.notes.figure.scene import scene_of
 from rigidsym.notes.formats.html import HtmlPrinter, escape, rendered
+from rigidsym.notes.prose.rotation_words import sum_of_turns
 from rigidsym.notes.prose.singular_words import singular
-from rigidsym.notes.prose.turn_words import sum_of_turns
 from rigidsym.notes.prose.words import unit_in_words
 from rigidsym.page.controls import Control, groups_of, starts_of
 from rigidsym.page.copies import LANGUAGES, copies_of

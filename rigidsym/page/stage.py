@@ -13,8 +13,7 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import NOTHING, Formula, Numeral, Symbol
 from rigidsym.mechanics.derivation import Quantity, Step
 from rigidsym.mechanics.quantities.kinematics import SPACE
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import AXES
+from rigidsym.models.rotation import AXES, RotationModel
 from rigidsym.notes.figure.camera import STANDARD, Vector
 from rigidsym.notes.figure.scene import BODY, MOST_TURNS, RADII, Scene, scene_of, turns_of
 from rigidsym.notes.formats.drawings import as_in_formulas

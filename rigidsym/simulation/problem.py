@@ -15,7 +15,7 @@ from rigidsym.errors import BodyError, ModelError, offer
 from rigidsym.kernels.module import generate
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.example import OMEGA as OMEGA
-from rigidsym.models.so3 import TIME, as_typed
+from rigidsym.models.rotation import TIME, as_typed
 from rigidsym.simulation.sampled_motion import Array
 from rigidsym.simulation.trajectory import Trajectory
 

@@ -14,9 +14,8 @@ from rigidsym.models.forces import forces_on
 from rigidsym.models.rotation import RotationModel
 from rigidsym.spec.body_table import read_body
 from rigidsym.spec.derivation_spec import DerivationSpec, fault_of_name, fault_of_title
-from rigidsym.spec.faults import Faults, Source, shortened
 from rigidsym.spec.rotation_table import KEYS, read_rotation
-from rigidsym.spec.tables import MOST_CHARACTERS, Table, read_toml
+from rigidsym.spec.tables import MOST_CHARACTERS, Faults, Source, Table, read_toml, shortened
 from rigidsym.spec.vocabulary import NotationChoice, TextChoice, Vocabulary
 from rigidsym.system import resources
 

@@ -13,7 +13,7 @@ from rigidsym.errors import ModelError
 from rigidsym.models.body import BodyDescription, RigidBody
 from rigidsym.models.rotation import RotationModel
 from rigidsym.models.rotation_text import request_of, rotation_from
-from rigidsym.spec.faults import Faults, Source, shortened
+from rigidsym.spec.tables import Faults, Source, shortened
 from rigidsym.spec.vocabulary import NotationChoice, TextChoice
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")

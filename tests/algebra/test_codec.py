@@ -10,7 +10,7 @@ from sympy import Rational, cos, cot, csc, pi, sec, sin, sqrt, tan
 from helpers.witness import TOLERANCE, derivative, mp, number, paths, values_along
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.errors import AlgebraError
-from rigidsym.models.so3 import time_function
+from rigidsym.models.rotation import time_function
 
 LAW = settings(max_examples=80, deadline=None, derandomize=True)
 TIME = sp.Symbol("t")

@@ -17,7 +17,7 @@ from rigidsym.algebra import codec as codec_module, matrix, ring
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.matrix import RingMatrix, cross, hat, unhat
 from rigidsym.algebra.ring import Quotient, Ring
-from rigidsym.models.so3 import TIME, time_function
+from rigidsym.models.rotation import TIME, time_function
 
 PHI, X = time_function("phi"), time_function("x")
 OF_RING = ("dot", "total", "partial", "dt", "_monomial_rate", "_settled", "difference")

@@ -17,7 +17,7 @@ from rigidsym.algebra.present import Presenter, Rationals, presenter_for
 from rigidsym.algebra.ring import Quotient
 from rigidsym.algebra.stable_forms import halved
 from rigidsym.errors import AlgebraError
-from rigidsym.models.so3 import time_function
+from rigidsym.models.rotation import time_function
 
 LAW = settings(max_examples=150, deadline=None, derandomize=True)
 TIME = sp.Symbol("t")

@@ -11,7 +11,7 @@ from hypothesis import given, settings, strategies as st
 from rigidsym.algebra.matrix import RingMatrix, cross
 from rigidsym.algebra.ring import Generator, Quotient, Ring
 from rigidsym.errors import AlgebraError
-from rigidsym.models.so3 import time_function
+from rigidsym.models.rotation import time_function
 
 LAW = settings(max_examples=60, deadline=None, derandomize=True)
 theta, w, x, y, z = map(time_function, ("theta", "w", "x", "y", "z"))

@@ -14,8 +14,8 @@ from helpers.witness import mp
 from rigidsym.algebra.codec import codec_for
 from rigidsym.algebra.series import FIRST_SERIES, closed_form, series_of, taylor
 from rigidsym.algebra.stable_forms import Stumpff, at_zero, halved, rewriter_of
+from rigidsym.models.rotation import time_function
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.models.so3 import time_function
 from rigidsym.motion import derive
 
 ORDERS = range(FIRST_SERIES, 8)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from html.parser import HTMLParser
 
 import rigidsym as rs
-from rigidsym.models.rotation import Citation
-from rigidsym.models.so3 import elementary, time_function
+from rigidsym.models.rotation import Citation, elementary, time_function
 
 ODD = "</title></script><script>document.title='owned'</script><img src=x onerror=alert(1)> & \"'"
 

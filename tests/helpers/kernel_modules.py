@@ -12,8 +12,7 @@ import sympy as sp
 import rigidsym as rs
 from helpers.motions import derived
 from rigidsym.kernels.module import generate
-from rigidsym.models.rotation import RotationModel, lecture
-from rigidsym.models.so3 import elementary, time_function
+from rigidsym.models.rotation import RotationModel, elementary, lecture, time_function
 from rigidsym.motion import derive
 
 EPS = np.finfo(np.float64).eps

@@ -7,8 +7,7 @@ from functools import reduce
 import sympy as sp
 from sympy import Rational, cos, cosh, pi, sec, sin, sinh, sqrt, tan
 
-from rigidsym.models.rotation import Citation, RotationModel
-from rigidsym.models.so3 import elementary, hat, time_function
+from rigidsym.models.rotation import Citation, RotationModel, elementary, hat, time_function
 
 TIME = sp.Symbol("t")
 ONE = sp.eye(3)

@@ -8,8 +8,8 @@ import sympy as sp
 from rigidsym.algebra.stable_forms import Stumpff
 from rigidsym.kernels import ir
 from rigidsym.kernels.lowering.cse import Reader
-from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names
+from rigidsym.kernels.lowering.rounding import guarded
 from rigidsym.kernels.lowering.schedule import write
 from rigidsym.kernels.targets.text.infix import guard_arguments, infix
 

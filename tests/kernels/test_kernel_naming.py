@@ -15,8 +15,7 @@ from helpers.target_modules import EVERY
 from rigidsym.kernels.lowering.lower import lower
 from rigidsym.kernels.lowering.naming import Names, identifier
 from rigidsym.kernels.targets import TARGETS
-from rigidsym.models.rotation import RotationModel, lecture
-from rigidsym.models.so3 import elementary, time_function
+from rigidsym.models.rotation import RotationModel, elementary, lecture, time_function
 from rigidsym.motion import derive
 
 

@@ -14,8 +14,7 @@ from helpers.witness import agree, evaluate, paths, values_along
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.library import PRESETS
-from rigidsym.models.rotation import SOURCES, lecture
-from rigidsym.models.so3 import elementary, hat
+from rigidsym.models.rotation import SOURCES, elementary, hat, lecture
 
 phi, theta, psi = dynamicsymbols("phi theta psi")
 phi_dot, theta_dot, psi_dot = dynamicsymbols("phi theta psi", 1)

@@ -23,8 +23,7 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.prove import Conditions, Prover
 from rigidsym.models.chain import chain
-from rigidsym.models.rotation import RotationModel, Turn
-from rigidsym.models.so3 import elementary, time_function
+from rigidsym.models.rotation import RotationModel, Turn, elementary, time_function
 
 a, b, x, y, z = map(time_function, "abxyz")
 phi, psi, chi, theta = map(time_function, ("phi", "psi", "chi", "theta"))

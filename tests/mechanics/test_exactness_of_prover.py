@@ -14,8 +14,7 @@ from rigidsym.algebra.witness import Witness, witness_for
 from rigidsym.errors import Defect, DerivationError, NotARotation
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.prove import Conditions, Prover, consequence, identity
-from rigidsym.models.rotation import Pullback
-from rigidsym.models.so3 import TIME, time_function
+from rigidsym.models.rotation import TIME, Pullback, time_function
 
 x, y, theta = map(time_function, ("x", "y", "theta"))
 m = sp.Symbol("m", positive=True)

@@ -15,7 +15,7 @@ from rigidsym.mechanics.mass.principal import principal_of
 from rigidsym.mechanics.quantities.mass import INERTIA_QUANTITIES
 from rigidsym.models.body import given_inertia
 from rigidsym.models.distribution import Composite, Part, Particle, Particles, Solid
-from rigidsym.models.so3 import elementary
+from rigidsym.models.rotation import elementary
 from rigidsym.models.solids import SHAPES, shaped
 
 A, B, C, M, a, b, c, d, h, m = sp.symbols("A B C M a b c d h m")

@@ -14,8 +14,7 @@ from helpers.witness import CONVENTIONS, agree, evaluate, mp, paths, rotation, t
 from rigidsym.errors import ModelError
 from rigidsym.models.chain import axis_turn, chain as chain_of
 from rigidsym.models.euler_angles import AXIS_SEQUENCES, EULER_SEQUENCES, EulerAngles
-from rigidsym.models.rotation import Turn
-from rigidsym.models.so3 import AXES, elementary, hat, time_function
+from rigidsym.models.rotation import AXES, Turn, elementary, hat, time_function
 
 
 class TestCatalogue:

@@ -41,7 +41,7 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.parametrisations import CayleyKlein, Quaternion, UnitQuaternion
-from rigidsym.models.so3 import elementary, time_function
+from rigidsym.models.rotation import elementary, time_function
 
 DERIVED: dict[str, Derivation] = {}
 

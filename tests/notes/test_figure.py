@@ -17,9 +17,8 @@ from rigidsym.mechanics.quantities.table import arguments_of
 from rigidsym.models.chain import axis_turn, chain
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
 from rigidsym.models.parametrisations import AxisAngle, GibbsVector, RotationVector, UnitQuaternion
-from rigidsym.models.rotation import Citation, RotationModel, Turn
+from rigidsym.models.rotation import Citation, RotationModel, Turn, time_function
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.models.so3 import time_function
 from rigidsym.models.solids import shaped
 from rigidsym.notes.figure.camera import STANDARD, camera, combined, cross, dot, turned, unit
 from rigidsym.notes.figure.drawing import (
@@ -35,7 +34,7 @@ from rigidsym.notes.figure.drawing import (
 from rigidsym.notes.figure.scene import MOST_TURNS, scene_of
 from rigidsym.notes.formats.drawings import svg, tikz
 from rigidsym.notes.formula.derivation_letters import letters_of
-from rigidsym.notes.prose.turn_words import figure_of
+from rigidsym.notes.prose.rotation_words import figure_of
 
 LETTERS = "zxyzxy"
 ANGLES = ("heading", "elevation", "bank")

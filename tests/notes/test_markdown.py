@@ -22,8 +22,7 @@ from rigidsym.formula.latex_pen import MarkdownPen
 from rigidsym.formula.reader import formula
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
-from rigidsym.models.rotation import Citation
-from rigidsym.models.so3 import elementary, time_function
+from rigidsym.models.rotation import Citation, elementary, time_function
 from rigidsym.notes.formats.markdown import escape
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.note import note

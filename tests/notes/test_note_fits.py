@@ -13,8 +13,8 @@ from rigidsym.formula.display import PAGE, display
 from rigidsym.formula.scalars import factored, listed_entries
 from rigidsym.mechanics.kinematics.vector_forms import LENGTH
 from rigidsym.models.library import PARAMETRISATIONS, PRESETS
+from rigidsym.models.rotation import hat
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.models.so3 import hat
 from rigidsym.notes.document.document import (
     Document,
     Equation,

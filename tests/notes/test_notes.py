@@ -18,8 +18,14 @@ from rigidsym.mechanics.derivation import Derivation, Place, Proof, Singularity
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.euler_angles import EulerAngles
 from rigidsym.models.matrices import given
-from rigidsym.models.rotation import LECTURE, SOURCES, Citation, RotationModel
-from rigidsym.models.so3 import elementary, time_function
+from rigidsym.models.rotation import (
+    LECTURE,
+    SOURCES,
+    Citation,
+    RotationModel,
+    elementary,
+    time_function,
+)
 from rigidsym.motion import QUANTITIES
 from rigidsym.notes.document.document import (
     Cited,
@@ -32,8 +38,8 @@ from rigidsym.notes.document.document import (
 from rigidsym.notes.formats.escape import escape
 from rigidsym.notes.formats.terminal import show
 from rigidsym.notes.note import Note, note
+from rigidsym.notes.prose.rotation_words import GOLDSTEIN
 from rigidsym.notes.prose.singular_words import determined
-from rigidsym.notes.prose.turn_words import GOLDSTEIN
 from rigidsym.notes.prose.words import unit_in_words, with_symbols
 from rigidsym.notes.sections.boxed import RESULTS
 from rigidsym.notes.sections.compose import equation_of

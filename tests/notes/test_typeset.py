@@ -18,9 +18,8 @@ from rigidsym.formula.tree import Matrix
 from rigidsym.mechanics.derive import derive
 from rigidsym.models.chain import axis_turn, chain as chain_of
 from rigidsym.models.euler_angles import EULER_SEQUENCES, EulerAngles
-from rigidsym.models.rotation import Citation, RotationModel, Turn
+from rigidsym.models.rotation import Citation, RotationModel, Turn, elementary, time_function
 from rigidsym.models.rotation_text import rotation_from
-from rigidsym.models.so3 import elementary, time_function
 from rigidsym.notes.formats import pdf as typesetting
 from rigidsym.notes.formats.pdf import typeset
 from rigidsym.notes.formula.derivation_letters import letters_of

@@ -12,7 +12,7 @@ import sympy as sp
 from hypothesis import example, given, settings, strategies as st
 
 from rigidsym.errors import ExpressionError
-from rigidsym.models.so3 import time_function
+from rigidsym.models.rotation import time_function
 from rigidsym.text.bounds import FUNCTIONS, Sized, operate
 from rigidsym.text.expression import MOST_CHARACTERS, parse_expression, parse_turns
 

@@ -27,8 +27,8 @@ from rigidsym.kernels.lowering.degrees import (
     powers_of,
 )
 from rigidsym.kernels.lowering.derivatives import Derivative
-from rigidsym.kernels.lowering.guard import guarded
 from rigidsym.kernels.lowering.naming import Names
+from rigidsym.kernels.lowering.rounding import guarded
 from rigidsym.kernels.lowering.schedule import write
 from rigidsym.mechanics.conversions.function import Continuity, ConversionFunction, Converted
 from rigidsym.mechanics.derivation import (

@@ -17,8 +17,7 @@ from rigidsym.mechanics.conversions.function import NamedValues, Vector, Where, 
 from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim, in_order
 from rigidsym.mechanics.conversions.unit_quaternions import shepperd, short_way, unit
 from rigidsym.models import parametrisations
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import rotation_of
+from rigidsym.models.rotation import RotationModel, rotation_of
 
 
 @dataclass(frozen=True, kw_only=True)

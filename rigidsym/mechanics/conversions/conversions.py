@@ -31,8 +31,7 @@ from rigidsym.mechanics.derivation import Proof, Quantity, Step
 from rigidsym.mechanics.derive import derive
 from rigidsym.mechanics.prove import Prover
 from rigidsym.models.parametrisations import SHUSTER, UnitQuaternion
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import rotation_of
+from rigidsym.models.rotation import RotationModel, rotation_of
 
 LONGEST_CHAIN = 4  # turns whose product is written out: its terms double with each
 P = formula(r"\mathbf{p}")

@@ -20,8 +20,7 @@ from rigidsym.mechanics.conversions.function import NamedValues, Vector, nearest
 from rigidsym.mechanics.conversions.inverse import Claim, InverseRule, claim, in_order
 from rigidsym.mechanics.conversions.three_turns import ACROSS, at_poles, outer_angles
 from rigidsym.mechanics.conversions.unit_quaternions import half_turn, product, shepperd
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import hat
+from rigidsym.models.rotation import RotationModel, hat
 
 _HALF = r"\frac{\beta'}{2}"
 _COMPONENTS = (

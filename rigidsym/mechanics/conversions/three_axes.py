@@ -12,8 +12,7 @@ from rigidsym.mechanics.conversions.inverse import Claim, claim, vanishing
 from rigidsym.mechanics.conversions.unit_quaternions import half_turn, in_halves, product
 from rigidsym.mechanics.derivation import Proof
 from rigidsym.models.chain import axis_turn, chain
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import time_function
+from rigidsym.models.rotation import RotationModel, time_function
 
 
 def of_any_axes(solved: int, *, has_two_sets: bool) -> tuple[Proof, ...]:

@@ -33,8 +33,7 @@ from rigidsym.mechanics.conversions.three_turns import (
 )
 from rigidsym.mechanics.conversions.unit_quaternions import QUATERNION, half_turn, product
 from rigidsym.mechanics.derivation import Proof
-from rigidsym.models.rotation import Citation, RotationModel, Turn
-from rigidsym.models.so3 import rodrigues
+from rigidsym.models.rotation import Citation, RotationModel, Turn, rodrigues
 
 WITTENBURG_LILOV_2003 = Citation(
     text="J. Wittenburg, L. Lilov, Decomposition of a Finite Rotation into Three Rotations about "

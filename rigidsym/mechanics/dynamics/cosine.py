@@ -16,7 +16,7 @@ from rigidsym.mechanics.derivation import Consequence, Proof
 from rigidsym.mechanics.dynamics.reduced import Reduced
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import dynamics as claims
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME
 
 _SINE = sp.Dummy("sine")
 _LAMBDA, _FIRST, _SECOND, _THIRD, _MODULUS = sp.symbols("lambda u_1 u_2 u_3 k")

@@ -25,8 +25,7 @@ from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.energy import ROTATIONAL
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import TIME, hat
+from rigidsym.models.rotation import TIME, RotationModel, hat
 
 
 class EulerEquations(Flow):

@@ -36,8 +36,7 @@ from rigidsym.mechanics.quantities.table import (
 )
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import Forces
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME, RotationModel
 
 
 class StateBlock(NamedTuple):

@@ -15,7 +15,7 @@ from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import dynamics as claims
 from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
 from rigidsym.models.forces import OMEGA_BODY
-from rigidsym.models.so3 import TIME, elementary
+from rigidsym.models.rotation import TIME, elementary
 
 _LENGTH = claims.LENGTH_SYMBOL
 

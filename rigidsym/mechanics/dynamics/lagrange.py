@@ -29,8 +29,7 @@ from rigidsym.mechanics.dynamics.flow import turned
 from rigidsym.mechanics.kinematics.workspace import Values
 from rigidsym.models.body import RigidBody
 from rigidsym.models.forces import OMEGA_BODY, Forces, MovingPart
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import TIME, as_typed
+from rigidsym.models.rotation import TIME, RotationModel, as_typed
 
 
 class Moving(NamedTuple):

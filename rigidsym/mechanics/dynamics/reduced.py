@@ -18,7 +18,7 @@ from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Consequence, Proof
 from rigidsym.mechanics.prove import identity
 from rigidsym.mechanics.quantities import dynamics as claims
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME
 
 _LONGEST = 40  # operations of a condition for steady motion that tells a reader anything
 

@@ -25,8 +25,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from rigidsym.mechanics.derivation import Definition
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME, RotationModel
 
 Vector: TypeAlias = sp.ImmutableMatrix  # (3, 1)
 Matrix: TypeAlias = sp.ImmutableMatrix  # (3, 3)

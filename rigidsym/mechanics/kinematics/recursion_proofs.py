@@ -15,7 +15,7 @@ from sympy.core.function import AppliedUndef
 from rigidsym.algebra.codec import Codec, codec_for
 from rigidsym.algebra.matrix import RingMatrix, hat
 from rigidsym.mechanics.kinematics.recursion import OrthogonalRows, Recursion
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME
 
 Encoded = tuple[Codec, RingMatrix]
 Equal = tuple[Iterable[sp.Expr], Iterable[sp.Expr]]  # entries that are to be equal, one by one

@@ -30,8 +30,7 @@ from rigidsym.mechanics.kinematics.recursion_proofs import (
 from rigidsym.mechanics.prove import Prover, consequence, identity
 from rigidsym.mechanics.quantities.kinematics import BODY, IS_OPERATOR, ROTATION, SPACE
 from rigidsym.mechanics.quantities.table import arguments_of
-from rigidsym.models.rotation import RotationModel
-from rigidsym.models.so3 import hat
+from rigidsym.models.rotation import RotationModel, hat
 
 
 class TurnByTurn(Kinematics):

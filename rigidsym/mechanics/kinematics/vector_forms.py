@@ -20,7 +20,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.mechanics.derivation import VectorForm, VectorTerm
 from rigidsym.mechanics.prove import Prover
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME
 
 LENGTH = sp.Symbol("n", positive=True)  # |v|
 

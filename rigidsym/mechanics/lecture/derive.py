@@ -25,7 +25,7 @@ from rigidsym.mechanics.lecture.equations import STATEMENTS
 from rigidsym.mechanics.particles import IN_BODY, MASS, ParticleSums
 from rigidsym.mechanics.prove import Conditions, Prover
 from rigidsym.models.parametrisations import UnitQuaternion
-from rigidsym.models.so3 import TIME, time_function
+from rigidsym.models.rotation import TIME, time_function
 
 _WHOLE = sp.Symbol("M")
 _PLACE = tuple(time_function(f"x_{k}") for k in (1, 2, 3))

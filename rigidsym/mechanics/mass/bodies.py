@@ -14,7 +14,7 @@ from rigidsym.mechanics.mass.moments import Moments, moments_of
 from rigidsym.mechanics.mass.numbers import in_parameters, is_measured
 from rigidsym.models.body import BodyDescription, Parameter, RigidBody, described
 from rigidsym.models.distribution import KEYS, Distribution, Solid
-from rigidsym.models.so3 import symbolic
+from rigidsym.models.rotation import symbolic
 from rigidsym.models.solids import shape_of, shaped
 
 _TITLES = {

@@ -22,8 +22,7 @@ from rigidsym.formula.reader import formula, named
 from rigidsym.formula.tree import NOTHING, Formula
 from rigidsym.mechanics.derivation import Argument, Quantity, Shape
 from rigidsym.models.forces import OMEGA_BODY
-from rigidsym.models.rotation import SOURCES, RotationModel
-from rigidsym.models.so3 import TIME, time_function
+from rigidsym.models.rotation import SOURCES, TIME, RotationModel, time_function
 
 if TYPE_CHECKING:
     from rigidsym.models.body import RigidBody

@@ -19,7 +19,7 @@ from rigidsym.formula.scalars import formula_of
 from rigidsym.mechanics.derivation import Derivation
 from rigidsym.models.example import OMEGA_COMPONENTS, Example, initial_values
 from rigidsym.models.forces import OMEGA_BODY, Forces
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME
 from rigidsym.notes.figure.body_mesh import evaluator
 from rigidsym.notes.figure.camera import STANDARD, Point, Vector, unit
 from rigidsym.notes.figure.chart import Range, chart, circle, in_a_row, on_ellipsoid

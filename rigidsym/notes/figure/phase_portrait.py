@@ -16,7 +16,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import Derivation
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME
 from rigidsym.notes.figure.body_mesh import evaluator
 from rigidsym.notes.figure.camera import Point
 from rigidsym.notes.figure.chart import mark

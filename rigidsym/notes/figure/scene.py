@@ -21,8 +21,7 @@ from rigidsym.formula.letters import Letters
 from rigidsym.formula.reader import formula
 from rigidsym.formula.scalars import formula_of
 from rigidsym.formula.tree import Formula, Numeral, Symbol
-from rigidsym.models.rotation import RotationModel, Turn
-from rigidsym.models.so3 import AXES
+from rigidsym.models.rotation import AXES, RotationModel, Turn
 from rigidsym.notes.figure.camera import (
     STANDARD,
     Camera,

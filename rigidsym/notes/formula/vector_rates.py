@@ -10,7 +10,7 @@ from rigidsym.formula.reader import formula
 from rigidsym.formula.tree import Formula
 from rigidsym.mechanics.derivation import VectorForm, VectorTerm
 from rigidsym.mechanics.kinematics.vector_forms import ALONG, CROSS, TWICE, V_DOT, V
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME
 
 _V_DDOT = formula(r"\ddot{\mathbf{v}}")
 _RATES: Mapping[Formula, tuple[Formula, ...]] = {  # of each vector, as a sum

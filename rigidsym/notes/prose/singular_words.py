@@ -22,7 +22,7 @@ from rigidsym.mechanics.derivation import (
 from rigidsym.mechanics.quantities.kinematics import BODY, SPACE
 from rigidsym.notes.document.document import Code, Draft, Text, listed, written
 from rigidsym.notes.formula.derivation_letters import letters_of
-from rigidsym.notes.prose.turn_words import are_euler_angles
+from rigidsym.notes.prose.rotation_words import are_euler_angles
 
 _AT_ONE_DEGREE = round(1 / sin(radians(1)))  # the determinant of Euler angles is a sine or cosine
 _MOST_POINTS = 8  # that are told of one by one

@@ -40,8 +40,7 @@ from rigidsym.mechanics.quantities.kinematics import (
 from rigidsym.mechanics.quantities.mass import DIRECTION, MASS, OF_BODY_ALONE, POINT
 from rigidsym.mechanics.quantities.table import is_quaternion
 from rigidsym.models.body import ABOUT_FIXED_POINT
-from rigidsym.models.rotation import SOURCES, Citation, Turn
-from rigidsym.models.so3 import AXES, hat
+from rigidsym.models.rotation import AXES, SOURCES, Citation, Turn, hat
 from rigidsym.notes.document.document import (
     Cited,
     Code,

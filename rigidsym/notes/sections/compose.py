@@ -38,14 +38,20 @@ from rigidsym.notes.document.document import (
     Text,
 )
 from rigidsym.notes.formula.derivation_letters import entries_of, letters_of
-from rigidsym.notes.prose.algebra_words import is_told, rates_in_words, rotation_in_words
+from rigidsym.notes.prose.rotation_words import (
+    angles_in_words,
+    figure_of,
+    is_told,
+    rates_in_words,
+    rotation_in_words,
+    sum_in_words,
+)
 from rigidsym.notes.prose.singular_words import (
     failures,
     meaning,
     measured,
     singular_title,
 )
-from rigidsym.notes.prose.turn_words import angles_in_words, figure_of, sum_in_words
 from rigidsym.notes.prose.words import (
     ACTIVE_MOTION,
     PASSIVE_MOTION,

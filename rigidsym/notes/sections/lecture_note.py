@@ -23,7 +23,7 @@ from rigidsym.notes.document.document import (
     said,
 )
 from rigidsym.notes.formula.summands import sums
-from rigidsym.notes.prose.turn_words import PROPER, names_of_angles
+from rigidsym.notes.prose.rotation_words import PROPER, names_of_angles
 from rigidsym.notes.prose.words import with_symbols
 from rigidsym.notes.sections.body_note import BodyComposer
 from rigidsym.notes.sections.boxed import RESULTS

@@ -16,7 +16,7 @@ from rigidsym.mechanics.derivation import Derivation
 from rigidsym.mechanics.quantities.dynamics import LETTERS
 from rigidsym.models.example import OMEGA_COMPONENTS, Example, initial_values
 from rigidsym.models.forces import OMEGA_BODY, MovingPart
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME
 from rigidsym.notes.document.document import (
     Equation,
     EquationRow,

@@ -7,10 +7,10 @@ import pytest
 import sympy as sp
 
 import rigidsym as rs
-from rigidsym.models.so3 import TIME
+from rigidsym.models.rotation import TIME
 from rigidsym.notes.document.document import EquationRow
 from rigidsym.notes.formula.derivation_letters import letters_of
-from rigidsym.notes.prose.algebra_words import is_told, rates_in_words, rotation_in_words
+from rigidsym.notes.prose.rotation_words import is_told, rates_in_words, rotation_in_words
 from rigidsym.notes.prose.vector_words import sum_of_vectors
 
 COEFFICIENTS = {  # of v × x′ and v × (v × x′), for the length n of the vector
