@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ import sympy as sp
 import rigidsym as rs
 from helpers.command import call
 from rigidsym.errors import CheckError
+from rigidsym.models.body import given_inertia
 from rigidsym.models.rotation_text import rotation_from
 from rigidsym.notes.formats.record import record
 from rigidsym.tools.certificate import checker
@@ -229,10 +231,22 @@ def test_a_quantity_that_is_printed_twice_is_refused():
     wrong = copy.deepcopy(printed(found, "angular_velocity_space"))
     wrong["expression"][0] = "phi_dot"
     found["quantities"].insert(0, wrong)
-    with pytest.raises(
-        ValueError, match="angular_velocity_space: its cofactors do not prove entry 1"
-    ):
+    with pytest.raises(ValueError, match="two claims have one name"):
         checker.verify(found, certificate)
+
+
+def test_a_quantity_with_the_name_of_a_claim_is_refused():
+    found, certificate = zxz()
+    printed(found, "spin_matrix")["name"] = "R is a rotation"
+    with pytest.raises(ValueError, match="two claims have one name"):
+        checker.verify(found, certificate)
+
+
+def test_the_root_of_a_fraction_is_not_that_of_a_whole_number():
+    # sqrt(9/2) was read as 2
+    known = checker.Language(record_of("ZXZ"), {})
+    assert str(known.read("sqrt(9/2)")) == "1*sqrt(9/2)"
+    assert str(known.read("sqrt(6)")) == "1*sqrt(2)*sqrt(3)"
 
 
 def test_rates_in_another_order_are_refused():
@@ -335,7 +349,7 @@ def top() -> tuple[dict[str, Any], dict[str, Any]]:
     A, C = sp.symbols("A C", positive=True)
     motion = rs.derive(
         "ZXZ",
-        [*BASIC[:2], *OF_MOTION, *NOT_COVERED],
+        [*BASIC[:2], *OF_MOTION, *PRINCIPAL, *NOT_COVERED],
         body=rs.principal_moments(A, A, C),
         potential="m*g*l*cos(theta)",
         forces={"psi": "-k*psi_dot"},
@@ -346,12 +360,13 @@ def top() -> tuple[dict[str, Any], dict[str, Any]]:
 
 OF_MOTION = ("potential_energy", "lagrangian", "energy", "generalised_momenta", "mass_matrix")
 OF_MOTION += ("bias_vector", "accelerations", "coriolis_matrix", "hamiltonian")
-NOT_COVERED = ("principal_moments", "principal_axes")
+PRINCIPAL = ("principal_moments", "principal_axes")
+NOT_COVERED = ("inertia_ellipsoid",)
 
 
 def test_lagrange_s_equations_are_proved(top):
     found, certificate = top
-    proved = {"R is a rotation", *BASIC[:2], *OF_MOTION, "constant momentum_phi"}
+    proved = {"R is a rotation", *BASIC[:2], *OF_MOTION, *PRINCIPAL, "constant momentum_phi"}
     assert {*checker.verify(found, certificate)} == proved
     assert {*certificate["uncovered"]} == {*NOT_COVERED}
 
@@ -385,6 +400,76 @@ def test_a_wrong_equation_of_motion_is_refused(top, quantity, before, after):
     spoil(found, quantity, before, after)
     with pytest.raises(ValueError, match="its cofactors do not prove"):
         checker.verify(found, certificate)
+
+
+def principal(*rows: tuple[Any, Any, Any], rotation: str = "ZXZ") -> dict[str, Any]:
+    """The record of a body with a given tensor, with its principal axes and moments."""
+    body = given_inertia(sp.Matrix(rows), mass=sp.Symbol("M", positive=True))
+    return json.loads(json.dumps(record(rs.derive(rotation, PRINCIPAL, body=body), {})))
+
+
+@pytest.fixture(scope="module")
+def oblique() -> dict[str, Any]:
+    """Moments 6 and 6 ± 2√2 about axes that lie between those of the description."""
+    return principal((6, -2, 0), (-2, 6, -2), (0, -2, 6))
+
+
+def times(factor: str, rows: list[list[str]], column: int) -> None:
+    for row in rows:
+        row[column] = f"{factor}*({row[column]})"
+
+
+def stretched(axes: list[list[str]], _: list[str]) -> None:
+    times("2", axes, 0)
+    times("1/2", axes, 1)
+
+
+def unturned(axes: list[list[str]], moments: list[str]) -> None:
+    axes[:] = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
+    moments[:] = ["6", "6", "6"]
+
+
+WRONG_AXES: dict[str, Callable[[Any, Any], None]] = {
+    "one entry has the other sign": lambda axes, _: times("-1", axes[1:2], 0),
+    "they are left-handed": lambda axes, _: times("-1", axes, 0),
+    "right-handed eigenvectors with a volume of 1, not unit vectors": stretched,
+    "orthonormal, but no eigenvectors": unturned,
+    "moments are exchanged": lambda _, moments: moments.reverse(),
+    "a moment is doubled": lambda _, moments: times("2", [moments], 2),
+}
+
+
+def test_principal_axes_and_moments_are_proved(oblique):
+    certificate = json.loads(certificate_of(oblique).json)
+    assert {*PRINCIPAL} < {*checker.verify(oblique, certificate)}
+    assert certificate["uncovered"] == []
+    del certificate["claims"]["principal_axes"]
+    with pytest.raises(KeyError, match="principal_moments"):
+        checker.verify(oblique, certificate)
+
+
+@pytest.mark.parametrize("fault", WRONG_AXES)
+def test_wrong_principal_axes_or_moments_are_refused(oblique, fault):
+    found = copy.deepcopy(oblique)
+    certificate = json.loads(certificate_of(found).json)
+    axes, moments = (printed(found, name)["expression"] for name in reversed(PRINCIPAL))
+    WRONG_AXES[fault](axes, moments)
+    with pytest.raises(CheckError, match="principal_axes: no cofactors were found"):
+        certificate_of(found)
+    with pytest.raises(checker.BROKEN):
+        checker.verify(found, certificate)
+
+
+def test_principal_axes_in_symbols_are_proved_also_by_coq(tmp_path):
+    # a root holds the inverse of another one, which comes back after it was cleared
+    a, b, c, d = sp.symbols("a b c d", positive=True)
+    found = principal((a, d, 0), (d, b, 0), (0, 0, c))
+    certificate = certificate_of(found)
+    assert {*PRINCIPAL} < {*checker.verify(found, json.loads(certificate.json))}
+    assert run_coq(tmp_path, coq(certificate)) == 0
+    # one point in two has a root of ½ + (a − b)/2n; with nine entries of R only one was tried
+    of_entries = principal((a, d, 0), (d, b, 0), (0, 0, c), rotation="direction_cosines")
+    assert {*PRINCIPAL} < {*certificate_of(of_entries).claims}
 
 
 def test_a_torque_along_the_axes_of_the_body_is_proved_to_act():
@@ -459,9 +544,10 @@ def test_a_constant_that_is_no_energy_is_not_called_the_energy(top, expression):
 def test_euler_s_equations_of_a_quaternion_have_a_certificate():
     # their energy holds Ω′, which was compared with the energy in the rates, and refused
     body = rs.principal_moments(*sp.symbols("A B C", positive=True))
-    motion = rs.derive("unit_quaternion", ["rotation_matrix", "energy"], body=body, potential=0)
+    asked = ["rotation_matrix", *PRINCIPAL, "energy"]
+    motion = rs.derive("unit_quaternion", asked, body=body, potential=0)
     certificate = certificate_of(json.loads(json.dumps(record(motion, {}))))
-    assert "rotation_matrix" in certificate.claims
+    assert {"rotation_matrix", *PRINCIPAL} <= {*certificate.claims}
     assert {"energy", "constant energy"} <= {*certificate.uncovered}
 
 

@@ -19,6 +19,7 @@ from rigidsym.tools.certificate.cofactors import Division, UnfinishedError
 from rigidsym.tools.certificate.point import point_of
 
 SCHEMA, SCHEMA_VERSION = "rigidsym.certificate", 2
+_STATED_TOGETHER = ("principal_moments", "principal_axes")
 Equation = tuple[Poly, Poly]
 Terms = Sequence[Sequence[str | int]]  # coefficients, each with the places of its names
 
@@ -109,7 +110,9 @@ def _claims(record: Mapping[str, Any]) -> tuple[Language, dict[str, list[Equatio
     while (missing := _missing(record, parts, names)) in names:
         names.remove(missing)
     if missing:
-        names = [name for name in names if not _missing(record, parts, [name])]
+        alone = [name for name in names if not _missing(record, parts, [name])]
+        both = [*alone, *(name for name in names if name in _STATED_TOGETHER)]
+        names = alone if _missing(record, parts, both) else both
     known = Language(record, parts)
     return known, stated(record, known, names), [name for name in asked if name not in names]
 

@@ -33,10 +33,10 @@ BROKEN = (*ERRORS, RecursionError, MemoryError)  # raised for what is refused
 RATES = "rate_matrix", "inverse_rate_matrix", "rates_from_angular_velocity"  # hold no rates
 
 
-class Poly:
-    """Coefficients of monomials; a monomial is its names in order, as often as they are factors."""
-
-    def __init__(self, terms: Mapping[tuple[str, ...], Fraction | int]) -> None:
+class Poly:  # coefficients of monomials, which are names in order, as often as they are factors
+    def __init__(self, terms: Mapping[tuple[str, ...], Fraction | int] | str) -> None:
+        if isinstance(terms, str):  # a name
+            terms = {(terms,): 1}
         self.terms = {m: c for m, c in terms.items() if c}
         self.names = {name for m in self.terms for name in m}
 
@@ -60,9 +60,7 @@ class Poly:
         return Poly({m[:place] + m[place + 1 :]: c for m, (place, c) in whole.items()})
 
 
-class Array:
-    """Rows of polynomials; a vector is a column, and a scalar one entry."""
-
+class Array:  # rows of polynomials; a vector is a column, and a scalar one entry
     def __init__(self, rows: Iterable[Iterable[Poly]]) -> None:
         self.rows = [list(row) for row in rows]
         self.entries = [entry for row in self.rows for entry in row]
@@ -81,14 +79,14 @@ class Array:
         pairs = [[zip(row, column, strict=True) for column in other.T.rows] for row in self.rows]
         return Array([sum((a * b for a, b in pair), ZERO) for pair in row] for row in pairs)
 
+    def hat(self) -> Array:  # C(v) of a vector v, the operator v ×
+        x, y, z = self.entries
+        return Array([[ZERO, z * -1, y], [z, ZERO, x * -1], [y * -1, x, ZERO]])
 
-def letter(name: str) -> Poly:
-    return Poly({(name,): 1})
-
-
-def hat(vector: Array) -> Array:  # C(v), the operator v ×
-    x, y, z = vector.entries
-    return Array([[ZERO, z * -1, y], [z, ZERO, x * -1], [y * -1, x, ZERO]])
+    def rotation_claims(self) -> list[tuple[Poly, Poly]]:  # R Rᵀ = 1 and det R = 1
+        lengths = zip((self * self.T).entries, UNITS.entries, strict=True)
+        one, two, three = (Array([row]) for row in self.rows)
+        return [*lengths, ((one * two.hat() * three.T).entries[0], ONE)]
 
 
 ZERO, ONE, HALF = Poly({}), Poly({(): 1}), Fraction(1, 2)
@@ -104,7 +102,7 @@ class Language:
         self.meaning, self.momenta = dict[str, Poly](), dict[str, Poly]()  # of names, of p
         self.flow = dict.fromkeys(("pi", *self.groups.get("parameters", ())), ZERO)  # d/dt
         self.rates, self.second = ([q + d for q in self.groups["q"]] for d in ("_dot", "_ddot"))
-        rates = map(letter, self.rates + self.second)
+        rates = map(Poly, self.rates + self.second)
         self.flow |= zip(self.groups["q"] + self.rates, rates, strict=True)
 
     def matrix(self, given: Any) -> Array:
@@ -128,7 +126,7 @@ class Language:
             case ast.Constant(value=int(value)):
                 found = ONE * value
             case ast.Name(id=name):
-                found = self.meaning.get(name, letter(name))
+                found = self.meaning.get(name, Poly(name))
             case ast.Call(func=ast.Name(id="sqrt"), args=[argument]):
                 found = self.root(self.read(argument))
             case ast.Call(func=ast.Name(id=name), args=[argument]):
@@ -144,24 +142,22 @@ class Language:
         self.flow |= dict.fromkeys(x.names, rate)
         return x
 
-    def inverse(self, value: Poly) -> Poly:
-        """1/value, of which the point shows that it is not zero."""
+    def inverse(self, value: Poly) -> Poly:  # 1/value; the point shows that value is not zero
         if not value.names:
             return ONE * (1 / Fraction(value.terms.get((), 0)))
         if f"sqrt({value})" in self.flow:  # of which the inverse is simpler
             return self.inverse(self.root(value)) * self.inverse(self.root(value))
-        x = letter(f"1/({value})")
+        x = Poly(f"1/({value})")
         return self._new(x, x * value + ONE * -1, x * x * self.rate(value) * -1)
 
     def root(self, value: Poly) -> Poly:
         """The positive square root; of a whole number, the product of the roots of its factors."""
-        whole = 0 if value.names else int(value.terms[()])
-        for k in range(2, min(whole, MOST)):
+        whole = 0 if value.names else value.terms[()]
+        for k in range(2, min(int(whole), MOST)):
             if whole % k == 0:
                 return self.root(ONE * k) * self.root(ONE * (whole // k))
-        x, y = letter(f"sqrt({value})"), letter(f"1/(1*sqrt({value}))")
-        self._new(x, x * x + value * -1, self.rate(value) * y * HALF)
-        self.inverse(x)  # which the rate needs
+        x, y = Poly(f"sqrt({value})"), Poly(f"1/(1*sqrt({value}))")
+        self.inverse(self._new(x, x * x + value * -1, self.rate(value) * y * HALF))  # for the rate
         return x
 
     def turn(self, angle: Poly) -> tuple[Poly, Poly]:
@@ -172,7 +168,7 @@ class Language:
             count, sign = int(times / part), 1 if times > 0 else -1
             if count * part != times or abs(count) > MOST:
                 raise ValueError(f"cannot take the cosine of {angle}")
-            one, other = letter(f"cos({part}*{name})"), letter(f"sin({part}*{name})")
+            one, other = Poly(f"cos({part}*{name})"), Poly(f"sin({part}*{name})")
             relation, rate = one * one + other * other + ONE * -1, self.flow[name] * part
             self._new(one, relation, other * rate * -1)
             self._new(other, relation, one * rate)
@@ -180,8 +176,7 @@ class Language:
                 c, s = c * one + s * other * -sign, c * other * sign + s * one
         return c, s
 
-    def rate(self, value: Poly) -> Poly:
-        """d/dt by the chain rule; raises KeyError for a letter whose rate is not known."""
+    def rate(self, value: Poly) -> Poly:  # d/dt by the chain rule; KeyError for an unknown letter
         return sum((value.derivative(n) * self.flow[n] for n in sorted(value.names)), ZERO)
 
     def d(self, x: Array) -> Array:
@@ -200,7 +195,7 @@ class Language:
             name, inside = turn.removesuffix(")").split("(", 1)
             form = FORMS[name].replace("N", SQUARE).format(*(f"({p})" for p in inside.split(",")))
             *v, c, s = map(self.read, form.split(";"))
-            axis = hat(Array([v]))
+            axis = Array([v]).hat()
             found = found * (UNITS + axis * s + axis * axis * (ONE + c * -1))
         return found
 
@@ -210,6 +205,9 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
     R, d, slope, read = known.rotation(record["rotation"]), known.d, known.slope, known.matrix
     texts = [(q["name"], q["expression"]) for q in record["quantities"]]
     texts += [("constant " + f["name"], f["expression"]) for f in record["first_integrals"]]
+    if len({"R is a rotation", *(printed := dict(texts))}) <= len(texts):
+        raise ValueError("two claims have one name")
+    found = {"R is a rotation": R.rotation_claims()}
     shown = R.T if record["presentation"] == "passive" else R
     B = {"rotation_matrix": shown, "rotation_rate": d(shown), "spin_matrix": d(shown) * shown.T}
     for f, spin in ("space", d(R) * R.T), ("body", R.T * d(R)):  # C(Ω), C(Ω′)
@@ -218,11 +216,11 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
         B[f"rate_matrix_{f}"], B[f"inverse_rate_matrix_{f}"] = w, UNITS
         B[f"rates_from_angular_velocity_{f}"] = omega = read([f"omega_{f}_{k}" for k in "123"])
     A = {f"{k}_{f}": slope(B[f"rate_matrix_{f}"]) for k in RATES[1:] for f in ("space", "body")}
-    w = read(dict(texts)["angular_velocity_body"]) if "angular_velocity_body" in names else w
+    w = read(printed["angular_velocity_body"]) if "angular_velocity_body" in names else w
     if "body" in record:  # w, as printed if this is proved as well, and omega are those of the body
         m, at, tensor = (read(record["body"][g]) for g in ("mass", "centre", "inertia"))
         r, v, n, p, torque = (read(each.split()) for each in VECTORS)
-        arm, orbital, spun = hat(p + at * -1), hat(r) * v * m, tensor * w
+        arm, orbital, spun = (p + at * -1).hat(), r.hat() * v * m, tensor * w
         moving, turning = v.T * v * m * HALF, w.T * spun * HALF
         B["mass"], B["centre_of_mass"], B["inertia_tensor"] = m, at, tensor
         B["inertia_tensor_point"] = about = tensor + arm.T * arm * m.entries[0]
@@ -230,8 +228,13 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
         B["translational_energy"], B["rotational_energy"] = moving, turning
         B["kinetic_energy"], B["angular_momentum"] = moving + turning, orbital + R * spun
         B["angular_momentum_rotation_body"], B["angular_momentum_rotation"] = spun, R * spun
-        B["angular_acceleration_from_torque"] = torque + hat(omega) * tensor * omega * -1
+        B["angular_acceleration_from_torque"] = torque + omega.hat() * tensor * omega * -1
         A["angular_acceleration_from_torque"], B["angular_momentum_centre"] = tensor, orbital
+        if "principal_axes" in names and "principal_moments" in names:  # I e = m e
+            axes, moments = read(printed["principal_axes"]), read(printed["principal_moments"])
+            scaled = [e * m for row in axes.rows for e, m in zip(row, moments.entries, strict=True)]
+            pairs = zip((tensor * axes).entries, scaled, strict=True)
+            found["principal_axes"] = found["principal_moments"] = [*axes.rotation_claims(), *pairs]
     if "motion" in record:  # Lagrange's equations are 2 dp/dt − ∂(dL/dt)/∂q̇ = M q̈ + h = Q
         u, forces, torque = (read(record["motion"][g]) for g in ("potential", "forces", "torque"))
         forces += slope(w).T * torque
@@ -246,11 +249,8 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
         B["constant energy"] = read([known.rates]) * lacking
         for q, row, each in zip(known.groups["q"], lacking.rows, p.entries, strict=True):
             B[f"constant momentum_{q}"], known.momenta[f"p_{q}"] = Array([row]), each
-    volume = Array([R.rows[0]]) * hat(Array([R.rows[1]])) * Array([R.rows[2]]).T
-    lengths = zip((R * R.T).entries, UNITS.entries, strict=True)
-    found = {"R is a rotation": [*lengths, (volume.entries[0], ONE)]}
     steady = {"sqrt", "cos", "sin", "tan", "cot", *known.flow} - {*known.rates}
-    for name, text in ((n, text) for n, text in texts if n in names):
+    for name, text in ((n, text) for n, text in texts if n in names and n not in found):
         kind, _, frame = name.rpartition("_")
         known.meaning = known.momenta if name == "hamiltonian" else {}
         used = {getattr(n, "id", "pi") for n in ast.walk(ast.parse(str(text).replace("'", "")))}
@@ -260,7 +260,7 @@ def stated(record: Mapping[str, Any], known: Language, names: Iterable[str]) -> 
         x = d(read(text)) if name.startswith("constant ") else read(text)
         x = x * read(known.rates) if kind == RATES[0] else x
         x = A[name] * x if name in A else x
-        found[name] = [*found.get(name, ()), *zip(x.entries, B[name].entries, strict=True)]
+        found[name] = [*zip(x.entries, B[name].entries, strict=True)]
     return found
 
 
@@ -291,8 +291,8 @@ if __name__ == "__main__":
     refused = 0
     for path in sorted(p for folder in sys.argv[1:] for p in Path(folder).rglob("*.cert.json")):
         try:
-            record = json.loads(path.with_name(path.name.replace(".cert", "")).read_text("utf-8"))
-            certificate = json.loads(path.read_text("utf-8"))
+            files = path.with_name(path.name.replace(".cert", "")), path
+            record, certificate = (json.loads(file.read_text("utf-8")) for file in files)
             print(f"{path}: proved for R by {record['rotation']}: {verify(record, certificate)}")
         except (*BROKEN, OSError) as error:
             refused = 1

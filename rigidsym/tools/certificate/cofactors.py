@@ -64,19 +64,20 @@ class Division:
 
     def cofactors(self, poly: Poly) -> Cofactors:
         """Raises CheckError for a polynomial that is no sum of multiples of the relations."""
-        rest, found, factor = self.element(poly), {}, self.ring.one
-        for place, relation, divisor in self._inverses:
-            power, cleared, cofactor = self._cleared(rest, place, self.element(divisor))
-            found[relation] = factor * cofactor
-            rest, factor = cleared, factor * self.ring.gens[place] ** power
-        quotients, left = self._divided(rest)
-        if left and not self._is_complete:
-            self._basis, self._is_complete = _completed(self._basis), True
-            quotients, left = self._divided(rest)
-        if left:
-            raise CheckError(f"no cofactors were found; {len(left)} terms are left")
-        for quotient, (_, combination) in zip(quotients, self._basis, strict=True):
-            _add(found, factor * quotient, combination)
+        rest, found, factor = self.element(poly), dict[int, PolyElement](), self.ring.one
+        while rest:  # a root may hold an inverse, and bring it back
+            before = rest
+            for place, relation, divisor in self._inverses:
+                power, rest, cofactor = self._cleared(rest, place, self.element(divisor))
+                _add(found, factor, {relation: cofactor})
+                factor = factor * self.ring.gens[place] ** power
+            quotients, rest = self._divided(rest)
+            for quotient, (_, combination) in zip(quotients, self._basis, strict=True):
+                _add(found, factor * quotient, combination)
+            if rest == before:
+                if self._is_complete:
+                    raise CheckError(f"no cofactors were found; {len(rest)} terms are left")
+                self._basis, self._is_complete = _completed(self._basis), True
         return {place: cofactor for place, cofactor in sorted(found.items()) if cofactor}
 
     def _divided(self, element: PolyElement) -> tuple[list[PolyElement], PolyElement]:

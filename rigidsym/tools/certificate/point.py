@@ -15,7 +15,6 @@ from rigidsym.tools.certificate.checker import (
     Array,
     Language,
     Poly,
-    hat,
 )
 
 _TRIES = 99
@@ -24,8 +23,8 @@ _TRIES = 99
 def point_of(known: Language) -> dict[str, int]:
     """A value for each name in the relations; raises CheckError if none is found."""
     draw = Random(18)  # the same file every time
-    starts = [_orthogonal(known)] if len(known.groups["q"]) == 9 else []
-    for start in (*starts, *({} for _ in range(_TRIES))):
+    starts = [_orthogonal(known), {}] if len(known.groups["q"]) == 9 else [{}]
+    for start in starts * _TRIES:
         at = dict(start)
         if all(_satisfied(relation, known, at, draw) for relation in known.relations.values()):
             return at
@@ -51,7 +50,7 @@ def _satisfied(relation: Poly, known: Language, at: dict[str, int], draw: Random
 def _orthogonal(known: Language) -> dict[str, int]:
     """Nine entries of a rotation, and of dR/dt = R C(Ω′) and its derivative."""
     v, omega, alpha = (
-        hat(Array([ONE * k] for k in entries)) for entries in ((1, 2, 3), (2, 3, 5), (7, 1, 4))
+        Array([ONE * k] for k in entries).hat() for entries in ((1, 2, 3), (2, 3, 5), (7, 1, 4))
     )
     R = UNITS + (v + v * v) * Fraction(2, 15)  # of the quaternion 1 + (1, 2, 3)
     return {
