@@ -81,12 +81,14 @@ def _record_of(file: Path) -> Path:
 def _is_ours(file: Path) -> bool:
     """Whether this is a record, a certificate, or NAME/NAME.json that cannot be read."""
     content = content_of(file)
-    is_damaged = file.is_file() and not content and file.stem == file.parent.name
+    is_damaged = (
+        file.is_file() and not content and file.stem == file.parent.name and bool(_damage(file))
+    )
     return is_damaged or content.get("schema") in (SCHEMA, certificate.SCHEMA)
 
 
 def _damage(record: Path) -> str:
-    """Why a record has no content."""
+    """Why a record cannot be read; empty for another file in JSON."""
     if not record.exists():
         return "missing"
     try:
@@ -99,7 +101,7 @@ def _damage(record: Path) -> str:
     except (ValueError, RecursionError):
         why = "it is not valid JSON; derive it again"
     else:
-        why = "it is not a record"
+        return ""
     return f"cannot be read: {why}"
 
 
@@ -107,7 +109,7 @@ def _compare(record: Path) -> Iterator[Finding]:
     content = content_of(record)
     version = content.get("schema_version")
     if not content:
-        yield Finding(path=record, problem=_damage(record))
+        yield Finding(path=record, problem=_damage(record) or "not a record")
         return
     if version != SCHEMA_VERSION:
         yield Finding(path=record, problem=f"schema version {version}, expected {SCHEMA_VERSION}")

@@ -20,7 +20,6 @@ from rigidsym.spec.derivation_spec import DerivationSpec
 from rigidsym.system.resources import languages, overridden_by
 
 MOST_LINES = 150  # that a terminal shows by default
-_LANGUAGES = languages()
 _LEAN: dict[str, str | bool] = {"precision": "double", "arrays": False, "libm": True}
 
 
@@ -186,7 +185,7 @@ class LanguageOptions(SpecOptions):
 
     language: str | None = option(
         "--language",
-        type=click.Choice(_LANGUAGES),
+        type=click.Choice(languages()),
         help="Language of the note.  [default: en]",
     )
 

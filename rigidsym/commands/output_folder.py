@@ -99,6 +99,12 @@ def _report_other_files(output: Output, folder: Path) -> None:
     if before.models != now.models:
         message(f"overwriting {folder}, which held a different rotation (use --out to keep both)")
     left = list(_kept(_outputs(before), before, now, folder))
+    if CERTIFICATE in left:
+        left.remove(CERTIFICATE)
+        message(
+            f"{folder} keeps certificates of another derivation, which `check` refuses; delete "
+            "them, or derive with --certificates"
+        )
     if left:
         message(
             f"{folder} keeps files made with other options, "

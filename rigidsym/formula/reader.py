@@ -349,8 +349,3 @@ def sentence(typed: str, *spans: _Span) -> tuple[str | Formula | _Span, ...]:
 def text_of(words: Iterable[Any]) -> str:
     """The sentence on one line of Unicode; each span is words, or has a `text`."""
     return "".join(span if isinstance(span, str) else span.text for span in words)
-
-
-def by_text(formulas: Iterable[Formula]) -> dict[str, Formula]:
-    """Formulas by their plain text, as it may stand in a sentence."""
-    return {found.text: found for found in formulas}

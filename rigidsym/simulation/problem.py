@@ -52,7 +52,8 @@ class Problem:
         if max(changes, default=0) > _UNIT * np.abs(self.start).max():
             bounds = " and ".join(f"{as_typed(c)} = 0" for c in derivation.model.constraints)
             raise ModelError(
-                f"{derivation.name}: the rates violate {bounds}; expected rates that keep it, or "
+                f"{derivation.name}: the rates violate {bounds}; expected rates that keep "
+                f"these conditions, or "
                 f"{OMEGA}"
             )
 

@@ -407,3 +407,12 @@ def test_functions_may_return_anything_with_entries():
     assert found.text().startswith("not rotation_matrix of ZYX, and no single change makes it one")
     turn = lambda q: sp.Matrix([[sp.cos(q[0]), -sp.sin(q[0])], [sp.sin(q[0]), sp.cos(q[0])]])  # noqa: E731
     assert rs.compare(lambda q: sp.diag(turn(q), 1), "z(a)", "rotation_matrix").is_proved
+
+
+def test_a_p_before_an_index_is_no_rate():
+    """mrp_1 is a coordinate, although p may end the name of a rate"""
+    formula = right("modified_rodrigues", "angular_velocity_body")
+    names = {s: sp.Symbol(f"mrp_{s.name[1:]}") for s in formula.free_symbols}
+    assert {name.name for name in names.values()} >= {"mrp_1", "mrp_1_dot"}
+    found = rs.compare(formula.xreplace(names), "modified_rodrigues", "angular_velocity_body")
+    assert found.is_equal

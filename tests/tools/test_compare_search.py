@@ -18,6 +18,7 @@ import rigidsym as rs
 from helpers.command import ROOT, call
 from rigidsym.commands.cli import commands
 from rigidsym.errors import ExpressionError
+from rigidsym.tools.compare.language import read_formula
 from rigidsym.tools.compare.plain import plain
 from rigidsym.tools.compare.search import formulas, search, source_files
 
@@ -100,6 +101,33 @@ def test_products_and_transposes_of_matrices_are_read_in_latex(text, read):
     found = rs.compare(text)
     assert found.found.described == read
     assert found.is_proved
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        r"R = #\,.",
+        r"R = #, \quad \phi = \omega t",
+        r"R = #, \quad \text{where}",
+        r"R = # = \mathbf{R}_z(\phi)",
+        r"\begin{align}R &= #\\\end{align}",
+        "R = # % a comment",
+        r"R = (#^{\mathsf T})^T",
+    ],
+)
+def test_what_stands_beside_a_matrix_in_latex_is_left_out(text):
+    assert read_formula(plain(text.replace("#", ABOUT_Z))) == read_formula(plain(ABOUT_Z))
+
+
+def test_arrays_with_columns_and_styled_indices_are_read_in_latex():
+    array = ABOUT_Z.replace("{bmatrix}", "{array}").replace(
+        r"\begin{array}", r"\begin{array}{c c|c}"
+    )
+    assert read_formula(plain(array)) == read_formula(plain(ABOUT_Z))
+    index = ABOUT_X.replace(r"\phi", r"\phi_\mathrm{rel}")
+    assert {symbol.name for symbol in read_formula(plain(index)).free_symbols} == {"phi_rel"}
+    with pytest.raises(ExpressionError, match="unexpected"):
+        plain("\\cos\ue000")
 
 
 def test_a_letter_without_a_meaning_is_refused_in_latex():

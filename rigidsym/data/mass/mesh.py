@@ -37,7 +37,7 @@ _FAILURES = (  # of trimesh, whose readers trust the counts and types in a file
     ValueError,
     struct.error,
 )
-_RELATIVE = re.compile(rb"^f\b(?:.*\s)?(-\d+|0)(?=[/\s]|$)", re.MULTILINE)  # of a face of OBJ
+_RELATIVE = re.compile(rb"^f\b(?:[^#\n]*\s)?(-\d+|0)(?=[/\s]|$)", re.MULTILINE)  # of a face of OBJ
 MOST_DRAWN, _MOST_CELLS = 400, 24
 _SIMPLEX = 1 / 6, 1 / 24, 1 / 120  # ∫ 1, ∫ u, ∫ u v over the unit simplex; ∫ u² is twice the last
 

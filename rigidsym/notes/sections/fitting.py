@@ -94,7 +94,7 @@ class Fitter:
             yield _without_entries(equation, short)
             return
         if step.quantity.name == "rotation_rate" and not (self._is_audit or shown.is_broken):
-            yield equation  # entries that are long give way to the chain rule: see `styles.py`
+            yield equation  # entries that are long give way to the chain rule: see `note.py`
             return
         form = self._shortest(equation, shown)
         if form.parts and step.quantity.name in _RATHER_SHORT:

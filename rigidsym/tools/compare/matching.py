@@ -204,7 +204,7 @@ def in_text(unknown: Comparison, text: str) -> Comparison:
             if reading.agrees(formula, goal):
                 before = text[max(0, match.start() - 15) : match.end() + 15]
                 after = changed[max(0, match.start() - 15) : match.end() + 15]
-                words = f"...{before}... should be ...{after}..."
+                words = f"...{before}... should be ...{after}...".replace("%", "*")
                 kind = {"s": "sine and cosine", "c": "sine and cosine", "*": "square"}
                 change = Repair(
                     kind=kind.get(match[0][0], "sign"), words=words, formula=formula, goal=goal

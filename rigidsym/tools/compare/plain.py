@@ -173,10 +173,13 @@ _LAYOUT = re.compile(
     r"|\\[,;:! \[\]]|[~$]|\\(?:begin|end)\{(?:align|aligned|equation|gather|split)\*?\}"
     r"|\\(?:tag|label)\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])"
 )
-_STYLED = re.compile(
-    r"\\(?:math(?:rm|it|sf|bf)|operatorname|text|boldsymbol|bm)\s*(?:\{\s*(\\?[A-Za-z]+)\s*\}|(?=\{))"
-)
-_MATRIX = re.compile(r"\\begin\{([pbB]?matrix|array)\}(?:\{[lcr]*\})?(.*?)\\end\{\1\}", re.DOTALL)
+_FONT = r"\\(?:math(?:rm|it|sf|bf)|operatorname|text|boldsymbol|bm)"
+_STYLED = re.compile(_FONT + r"(?:\s*\{\s*(\\?[A-Za-z]+)\s*\}|(?=\s*\{)|(?![A-Za-z]))")
+_STYLED_SCRIPT = re.compile(rf"(?<=[_^])\s*{_FONT}\s*(?=\{{)")
+_MATRIX = re.compile(r"\\begin\{([pbB]?matrix|array)\}(?:\{[lcr| ]*\})?(.*?)\\end\{\1\}", re.DOTALL)
+_COMMENT = re.compile(r"(?<!\\)%[^\n]*")
+_END = re.compile(r"(?<!\\),|\\q?quad(?![A-Za-z])|\\\\")  # of a side with a matrix
+_PUNCTUATION = re.compile(r"(?:\\[,;:! ]|[\s.,;])+$")
 _DOTS = {r"\dot": "_dot", r"\ddot": "_ddot"}
 _LETTERS = set(map(spelled, GREEK_LETTERS))
 _GREEK = {r"\varphi": "phi", r"\vartheta": "theta", r"\top": "T", r"\intercal": "T"}
@@ -186,7 +189,9 @@ _SHORT = {"c": "cos", "C": "cos", "s": "sin", "S": "sin"}  # c\theta
 
 
 def _tex(text: str) -> str:
-    """LaTeX: what stands behind the last equals sign outside of matrices."""
+    """LaTeX: the last side of an equation outside of matrices; with a matrix if one has it."""
+    if found := re.search(f"[{_MARKS}]", text):
+        raise ExpressionError(f"unexpected {found[0]!r} in LaTeX")
     matrices: list[str] = []
 
     def kept(match: re.Match[str]) -> str:
@@ -195,8 +200,11 @@ def _tex(text: str) -> str:
         matrices.append(f"[{', '.join(f'[{row}]' for row in cells)}]")
         return chr(_FIRST + len(matrices) - 1)
 
-    marked = _MATRIX.sub(kept, text).rstrip(" \n.,;")
-    formula = _TexWalk(marked.rsplit("=", 1)[-1]).sum()
+    text = _STYLED_SCRIPT.sub("", _COMMENT.sub("", text))
+    sides = _MATRIX.sub(kept, text).split("=")
+    side = next((s for s in reversed(sides) if re.search(f"[{_MARKS}]", s)), sides[-1])
+    side = _END.split(side)[0] if matrices else side
+    formula = _TexWalk(_PUNCTUATION.sub("", side)).sum()
     return re.sub(f"[{_MARKS}]", lambda match: matrices[ord(match[0]) - _FIRST], formula)
 
 

@@ -28,7 +28,9 @@ _DEEPEST = 12  # nested brackets
 _LONGEST = 4_000  # characters of a statement
 _MOST_SYMBOLS = 12
 _NUMPY = re.compile(r"^\s*(?:import|from) (?:numpy|jax)\b", re.MULTILINE)
-_MATRICES = re.compile(r"\bsympy\b|\bcasadi\b|\b[mM]atrix\(")  # whose * is the product of matrices
+_MATRICES = re.compile(
+    r"\bsympy\b|\bcasadi\b|\b(?:np|numpy)\.mat\(|[mM]atrix\("
+)  # whose * is the product of matrices
 _SHAPES = {9: (3, 3), 12: (4, 3), 16: (4, 4)}
 _TRIGONOMETRIC = (sp.sin, sp.cos, sp.tan)
 

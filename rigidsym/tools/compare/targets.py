@@ -251,7 +251,7 @@ def agreement(one: Array, other: Array) -> NDArray[np.bool_]:
 
 _LENGTHS = ("n", "theta", "angle", "norm")
 _RATE = re.compile(
-    r"(?:d_?|dot_?)(?P<behind>\w+)|(?P<before>\w+?)_?(?:dot|rates?|d|p)(?P<index>_?\d)?"
+    r"(?:d_?|dot_?)(?P<behind>\w+)|(?P<before>\w+?)_?(?:(?:dot|rates?|d)(?P<index>_?\d)?|p)"
 )
 _OMEGA = re.compile(
     r"(?:omega|Omega|w|W|gyro|g|rate|Omega_body|omega_(?:body|space))_?[xyz0-3]|[pqr]|[wW][pqr]"
