@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from operator import index
 from typing import Any, NamedTuple
 
@@ -172,7 +172,7 @@ class Known(NamedTuple):
     mass: sp.Expr
     centre: sp.ImmutableMatrix
     inertia: sp.ImmutableMatrix
-    outline: Outline = field(default_factory=Outline)
+    outline: Outline = Outline()
 
 
 Distribution = Particles | Solid | Polyhedron | Composite | Known

@@ -7,7 +7,7 @@ import sympy as sp
 
 from rigidsym.errors import BodyError
 from rigidsym.mechanics.mass.bodies import body_of, solid
-from rigidsym.models.distribution import Polyhedron
+from rigidsym.models.distribution import Known, Outline, Polyhedron
 
 M, a, b, c = sp.symbols("M a b c")
 CUBE = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -45,3 +45,8 @@ def test_a_surface_inside_out_is_refused_with_its_volume():
     inverted = cube(tuple(face[::-1] for face in CUBE), side=sp.Integer(2))
     with pytest.raises(BodyError, match="inside out: its volume is -8 m³"):
         body_of(inverted)
+
+
+def test_given_mass_properties_need_no_outline():
+    known = Known(sp.Integer(1), sp.ImmutableMatrix([0, 0, 0]), sp.ImmutableMatrix(sp.eye(3)))
+    assert known.outline == Outline()

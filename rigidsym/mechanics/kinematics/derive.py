@@ -176,7 +176,7 @@ class Expanded(Kinematics):
                         matrix = matrix @ whole
                     left = [rates[frame] @ matrix - whole.scale(below)]
                 case _:
-                    raise LookupError(f"no rule finds {name}; say it in {__name__}")
+                    raise LookupError(f"no rule for {name}; add one in {__name__}")
             found[name] = WorkedOut(matrix, below, left)
         return found
 

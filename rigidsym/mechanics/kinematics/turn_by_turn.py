@@ -94,7 +94,7 @@ class TurnByTurn(Kinematics):
             case "inverse_rate_matrix" | "rates_from_angular_velocity":
                 pass
             case _:
-                raise LookupError(f"no recursion finds {name}; say it in {__name__}")
+                raise LookupError(f"no recursion for {name}; add one in {__name__}")
         rows = self._rows(frame)
         if rows is None:
             return None
