@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from operator import index
-from typing import Any, NamedTuple
+from typing import Any
 
 import sympy as sp
 
@@ -166,13 +166,14 @@ def outline_from(data: Mapping[str, Any]) -> Outline:
         raise BodyError(message) from None
 
 
-class Known(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Known:
     """A part of which only mass, centre and inertia tensor about the centre are given."""
 
     mass: sp.Expr
     centre: sp.ImmutableMatrix
     inertia: sp.ImmutableMatrix
-    outline: Outline = Outline()
+    outline: Outline = field(default_factory=Outline)
 
 
 Distribution = Particles | Solid | Polyhedron | Composite | Known
